@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
-//! The files in their order; each imports from earlier ones only: errors, arguments, background, data, bodies,
-//! grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient.
+//! The files in their order; each imports from earlier ones only: errors, arguments, background, data, value,
+//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent.
 
 use pyo3::prelude::*;
 
@@ -16,14 +16,17 @@ mod friction;
 mod gradient;
 mod grid;
 mod hertz;
+mod indent;
 mod shapes;
 mod solved;
 mod stress;
+mod value;
 
 #[pymodule(name = "_core")]
 mod core {
     #[pymodule_export]
     use super::arguments::plain;
+    use super::bodies::{self, PyRigid};
     #[pymodule_export]
     use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
     #[pymodule_export]
@@ -46,6 +49,8 @@ mod core {
     #[pymodule_export]
     use super::hertz::{PyHertz, contact_modulus, equivalent_radius};
     #[pymodule_export]
+    use super::indent::{PyIndentStates, PyIndentation};
+    #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
     use super::solved::{PySolved, checked_report};
@@ -54,13 +59,13 @@ mod core {
         PyStressPlan, checked_stress, stress, stress_invariants, stress_plan, stress_summary,
         stress_under,
     };
-    use super::{bodies::PyRigid, shapes, shapes::indent};
+    use super::{indent, shapes};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         shapes::register(module)?;
-        module.add("RIGID", Py::new(module.py(), PyRigid)?)?;
+        module.add("RIGID", bodies::rigid(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
@@ -68,11 +73,6 @@ mod core {
         let py = module.py();
         module.setattr("Tip", py.get_type::<indent::PyTip>())?;
         module.setattr("Adhesion", py.get_type::<indent::PyAdhesion>())?;
-        module.setattr("Indentation", py.get_type::<indent::PyIndentation>())?;
-        module.setattr("IndentState", py.get_type::<indent::PyIndentState>())?;
-        module.setattr("StateDerivative", py.get_type::<indent::PyStateDerivative>())?;
-        module.setattr("IndentCurve", py.get_type::<indent::PyIndentCurve>())?;
-        module.setattr("PullOff", py.get_type::<indent::PyPullOff>())?;
         module.setattr("slope_of", wrap_pyfunction!(indent::slope_of, module)?)?;
         Ok(())
     }

@@ -47,7 +47,7 @@ from nacre._core import (
 )
 from nacre._profiles import read_profile
 from nacre.contact import Contact, roll, slide, solve
-from nacre.files import load
+from nacre.files import load, read_map
 from nacre.friction import creep_coefficients
 from nacre.solution import Solution
 from nacre.stresses import stress
@@ -100,7 +100,8 @@ __all__ = [
 ]
 
 
-# Of the compiled class, whose files are read in Python.
+# Of the compiled classes, whose files are read in Python.
+HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
 SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
 _LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,3 +26,22 @@ ByLayer = Mapping[int | str, float] | Sequence[float | None]
 Algorithm = Literal["cascade", "polonsky-keer"]
 Ending = Literal["running", "converged", "iteration limit", "stopped"]
 """How an iteration ended; "running" before its end."""
+
+
+class Topography(Protocol):
+    """A topography of SurfaceTopography."""
+
+    @property
+    def dim(self) -> int:
+        """Number of dimensions."""
+
+    @property
+    def unit(self) -> str | None:
+        """Unit of length."""
+
+    @property
+    def physical_sizes(self) -> tuple[float, ...] | None:
+        """Side lengths."""
+
+    def heights(self) -> npt.NDArray[Any]:
+        """Return the heights."""

@@ -53,7 +53,8 @@ def write_stress(
     if unknown := set(options) - set(OPTIONS):
         known = ", ".join(OPTIONS)
         raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
-    z, planes = _planes(solution, np.atleast_1d(np.asarray(depths, dtype=np.float64)), options)
+    depths = np.asarray(core.plain("depths", depths), dtype=np.float64)
+    z, planes = _planes(solution, np.atleast_1d(depths), options)
     shape = (*solution.pressure.shape, z.size)
     points: dict[str, Any] = {
         name: np.asfortranarray(np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape))

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ import nacre._core as core
 from nacre._disk import PICTURES, STATE, read, replacing, write_dataset
 from nacre._extras import extra
 from nacre._tables import FIELDS, GIVEN, YIELDED, write_cells, write_sections
+from nacre._typing import Pair, Topography
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS, symbol, system
 from nacre.values import RESULTS, check_format, encode, refusing
@@ -184,6 +185,83 @@ def load(path: AnyPath) -> Any:
         return _solution(*read(path, (*FIELDS, *YIELDED, *GIVEN, *FRICTION)))
     except ValueError as error:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
+
+
+def read_map(
+    path: AnyPath | Topography,
+    *,
+    spacing: float | Pair | None = None,
+    unit: str | None = None,
+    detrend: Literal["none", "mean", "plane", "quadratic"] = "plane",
+    channel: str | int | None = None,
+    transpose: bool = False,
+    periodic: tuple[bool, bool] = (False, False),
+) -> core.HeightMap:
+    """Read a measured surface from a file, or take one from SurfaceTopography.
+
+    Files of instruments are read by SurfaceTopography, with ``nacre-contact[surfaces]``. Missing
+    points are filled smoothly from their surroundings; a `nacre.NacreWarning` tells how many there
+    were.
+
+    Parameters
+    ----------
+    path : str, os.PathLike or topography
+        A file ``.npy`` holds a matrix of heights ``(nx, ny)``; ``.csv`` likewise, with one line
+        for each x, after optional comments ``# unit: um`` and ``# spacing: 0.5 0.5``; ``.xyz``
+        holds points on a grid. Decimal commas are recognised, and headings are left out.
+        SurfaceTopography reads any other file; a matrix in a ``.txt`` has one line for each y. A
+        topography is an object of that library.
+    spacing : float or tuple of float, optional
+        Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
+    unit : str, optional
+        Unit of the numbers in the file ("nm", "um", "mm", ...). By default the unit that the file
+        names. Where it names none, numbers in ``.npy`` and ``.csv`` are metres, unless the heights
+        would span more than ten times the map; anything else needs a unit.
+    detrend : {"plane", "none", "mean", "quadratic"}, optional
+        Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
+    channel : str or int, optional
+        Channel of the instrument that is read.
+    transpose : bool, optional
+        Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one
+        line for each y: that needs ``transpose=True``. The first line then has the smallest y. A
+        `spacing` that is given is not swapped.
+    periodic : tuple of bool, optional
+        Whether the surface repeats along x and along y.
+
+    Returns
+    -------
+    HeightMap
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be understood, its unit or spacing is not known, or less than half of it
+        was measured.
+    TypeError
+        If an argument is of the wrong kind.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.save(f"{folder}/flat.npy", np.zeros((4, 3)))
+    ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
+    (4, 3)
+    """
+    from nacre import surfaces
+
+    return surfaces.read(
+        path,
+        spacing=spacing,
+        unit=unit,
+        detrend=detrend,
+        channel=channel,
+        transpose=transpose,
+        periodic=periodic,
+    )
 
 
 def _split(solution: Solution) -> tuple[dict[str, Any], dict[str, Array]]:

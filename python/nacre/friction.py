@@ -220,9 +220,9 @@ def creep_curve(
     with extra("files"):
         import xarray
 
-    if np.ma.isMaskedArray(creepages) or np.asarray(creepages).dtype.kind not in "biuf":
-        raise TypeError(f"creepages must be real numbers without a mask, got {creepages!r}")
-    values = np.asarray(creepages, dtype=np.float64)
+    values = np.asarray(core.plain("creepages", creepages))
+    if values.dtype.kind not in "biuf":
+        raise TypeError(f"creepages must be real numbers, got {creepages!r}")
     if values.ndim != 1 or values.size == 0:
         raise ValueError(f"creepages must be a sequence of numbers, got shape {values.shape}")
     for name in ("creepage", "force", "cells", "initial"):

@@ -175,7 +175,7 @@ def load_curve(
     with extra("files"):
         import xarray
 
-    values = np.asarray(list(pressures), dtype=np.float64)
+    values = np.asarray(core.plain("pressures", list(pressures)), dtype=np.float64)
     if values.size == 0 or not (np.isfinite(values).all() and (values > 0).all()):
         raise ValueError(f"pressures must be numbers above 0, at least one, got {pressures!r}")
     if grid is None and not isinstance(shape, core.HeightMap):

@@ -46,10 +46,7 @@ ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
-INDENT = frozenset({"control"}).union(
-    inspect.signature(core.Indentation).parameters,
-    inspect.signature(core.Indentation.at).parameters,
-) - {"self"}
+INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
 """Arguments of `nacre.indent.solve`."""
 
 

@@ -35,6 +35,11 @@ pub enum Adhesion {
 
 /// What is given while a tip is moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Control {
     /// The load.
     Load,
@@ -61,6 +66,11 @@ impl Control {
 
 /// Part of the curve on which a state lies, where two have the same load or approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Branch {
     /// The contact of the larger radius, to which a disturbed tip returns.
     #[default]

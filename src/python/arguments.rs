@@ -4,11 +4,14 @@ use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use ndarray::{Array2, ArrayD, Ix2};
-use numpy::{IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray};
+use numpy::{
+    IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    get_array_module,
+};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyComplex, PyDict, PyFloat, PyInt, PyList, PyTuple, PyType};
+use pyo3::types::{PyComplex, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde::de::value::StrDeserializer;
@@ -49,6 +52,11 @@ fn is_complex(object: &Bound<'_, PyAny>) -> PyResult<bool> {
         Some(kind) => kind.eq("c"),
         None => Ok(false),
     }
+}
+
+/// Real number, for arguments with a default.
+pub(super) fn real(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    Ok(object.extract::<Real>()?.0)
 }
 
 /// Two real numbers from any sequence of Python, for arguments.
@@ -130,8 +138,8 @@ pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound
         }
         return Ok(value);
     }
-    let numpy = value.py().import("numpy")?;
-    if value.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+    let mask = value.getattr_opt("mask")?;
+    if mask.is_some_and(|mask| !mask.is_callable()) && value.hasattr("filled")? {
         return Err(PyTypeError::new_err(format!(
             "{name} must be a real array without a mask: fill the missing values first"
         )));
@@ -168,7 +176,7 @@ pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound
 ///
 /// Complex numbers, objects and text raise a `TypeError` that names the argument.
 pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
-    let numpy = object.py().import("numpy")?;
+    let numpy = get_array_module(object.py())?;
     let ragged =
         |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
     let object = plain(name, object.clone())?;
@@ -261,11 +269,6 @@ pub(super) fn flags(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[b
     value.extract().map_err(|_| {
         PyTypeError::new_err(format!("{name} must be a pair of bools, got {}", Repr(value)))
     })
-}
-
-/// Python's word for a truth value.
-pub(super) fn truth(value: bool) -> &'static str {
-    if value { "True" } else { "False" }
 }
 
 /// Coordinates of the free ends of a body; it goes on where one is `None`, or infinite on its own side.
@@ -395,17 +398,6 @@ pub(super) fn word_of(value: &impl Serialize) -> String {
     told.as_str().unwrap_or_default().to_owned()
 }
 
-/// Callable and arguments with which a pickle of any protocol makes an object of `class` again.
-pub(super) fn remade<'py>(
-    class: Bound<'py, PyType>,
-    arguments: impl IntoPyObject<'py>,
-    keywords: Bound<'py, PyDict>,
-) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-    let py = class.py();
-    let make = py.import("copyreg")?.getattr("__newobj_ex__")?;
-    Ok((make, (class, arguments, keywords).into_pyobject(py)?))
-}
-
 /// Hash of a value from its `repr`, which equal values share.
 pub(super) fn hash(repr: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
@@ -434,18 +426,4 @@ pub(super) fn array_repr<D: ndarray::Dimension>(
     let array = read_only(py, array)?;
     let text = if short { array.call_method0("tolist")?.repr()? } else { array.repr()? };
     Ok(text.to_string())
-}
-
-/// Arguments of a constructor whose values are numbers; one that is `None` is left out.
-pub(super) fn numbers<'py>(
-    py: Python<'py>,
-    arguments: impl IntoIterator<Item = (&'static str, Option<f64>)>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let given = PyDict::new(py);
-    for (name, value) in arguments {
-        if let Some(value) = value {
-            given.set_item(name, value)?;
-        }
-    }
-    Ok(given)
 }

@@ -1,84 +1,57 @@
 //! `nacre.Elastic`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.RIGID`.
 
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple, PyType};
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyList, PyTuple};
 
-use super::arguments::{Real, Repr, ends, hash, items, remade, word, word_of};
+use super::arguments::{Real, Repr, ends, items, word, word_of};
+use super::value::{self, Arguments, Value, class};
 use crate::compliance::response::Body;
-use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
 
-/// An isotropic linear elastic material.
-///
-/// Parameters
-/// ----------
-/// young : float
-///     Young's modulus [Pa], above 0.
-/// poisson : float
-///     Poisson's ratio, above -1 and at most 0.5.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If a constant is out of range.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> round(steel.plane_strain_modulus / 1e9, 2)
-/// 230.77
-#[pyclass(name = "Elastic", module = "nacre", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
-pub(super) struct PyElastic(pub(super) Elastic);
-
-#[pymethods]
-impl PyElastic {
-    #[new]
-    fn new(young: Real, poisson: Real) -> PyResult<Self> {
-        Ok(Self(Elastic::new(young.0, poisson.0)?))
+class! {
+    /// An isotropic linear elastic material.
+    ///
+    /// Parameters
+    /// ----------
+    /// young : float
+    ///     Young's modulus [Pa], above 0.
+    /// poisson : float
+    ///     Poisson's ratio, above -1 and at most 0.5.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a constant is out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> round(steel.plane_strain_modulus / 1e9, 2)
+    /// 230.77
+    PyElastic(Elastic) is "Elastic" of "nacre";
+    |of, py|
+    arguments {
+        /// Young's modulus [Pa].
+        young: f64 = of.young();
+        /// Poisson's ratio.
+        poisson: f64 = of.poisson();
     }
-
-    /// Young's modulus [Pa].
-    #[getter]
-    fn young(&self) -> f64 {
-        self.0.young()
+    attributes {
+        /// Shear modulus ``E / (2 (1 + nu))`` [Pa].
+        shear: f64 = of.shear();
+        /// Plane strain modulus ``E / (1 - nu**2)`` [Pa], the contact modulus against a rigid body.
+        plane_strain_modulus: f64 = of.plane_strain_modulus();
     }
-
-    /// Poisson's ratio.
-    #[getter]
-    fn poisson(&self) -> f64 {
-        self.0.poisson()
+    methods {
+        #[new]
+        fn new(young: Real, poisson: Real) -> PyResult<Self> {
+            Ok(Self(Elastic::new(young.0, poisson.0)?))
+        }
     }
-
-    /// Shear modulus ``E / (2 (1 + nu))`` [Pa].
-    #[getter]
-    fn shear(&self) -> f64 {
-        self.0.shear()
-    }
-
-    /// Plane strain modulus ``E / (1 - nu**2)`` [Pa], the contact modulus against a rigid body.
-    #[getter]
-    fn plane_strain_modulus(&self) -> f64 {
-        self.0.plane_strain_modulus()
-    }
-
-    fn __repr__(&self) -> String {
-        elastic_repr(&self.0)
-    }
-
-    fn __hash__(&self) -> u64 {
-        hash(&self.__repr__())
-    }
-
-    /// Callable and arguments that make the material again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (f64, f64)) {
-        (py.get_type::<Self>(), (self.0.young(), self.0.poisson()))
-    }
-}
-
-fn elastic_repr(material: &Elastic) -> String {
-    format!("Elastic(young={:?}, poisson={:?})", material.young(), material.poisson())
 }
 
 /// Type of `nacre.RIGID`, a rigid base.
@@ -97,165 +70,190 @@ impl PyRigid {
     }
 }
 
-/// A layer of uniform thickness, and the interface below it.
-///
-/// Parameters
-/// ----------
-/// material : Elastic
-///     Material of the layer.
-/// thickness : float
-///     Thickness [m], above 0.
-/// interface : {"bonded", "frictionless"}, optional
-///     Interface below the layer. At a bonded one displacement and traction are continuous; a
-///     frictionless one slips freely and never opens.
-/// name : str, optional
-///     Name of the layer, which results show: any text on one line but a number and "substrate".
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the thickness is not finite and above 0, there is no such interface, or the name is empty,
-///     a number or "substrate".
-///
-/// Examples
-/// --------
-/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
-/// >>> coating = nacre.Layer(dlc, thickness=2e-6, name="DLC")
-/// >>> coating.name, coating.interface
-/// ('DLC', 'bonded')
-#[pyclass(name = "Layer", module = "nacre", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
-pub(super) struct PyLayer(pub(super) Layer);
-
-#[pymethods]
-impl PyLayer {
-    #[new]
-    #[pyo3(signature = (material, thickness, interface="bonded", name=None))]
-    fn new(
-        material: PyElastic,
-        thickness: Real,
-        interface: &str,
-        name: Option<&str>,
-    ) -> PyResult<Self> {
-        let interface: Interface = word("interface", interface)?;
-        let layer = Layer::new(material.0, thickness.0)?.with_interface(interface);
-        Ok(Self(match name {
-            Some(name) => layer.with_name(name)?,
-            None => layer,
-        }))
-    }
-
-    /// Material of the layer.
-    #[getter]
-    fn material(&self) -> PyElastic {
-        PyElastic(self.0.material())
-    }
-
-    /// Thickness [m].
-    #[getter]
-    fn thickness(&self) -> f64 {
-        self.0.thickness()
-    }
-
-    /// Interface below the layer: "bonded" or "frictionless".
-    #[getter]
-    fn interface(&self) -> String {
-        word_of(&self.0.interface())
-    }
-
-    /// Name of the layer; None where it has none.
-    #[getter]
-    fn name(&self) -> Option<&str> {
-        self.0.name()
-    }
-
-    fn __repr__(&self) -> String {
-        let name = self.0.name().map(|name| format!(", name={}", quoted(name)));
-        format!(
-            "Layer({}, thickness={:?}, interface='{}'{})",
-            elastic_repr(&self.0.material()),
-            self.0.thickness(),
-            self.interface(),
-            name.unwrap_or_default()
-        )
-    }
-
-    fn __hash__(&self) -> u64 {
-        hash(&self.__repr__())
-    }
-
-    /// Callable and arguments that make the layer again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, LayerArguments<'_>) {
-        let arguments = (self.material(), self.0.thickness(), self.interface(), self.0.name());
-        (py.get_type::<Self>(), arguments)
-    }
+/// The one object `nacre.RIGID`.
+pub(super) fn rigid(py: Python<'_>) -> PyResult<Bound<'_, PyRigid>> {
+    static RIGID: PyOnceLock<Py<PyRigid>> = PyOnceLock::new();
+    Ok(RIGID.get_or_try_init(py, || Py::new(py, PyRigid))?.bind(py).clone())
 }
 
-/// Literal of Python for a text without control characters.
-fn quoted(text: &str) -> String {
-    let quote = match text.contains('\'') && !text.contains('"') {
-        true => '"',
-        false => '\'',
-    };
-    let mut literal = String::from(quote);
-    for character in text.chars() {
-        if character == quote || character == '\\' {
-            literal.push('\\');
+class! {
+    /// A layer of uniform thickness, and the interface below it.
+    ///
+    /// Parameters
+    /// ----------
+    /// material : Elastic
+    ///     Material of the layer.
+    /// thickness : float
+    ///     Thickness [m], above 0.
+    /// interface : {"bonded", "frictionless"}, optional
+    ///     Interface below the layer. At a bonded one displacement and traction are continuous; a
+    ///     frictionless one slips freely and never opens.
+    /// name : str, optional
+    ///     Name of the layer, which results show: any text on one line but a number and "substrate".
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the thickness is not finite and above 0, there is no such interface, or the name is empty,
+    ///     a number or "substrate".
+    ///
+    /// Examples
+    /// --------
+    /// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+    /// >>> coating = nacre.Layer(dlc, thickness=2e-6, name="DLC")
+    /// >>> coating.name, coating.interface
+    /// ('DLC', 'bonded')
+    PyLayer(Layer) is "Layer" of "nacre";
+    |of, py|
+    attributes {
+        /// Material of the layer.
+        material: PyElastic = PyElastic(of.material());
+        /// Thickness [m].
+        thickness: f64 = of.thickness();
+        /// Interface below the layer: "bonded" or "frictionless".
+        interface: String = word_of(&of.interface());
+        /// Name of the layer; None where it has none.
+        name: Option<String> = of.name().map(String::from);
+    }
+    methods {
+        #[new]
+        #[pyo3(signature = (material, thickness, interface="bonded", name=None))]
+        fn new(
+            material: PyElastic,
+            thickness: Real,
+            interface: &str,
+            name: Option<&str>,
+        ) -> PyResult<Self> {
+            let interface = word("interface", interface)?;
+            let layer = Layer::new(material.0, thickness.0)?.with_interface(interface);
+            Ok(Self(match name {
+                Some(name) => layer.with_name(name)?,
+                None => layer,
+            }))
         }
-        literal.push(character);
     }
-    literal.push(quote);
-    literal
 }
 
-type LayerArguments<'a> = (PyElastic, f64, String, Option<&'a str>);
+impl Value for PyLayer {
+    const NAME: &'static str = "Layer";
+    const UNNAMED: usize = 1;
 
-/// A half-space: a substrate, and layers from the surface down; free ends cut it off along x.
-///
-/// Parameters
-/// ----------
-/// substrate : Elastic or nacre.RIGID
-///     Material below the layers.
-/// layers : sequence of Layer, optional
-///     Layers from the surface down.
-/// ends : tuple of float, optional
-///     Coordinates x of free ends [m], the lower one first: the body is cut off there, and nothing holds
-///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the substrate is rigid and there is no layer, or there are ends; if the ends are not finite or not
-///     in ascending order.
-///
-/// Notes
-/// -----
-/// Contacts count the ends of both bodies, and so do stresses but for those of friction. A body that ends is
-/// a quarter space: Hetényi, A general solution for the elastic quarter space, J. Appl. Mech. 37 (1970) 75,
-/// doi:10.1115/1.3408508. Its reduction to the half-space, and that of a body with two ends, were derived here.
-/// What the end of a body with layers adds is a model, and a warning tells of its error. Ends lie on edges of
-/// the cells of a grid, or outside it.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
-/// >>> nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)]).interfaces
-/// [2e-06]
-///
-/// A roller of 10 mm on a raceway that goes on:
-///
-/// >>> roller = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
-/// >>> counterbody = nacre.HalfSpace(steel, ends=roller.ends)
-/// >>> counterbody.ends
-/// (-0.005, 0.005)
-/// >>> free = nacre.solve(roller, steel, counterbody, load=100.0)
-/// >>> whole = nacre.solve(roller, steel, steel, load=100.0)
-/// >>> bool(free.approach > whole.approach)
-/// True
-#[pyclass(name = "HalfSpace", module = "nacre", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
-pub(super) struct PyHalfSpace(pub(super) HalfSpace);
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        Ok(vec![
+            ("material", PyElastic(self.0.material()).into_bound_py_any(py)?),
+            ("thickness", self.0.thickness().into_bound_py_any(py)?),
+            ("interface", word_of(&self.0.interface()).into_bound_py_any(py)?),
+            ("name", self.0.name().into_bound_py_any(py)?),
+        ])
+    }
+}
+
+class! {
+    /// A half-space: a substrate, and layers from the surface down; free ends cut it off along x.
+    ///
+    /// Parameters
+    /// ----------
+    /// substrate : Elastic or nacre.RIGID
+    ///     Material below the layers.
+    /// layers : sequence of Layer, optional
+    ///     Layers from the surface down.
+    /// ends : tuple of float, optional
+    ///     Coordinates x of free ends [m], the lower one first: the body is cut off there, and nothing holds
+    ///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the substrate is rigid and there is no layer, or there are ends; if the ends are not finite or not
+    ///     in ascending order.
+    ///
+    /// Notes
+    /// -----
+    /// Contacts count the ends of both bodies, and so do stresses but for those of friction. A body that ends is
+    /// a quarter space: Hetényi, A general solution for the elastic quarter space, J. Appl. Mech. 37 (1970) 75,
+    /// doi:10.1115/1.3408508. Its reduction to the half-space, and that of a body with two ends, were derived here.
+    /// What the end of a body with layers adds is a model, and a warning tells of its error. Ends lie on edges of
+    /// the cells of a grid, or outside it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+    /// >>> nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)]).interfaces
+    /// [2e-06]
+    ///
+    /// A roller of 10 mm on a raceway that goes on:
+    ///
+    /// >>> roller = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
+    /// >>> counterbody = nacre.HalfSpace(steel, ends=roller.ends)
+    /// >>> counterbody.ends
+    /// (-0.005, 0.005)
+    /// >>> free = nacre.solve(roller, steel, counterbody, load=100.0)
+    /// >>> whole = nacre.solve(roller, steel, steel, load=100.0)
+    /// >>> bool(free.approach > whole.approach)
+    /// True
+    PyHalfSpace(HalfSpace) is "HalfSpace" of "nacre";
+    |of, py|
+    attributes {
+        /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
+        substrate: Bound<'py, PyAny> = base(py, of.substrate())?;
+        /// Layers from the surface down.
+        layers: Bound<'py, PyTuple> = PyTuple::new(py, of.layers().iter().cloned().map(PyLayer))?;
+        /// Depths of the interfaces [m], from the surface down.
+        interfaces: Vec<f64> = of.interfaces();
+        /// Coordinates x of the free ends [m]; None where the body goes on.
+        ends: (Option<f64>, Option<f64>) = of.ends().into();
+    }
+    methods {
+        #[new]
+        #[pyo3(signature = (substrate, layers=None, *, ends=None))]
+        fn new(
+            substrate: &Bound<'_, PyAny>,
+            layers: Option<&Bound<'_, PyAny>>,
+            ends: Option<&Bound<'_, PyAny>>,
+        ) -> PyResult<Self> {
+            let substrate = self::substrate(substrate)?;
+            let layers: Vec<PyLayer> = match layers {
+                Some(layers) => items("layers", "Layer", layers)?,
+                None => Vec::new(),
+            };
+            let layers = layers.into_iter().map(|layer| layer.0);
+            Ok(Self(HalfSpace::new(substrate, layers)?.with_ends(self::ends(ends)?)?))
+        }
+
+        /// A body with ends, for pickles.
+        #[staticmethod]
+        fn _ended(
+            substrate: &Bound<'_, PyAny>,
+            layers: &Bound<'_, PyAny>,
+            ends: &Bound<'_, PyAny>,
+        ) -> PyResult<Self> {
+            Self::new(substrate, Some(layers), Some(ends))
+        }
+    }
+}
+
+impl Value for PyHalfSpace {
+    const NAME: &'static str = "HalfSpace";
+    const UNNAMED: usize = 1;
+
+    fn maker(&self) -> Option<&'static str> {
+        (self.0.ends() != [None; 2]).then_some("_ended")
+    }
+
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        let layers = self.0.layers().iter().cloned().map(PyLayer);
+        let mut arguments = vec![
+            ("substrate", base(py, self.0.substrate())?),
+            ("layers", PyList::new(py, layers)?.into_any()),
+        ];
+        if self.0.ends() != [None; 2] {
+            let ends = <(Option<f64>, Option<f64>)>::from(self.0.ends());
+            arguments.push(("ends", ends.into_bound_py_any(py)?));
+        }
+        Ok(arguments)
+    }
+}
 
 impl PyHalfSpace {
     /// Half-space of a body; every body that Python makes is one.
@@ -267,84 +265,11 @@ impl PyHalfSpace {
     }
 }
 
-#[pymethods]
-impl PyHalfSpace {
-    #[new]
-    #[pyo3(signature = (substrate, layers=None, *, ends=None))]
-    fn new(
-        substrate: &Bound<'_, PyAny>,
-        layers: Option<&Bound<'_, PyAny>>,
-        ends: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let substrate = self::substrate(substrate)?;
-        let layers: Vec<PyLayer> = match layers {
-            Some(layers) => items("layers", "Layer", layers)?,
-            None => Vec::new(),
-        };
-        let layers = layers.into_iter().map(|layer| layer.0);
-        let ends = self::ends(ends)?;
-        Ok(Self(HalfSpace::new(substrate, layers)?.with_ends(ends)?))
-    }
-
-    /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
-    #[getter]
-    fn substrate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match self.0.substrate() {
-            Substrate::Elastic(material) => Ok(Bound::new(py, PyElastic(material))?.into_any()),
-            Substrate::Rigid => py.import("nacre._core")?.getattr("RIGID"),
-        }
-    }
-
-    /// Layers from the surface down.
-    #[getter]
-    fn layers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.0.layers().iter().cloned().map(PyLayer))
-    }
-
-    /// Depths of the interfaces [m], from the surface down.
-    #[getter]
-    fn interfaces(&self) -> Vec<f64> {
-        self.0.interfaces()
-    }
-
-    /// Coordinates x of the free ends [m]; None where the body goes on.
-    #[getter]
-    fn ends(&self) -> (Option<f64>, Option<f64>) {
-        self.0.ends().into()
-    }
-
-    pub(super) fn __repr__(&self) -> String {
-        let substrate = match self.0.substrate() {
-            Substrate::Elastic(material) => elastic_repr(&material),
-            Substrate::Rigid => "RIGID".into(),
-        };
-        let layers = self.0.layers().iter().cloned().map(PyLayer);
-        let layers: Vec<_> = layers.map(|layer| layer.__repr__()).collect();
-        let written = |end: Option<f64>| end.map_or("None".into(), |x| format!("{x:?}"));
-        let ends = match self.0.ends() {
-            [None, None] => String::new(),
-            [low, high] => format!(", ends=({}, {})", written(low), written(high)),
-        };
-        format!("HalfSpace({substrate}, layers=[{}]{ends})", layers.join(", "))
-    }
-
-    fn __hash__(&self) -> u64 {
-        hash(&self.__repr__())
-    }
-
-    /// Callable and arguments that make the half-space again.
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (class, arguments) = (py.get_type::<Self>(), (self.substrate(py)?, self.layers(py)?));
-        if self.0.ends() == [None; 2] {
-            // Earlier versions read it.
-            return Ok((class.into_any(), arguments.into_pyobject(py)?));
-        }
-        let keywords = PyDict::new(py);
-        keywords.set_item("ends", self.ends())?;
-        remade(class, arguments, keywords)
+/// Object for a substrate.
+fn base(py: Python<'_>, substrate: Substrate) -> PyResult<Bound<'_, PyAny>> {
+    match substrate {
+        Substrate::Elastic(material) => PyElastic(material).into_bound_py_any(py),
+        Substrate::Rigid => Ok(rigid(py)?.into_any()),
     }
 }
 

@@ -1,7 +1,5 @@
 //! Exceptions of Python: `nacre.ConvergenceError`, `nacre.NacreWarning`, and those that errors become.
 
-use std::ffi::CString;
-
 use pyo3::create_exception;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -20,16 +18,6 @@ create_exception!(
     PyUserWarning,
     "Warning about a solution that its user should read."
 );
-
-/// Issues each message as a `nacre.NacreWarning`.
-pub(super) fn issue_warnings(py: Python<'_>, messages: Vec<String>) -> PyResult<()> {
-    let category = py.get_type::<NacreWarning>();
-    let issue = |text: String| {
-        let text = CString::new(text).unwrap_or_default();
-        PyErr::warn(py, &category, &text, 1)
-    };
-    messages.into_iter().try_for_each(issue)
-}
 
 impl From<Error> for PyErr {
     fn from(error: Error) -> Self {

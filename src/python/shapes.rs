@@ -2,7 +2,6 @@
 
 mod base;
 mod height_map;
-pub(super) mod indent;
 mod logarithmic;
 mod profiles;
 mod quadric;

@@ -37,7 +37,7 @@ def test_a_history_is_a_dataset() -> None:
     assert nacre.friction.history([SOLVED["apart"]]).stick_share.item() == 0
     rolls = nacre.friction.history([SOLVED["rolled"]])
     np.testing.assert_array_equal(rolls.creepage, [SOLVED["rolled"].creepage])
-    assert (rolls.dissipated.units, "shift" in rolls) == ("N", False)
+    assert (rolls.dissipated.units, "shift" in rolls) == ("J/m", False)
     assert nacre.friction.history([SOLVED["line slid"]]).force.units == "N/m"
 
 

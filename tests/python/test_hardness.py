@@ -94,7 +94,7 @@ def test_wrong_hardness_is_refused(wrong: Any) -> None:
 
 
 def test_too_much_load_is_refused_with_both_numbers() -> None:
-    with pytest.raises(ValueError, match=r"hardness can carry .* 2[45]\.\d*, was 100:"):
+    with pytest.raises(ValueError, match=r"hardness can carry .* 25, was 100:"):
         CONTACT.solve(BALL, load=100.0, hardness=1e8)
 
 

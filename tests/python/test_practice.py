@@ -15,7 +15,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -847,7 +847,7 @@ def test_free_rolling_with_little_friction_converges(friction: float, creepage: 
 @MARK("force", [-0.97, 0.0, 0.4, 0.97])
 @MARK("direction", ["+y", "-y"])
 def test_rolling_with_little_friction_is_that_of_its_creepage(
-    friction: float, force: float, direction: str
+    friction: float, force: float, direction: Literal["+y", "-y"]
 ) -> None:
     found = rolled(friction, force, 150, direction=direction)
     again = nacre.roll(

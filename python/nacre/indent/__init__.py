@@ -14,22 +14,21 @@ Examples
 array([0.00021, 0.00076])
 """
 
-from nacre._core import (
-    Adhesion,
-    Indentation,
-    IndentCurve,
-    IndentState,
-    PullOff,
-    StateDerivative,
-    Tip,
-    slope_of,
-)
+from nacre._core import Adhesion, Tip, slope_of
 from nacre.indent import charts
 from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve, read
 from nacre.indent.fit import Fit, fit
-from nacre.indent.solution import IndentSolution, solve
+from nacre.indent.solution import (
+    Indentation,
+    IndentCurve,
+    IndentSolution,
+    IndentState,
+    PullOff,
+    StateDerivative,
+    solve,
+)
 
 __all__ = [
     "Adhesion",

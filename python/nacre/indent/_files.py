@@ -14,8 +14,7 @@ import numpy as np
 import nacre._core as core
 from nacre._disk import STATE, replacing, write_dataset
 from nacre._extras import extra
-from nacre.indent._system import unit_of
-from nacre.units import INDENT_UNITS, symbol, system
+from nacre.units import INDENT_UNITS, PARAMETERS, symbol, system
 from nacre.values import encode
 
 if TYPE_CHECKING:
@@ -34,6 +33,23 @@ NAMES = {
 }
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
+
+UNITS = PARAMETERS | {
+    "work": "N/m",
+    "flat": "m",
+    "strength": "Pa",
+    "contact_point": "m",
+    "drift": "m/s",
+    "compliance": "m/N",
+    "force_offset": "N",
+    "force_slope": "N/m",
+}
+"""SI units of parameters by the last part of their names."""
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of a parameter; "" where it has none."""
+    return UNITS.get(name.rpartition(".")[2], "")
 
 
 def indentation(solution: IndentSolution) -> xarray.Dataset:

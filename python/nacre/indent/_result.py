@@ -15,11 +15,12 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
+from nacre.indent._files import unit_of
 from nacre.indent._model import NUISANCES, OF_FORCE
 from nacre.indent._residuals import ROUNDING
-from nacre.indent._system import System, unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
+from nacre.indent.solution import holds
 from nacre.units import printable, written
 from nacre.values import FORMAT, checked_state, decode, encode, refusing
 
@@ -307,7 +308,7 @@ class Fit:
             and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
             and isinstance(self.is_sigma_known, bool)
             and isinstance(self.is_profiled, bool)
-            and System.holds(self.body, self.tip, self.counterbody, self.adhesion)
+            and holds(self.body, self.tip, self.counterbody, self.adhesion)
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copyreg
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,27 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.units import PARAMETERS
+from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]
-
-
-UNITS = PARAMETERS | {
-    "work": "N/m",
-    "flat": "m",
-    "strength": "Pa",
-    "contact_point": "m",
-    "drift": "m/s",
-    "compliance": "m/N",
-    "force_offset": "N",
-    "force_slope": "N/m",
-}
-"""SI units of parameters by the last part of their names."""
-
-
-def unit_of(name: str) -> str:
-    """Return the SI unit of a parameter; "" where it has none."""
-    return UNITS.get(name.rpartition(".")[2], "")
 
 
 @dataclass(frozen=True)
@@ -57,16 +38,6 @@ class System:
         if isinstance(counterbody, core.Elastic):
             counterbody = core.HalfSpace(counterbody)
         return cls(body, tip, counterbody, adhesion)
-
-    @staticmethod
-    def holds(body: object, tip: object, counterbody: object, adhesion: object) -> bool:
-        """Return whether these values are of the kinds that a system has."""
-        return (
-            isinstance(body, core.HalfSpace)
-            and isinstance(tip, core.Tip)
-            and isinstance(counterbody, core.HalfSpace | None)
-            and isinstance(adhesion, core.Adhesion | None)
-        )
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""
@@ -117,28 +88,12 @@ class System:
         body = _changed_body(self.body, "", {}, factor)
         return replace(self, body=body, counterbody=counterbody, adhesion=adhesion)
 
-    def curve(self, approach: Array, wrt: Sequence[str] = ()) -> core.IndentCurve:
+    def curve(self, approach: Array, wrt: Sequence[str] = ()) -> IndentCurve:
         """Return the loads at these approaches, without issuing the warnings that they hold."""
-        made = core.Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
+        made = Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)  # of places on the way to a fit
             return made.curve(approach=approach, wrt=wrt)
-
-
-def _again(
-    body: core.HalfSpace,
-    tip: core.Tip,
-    counterbody: core.HalfSpace | None,
-    adhesion: core.Adhesion | None,
-) -> core.Indentation:
-    return core.Indentation(body, tip, counterbody, adhesion=adhesion)
-
-
-# The compiled class has no `__reduce__`: workers of a pool get its arguments.
-copyreg.pickle(
-    core.Indentation,
-    lambda one: (_again, (one.body, one.tip, one.counterbody, one.adhesion)),
-)
 
 
 def _changed_body(

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre.indent.solution import Control, Indentation
 
 __all__ = ["bulk_limit", "coated", "information", "pull_off_over_thickness"]
 
@@ -29,7 +30,7 @@ def coated(ratio: float, thickness: float, poisson: float = 0.3) -> core.HalfSpa
 def _numbers(name: str, values: npt.ArrayLike, low: float, high: float) -> Array:
     """Return numbers, at least one, or an error unless they lie between two others."""
     try:
-        numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
+        numbers = np.atleast_1d(np.asarray(core.plain(name, values), dtype=np.float64))
     except OverflowError:
         numbers = np.array([math.inf])
     if (wrong := numbers[~((numbers >= low) & (numbers <= high))]).size:
@@ -78,7 +79,7 @@ def bulk_limit(
 def _limits(ratio: float, error: float, poisson: float) -> list[float]:
     tip_radius = 1e3
     body = coated(ratio, 1.0, poisson)
-    state: Any = core.Indentation(body, core.Tip.paraboloid(tip_radius)).at(radius=RADII)
+    state: Any = Indentation(body, core.Tip.paraboloid(tip_radius)).at(radius=RADII)
     load, approach, stiffness = (
         np.asarray(values) for values in (state.load, state.approach, state.stiffness)
     )
@@ -102,7 +103,7 @@ def _crossing(errors: Array, error: float) -> float:
 
 
 def pull_off_over_thickness(
-    ratio: float, thickness: npt.ArrayLike, *, control: str = "load", poisson: float = 0.3
+    ratio: float, thickness: npt.ArrayLike, *, control: Control = "load", poisson: float = 0.3
 ) -> Array:
     """Pull-off force of a paraboloid by JKR over πwR, for layers of one ratio of moduli.
 
@@ -132,7 +133,7 @@ def pull_off_over_thickness(
     unit = (9 * math.pi * work * radius**2 / (8 * modulus)) ** (1 / 3)
     tip, adhesion = core.Tip.paraboloid(radius), core.Adhesion.jkr(work)
     forces = [
-        core.Indentation(coated(ratio, unit * float(h), poisson), tip, adhesion=adhesion)
+        Indentation(coated(ratio, unit * float(h), poisson), tip, adhesion=adhesion)
         .pull_off(control)
         .load
         for h in _numbers("thickness", thickness, 1e-3, 1e6)
@@ -174,7 +175,7 @@ def information(
     values = {"body.layers[0].material.young": ratio, "body.layers[0].thickness": 1.0}
     if substrate:
         values["body.substrate.young"] = 1.0
-    test: Any = core.Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
+    test: Any = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
     rows = []
     for largest in np.atleast_1d(np.asarray(reach)):
         depth = float(test.at(radius=float(largest)).approach)

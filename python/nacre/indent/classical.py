@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.indent.curves import Curve
+from nacre.indent.solution import Indentation
 
 __all__ = ["Classical", "classical", "gao_weights", "oliver_pharr"]
 
@@ -91,7 +92,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
         raise ValueError(f"curve must have three points in contact, got {int(touching.sum())}")
     order = np.argsort(curve.depth[touching], kind="stable")
     depth, force = curve.depth[touching][order], curve.force[touching][order]
-    unit = core.Indentation(core.HalfSpace(core.Elastic(1.0, 0.0)), tip)
+    unit = Indentation(core.HalfSpace(core.Elastic(1.0, 0.0)), tip)
     bare = np.asarray(unit.curve(approach=depth).load)
     law = {"cone": "Sneddon", "power": "Sneddon", "flat_punch": "Sneddon"}.get(tip.kind, "Hertz")
     rows: list[tuple[str, float, str]] = [

@@ -1,10 +1,12 @@
-"""Solved indentations: what was pressed into what, and the contacts as numbers."""
+"""Indentations: planned, solved, and the contacts as numbers and fields."""
 
 from __future__ import annotations
 
+import copyreg
 import math
 import os
-from collections.abc import Mapping
+import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,36 +16,104 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._core import plain
 from nacre._display import aligned, table
-from nacre.indent._system import System
+from nacre._result import Result
+from nacre._typing import Body, Field, Matrix, Vector
 from nacre.units import INDENT_UNITS, printable, written
-from nacre.values import FORMAT, checked_state, decode, encode, refusing
+from nacre.values import decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
 
 Given = Literal["load", "approach", "radius"]
+Branch = Literal["stable", "unstable"]
 Control = Literal["load", "approach"]
+Numbers = float | Vector | Matrix
 
 NUMBERS = ("load", "approach", "radius", "stiffness", "outer_radius", "central_pressure")
-"""Numbers of each contact."""
+"""Numbers of each contact that are kept."""
 COLUMNS = ("load", "approach", "radius", "stiffness", "central_pressure")
 """Numbers of each contact that are printed."""
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
+KINDS: tuple[Any, ...] = (
+    core.HalfSpace,
+    core.Tip,
+    core.HalfSpace | None,
+    core.Adhesion | None,
+)
+"""Classes of the arguments."""
 ROWS = 30
 """Largest number of contacts that are printed."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class IndentSolution:
-    """Contacts of an indentation, with all that they depend on; see `nacre.indent.solve`.
+def holds(*arguments: object) -> bool:
+    """Return whether these values are of the kinds that an indentation is made of."""
+    return all(isinstance(one, kind) for one, kind in zip(arguments, KINDS, strict=True))
 
-    Numbers have the shape of the load, approach or radius that was given: each is a float or an
-    array.
+
+@dataclass(frozen=True)
+class StateDerivative:
+    """Derivatives of contacts of an indentation with respect to one parameter, in their shape.
+
+    Examples
+    --------
+    >>> body = nacre.HalfSpace(nacre.Elastic(70e9, 0.33))
+    >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.paraboloid(10e-6))
+    >>> contact = test.at(load=1e-3)
+    >>> change = contact.derivatives(["body.substrate.young"])["body.substrate.young"]
+    >>> round(change.approach * 70e9 / contact.approach, 6)  # Hertz: -2/3
+    -0.666667
     """
+
+    radius: Any
+    """Derivative of the contact radius."""
+    load: Any
+    """Derivative of the load."""
+    approach: Any
+    """Derivative of the approach."""
+    stiffness: Any
+    """Derivative of the stiffness."""
+    outer_radius: Any
+    """Derivative of the radius up to which the surfaces attract each other."""
+    _states: core.IndentStates
+    """Contacts of the compiled module."""
+    _path: str
+    """Path of the parameter."""
+
+    def pressure(self, r: Numbers) -> Any:
+        """Return the derivative of the pressure at distances r from the axis [m].
+
+        It is 0 outside of the contact. Its shape is that of the contacts followed by that of r.
+        """
+        return self._states.field("pressure", r, self._path)
+
+    def displacement(self, r: Numbers) -> Any:
+        """Return the derivative of the displacement of both surfaces together.
+
+        It is that at distances r from the axis [m].
+        """
+        return self._states.field("displacement", r, self._path)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IndentSolution(Result):
+    """Contacts of an indentation, with all that they depend on.
+
+    `Indentation.at` and `nacre.indent.solve` return it. Numbers have the shape of the load,
+    approach or radius that was given: each is a float or an array.
+
+    Examples
+    --------
+    >>> body = nacre.HalfSpace(nacre.Elastic(70e9, 0.33))
+    >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(10e-6))
+    >>> contacts = test.at(load=[1e-3, 2e-3])
+    >>> contacts.approach.shape, contacts.pressure([0.0, 1e-7, 2e-7]).shape
+    ((2,), (2, 3))
+    """
+
+    _LATER = ("warnings",)
 
     body: core.HalfSpace
     """Body that is indented."""
@@ -55,7 +125,7 @@ class IndentSolution:
     """Adhesion of the surfaces."""
     given: Given
     """Which of load, approach and radius was given."""
-    branch: str
+    branch: Branch
     """Branch of the contacts, "stable" or "unstable"."""
     control: Control
     """What is held while the tip is pulled off."""
@@ -66,24 +136,140 @@ class IndentSolution:
     radius: Any
     """Contact radius [m]."""
     stiffness: Any
-    """Stiffness of this contact area [N/m]."""
+    """Stiffness of this contact area [N/m]: that of unloading, and without adhesion the slope of
+    the curve."""
     outer_radius: Any
-    """Radius up to which the surfaces attract each other [m]."""
-    central_pressure: Any
-    """Pressure on the axis [Pa], infinite below a sharp tip."""
+    """Radius up to which the surfaces attract each other [m].
+
+    It is that of the contact except for Maugis's adhesion.
+    """
     warnings: tuple[str, ...] = ()
-    """What makes the contacts doubtful, in sentences; each was also issued as a `NacreWarning`."""
+    """What makes the contacts doubtful, in sentences, usually none: slopes above 0.5.
+
+    Each was also issued as a `nacre.NacreWarning`.
+    """
+
+    @classmethod
+    def _of(
+        cls,
+        test: Indentation,
+        states: core.IndentStates,
+        given: Given,
+        branch: Branch,
+        control: Control,
+        stacklevel: int = 4,
+    ) -> Self:
+        """Return contacts of the compiled module, and issue their warnings."""
+        numbers = {name: states.number(name) for name in NUMBERS[:-1]}
+        solution = cls(
+            test.body,
+            test.tip,
+            test.counterbody,
+            test.adhesion,
+            given,
+            branch,
+            control,
+            **numbers,
+            warnings=tuple(states.warnings()),
+        )
+        solution.__dict__.update(indentation=test, _states=states)
+        for message in solution.warnings:
+            warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
+        return solution
 
     @cached_property
-    def indentation(self) -> core.Indentation:
-        """Indentation that was solved, planned again."""
-        return core.Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
+    def indentation(self) -> Indentation:
+        """Indentation that was solved, planned again if need be."""
+        return Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
 
     @cached_property
-    def state(self) -> core.IndentState:
-        """Contacts with pressures, surfaces, stresses, derivatives; solved again if need be."""
-        given = {self.given: getattr(self, self.given)}
-        return self.indentation.at(**given, branch=self.branch)
+    def _states(self) -> core.IndentStates:
+        """Contacts of the compiled module, solved again."""
+        given: dict[str, Any] = {self.given: getattr(self, self.given)}
+        return self.indentation._planned.at(given, self.branch)
+
+    @property
+    def state(self) -> Self:
+        """The contacts themselves."""
+        return self
+
+    @cached_property
+    def stiffness_slope(self) -> Any:
+        """Derivative of the stiffness with respect to the contact radius [N/m^2]."""
+        return self._states.number("stiffness_slope")
+
+    @cached_property
+    def central_pressure(self) -> Any:
+        """Pressure on the axis [Pa], infinite below a sharp tip."""
+        return self.pressure(0.0)
+
+    def pressure(self, r: Numbers) -> Any:
+        """Return the pressure [Pa] at distances r from the axis [m].
+
+        It is 0 outside of the contact, and infinite below a sharp tip and at a sharp edge. Its
+        shape is that of the contacts followed by that of r.
+        """
+        return self._states.field("pressure", r)
+
+    def displacement(self, r: Numbers) -> Any:
+        """Return the displacement of both surfaces together [m], positive into the bodies.
+
+        It is that at distances r from the axis [m].
+        """
+        return self._states.field("displacement", r)
+
+    def gap(self, r: Numbers) -> Any:
+        """Return the gap between tip and surface [m] at distances r from the axis [m].
+
+        It is infinite beyond the tip.
+        """
+        return self._states.field("gap", r)
+
+    def stress(self, r: Numbers, z: float) -> dict[str, Any]:
+        """Stresses in the body below the surface.
+
+        Parameters
+        ----------
+        r : array_like
+            Distances from the axis [m].
+        z : float
+            Depth [m], at least 1e-2 of the contact radius. On an interface the stresses are those
+            below it.
+
+        Returns
+        -------
+        dict of str to numpy.ndarray
+            rr, tt, zz, rz and von_mises [Pa], tension positive, each in the shape of the contacts
+            followed by that of r.
+
+        Raises
+        ------
+        ValueError
+            If the depth is too small or below a rigid base, or a distance is negative.
+        """
+        return dict(self._states.stress(r, z))
+
+    def derivatives(self, wrt: Sequence[str] | None = None) -> dict[str, StateDerivative]:
+        """Differentiate the contacts with respect to parameters, where what was given is held.
+
+        Parameters
+        ----------
+        wrt : list of str, optional
+            Paths as `Indentation.parameters` lists them; all of them by default.
+
+        Returns
+        -------
+        dict of str to StateDerivative
+            Derivatives of all numbers and fields of the contacts, per unit of the parameter.
+
+        Raises
+        ------
+        ValueError
+            If there is no such parameter.
+        """
+        states = self._states
+        paths = states.parameters() if wrt is None else wrt
+        return {path: StateDerivative(*states.derivatives(path), states, path) for path in paths}
 
     @cached_property
     def _pulled(self) -> dict[str, float]:
@@ -107,49 +293,39 @@ class IndentSolution:
         """Radius of that contact [m]."""
         return self._pulled["pull_off_radius"]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the whole state as plain data with names, for JSON."""
-        state = {"format": FORMAT, "nacre": core.__version__, "kind": "IndentSolution"}
-        state |= {name: encode(getattr(self, name)) for name in ARGUMENTS}
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"]
+
+    def _state(self) -> dict[str, Any]:
+        state = {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
         return state | {"pull_off": self._pulled, "warnings": list(self.warnings)}
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """Return the solution of what `to_dict` returned.
-
-        Raises
-        ------
-        ValueError
-            If a key is missing or unknown, a value does not fit, or a newer version wrote the data.
-        """
-        names = {*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"}
-        state = checked_state({"warnings": [], **data}, "IndentSolution", names)
+    def _restored(cls, state: dict[str, Any]) -> Self:
         with refusing("IndentSolution"):
             for name in ARGUMENTS:
                 state[name] = decode(state[name])
             for name in NUMBERS:
                 values = np.array(state[name], dtype=np.float64)
                 state[name] = values if values.ndim else float(values)
-            state["warnings"] = tuple(state["warnings"])
-            pulled = state.pop("pull_off")
+            state["warnings"] = tuple(state["warnings"] or ())
+            pulled, central = state.pop("pull_off"), state.pop("central_pressure")
             made = cls(**state)
+            made.__dict__["central_pressure"] = central
             made.__dict__["_pulled"] = {name: float(pulled[name]) for name in PULLED}
             if not (
-                System.holds(made.body, made.tip, made.counterbody, made.adhesion)
+                holds(made.body, made.tip, made.counterbody, made.adhesion)
                 and len({np.shape(getattr(made, name)) for name in NUMBERS}) == 1
                 and made.given in get_args(Given)
-                and made.branch in ("stable", "unstable")
+                and made.branch in get_args(Branch)
                 and made.control in get_args(Control)
                 and all(isinstance(text, str) for text in made.warnings)
             ):
                 raise TypeError("its parts do not fit together")
         return made
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Return what pickles are made of."""
-        return type(self).from_dict, (self.to_dict(),)
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the contacts with units and all that they depend on.
@@ -227,21 +403,266 @@ class IndentSolution:
         return [name.replace("_", " ") for name in COLUMNS], rows, notes
 
 
+IndentState = IndentSolution
+"""Another name of `IndentSolution`."""
+
+
+@dataclass(frozen=True, eq=False)
+class IndentCurve:
+    """Loads at approaches, with their derivatives; see `Indentation.curve`."""
+
+    approach: Field
+    """Approaches [m]."""
+    load: Field
+    """Loads [N]."""
+    radius: Field
+    """Contact radii [m]."""
+    slope: Field
+    """dP/dδ along the curve [N/m]."""
+    derivatives: Field
+    """Derivatives of the loads at given approach, (points, parameters), per unit of each parameter.
+    """
+    warnings: list[str]
+    """What makes the deepest point doubtful: a list of sentences, usually empty.
+
+    Each was also issued as a `nacre.NacreWarning`.
+    """
+
+
+@dataclass(frozen=True)
+class PullOff:
+    """Last stable state of a tip that is pulled off; see `Indentation.pull_off`."""
+
+    load: float
+    """Load [N], below 0."""
+    approach: float
+    """Approach [m]."""
+    radius: float
+    """Contact radius [m]; 0 where the surfaces attract each other without touching."""
+    outer_radius: float
+    """Radius up to which the surfaces attract each other [m]."""
+
+
+class Indentation:
+    """An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
+
+    Parameters
+    ----------
+    body : HalfSpace or Elastic
+        Body that is indented.
+    tip : Tip
+        Form of the tip.
+    counterbody : HalfSpace or Elastic, optional
+        Material of the tip; rigid by default.
+    adhesion : Adhesion, optional
+        Adhesion of the surfaces; none by default.
+
+    Raises
+    ------
+    ValueError
+        If a body has free ends, or the tip cannot have this adhesion.
+
+    Examples
+    --------
+    >>> glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
+    >>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
+    >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(5e-6))
+    >>> contact = test.at(load=1e-3)
+    >>> f"{contact.approach * 1e9:.1f} nm, contact radius {contact.radius * 1e9:.0f} nm"
+    '115.5 nm, contact radius 938 nm'
+    """
+
+    __slots__ = ("_adhesion", "_planned", "_tip")
+
+    _planned: core.Indentation
+    _tip: core.Tip
+    _adhesion: core.Adhesion | None
+
+    def __new__(
+        cls,
+        body: Body,
+        tip: core.Tip,
+        counterbody: Body | None = None,
+        *,
+        adhesion: core.Adhesion | None = None,
+    ) -> Self:
+        """Plan the indentation."""
+        made = super().__new__(cls)
+        made._planned = core.Indentation(body, tip, counterbody, adhesion)
+        made._tip, made._adhesion = tip, adhesion
+        return made
+
+    @property
+    def body(self) -> core.HalfSpace:
+        """Body that is indented."""
+        return self._planned.body()
+
+    @property
+    def counterbody(self) -> core.HalfSpace | None:
+        """Material of the tip; None where it is rigid."""
+        return self._planned.counterbody()
+
+    @property
+    def tip(self) -> core.Tip:
+        """Form of the tip."""
+        return self._tip
+
+    @property
+    def adhesion(self) -> core.Adhesion | None:
+        """Adhesion of the surfaces, or None."""
+        return self._adhesion
+
+    @property
+    def surface_modulus(self) -> float:
+        """Contact modulus E* at the surfaces [Pa], which small contacts feel."""
+        return self._planned.surface_modulus()
+
+    @property
+    def parameters(self) -> list[str]:
+        """Paths of the parameters with respect to which there are derivatives."""
+        return self._planned.parameters()
+
+    def at(
+        self,
+        *,
+        load: Numbers | None = None,
+        approach: Numbers | None = None,
+        radius: Numbers | None = None,
+        branch: Branch = "stable",
+    ) -> IndentSolution:
+        """Contacts by load, approach or contact radius.
+
+        Parameters
+        ----------
+        load, approach, radius : float or array_like
+            Loads [N], approaches [m] or contact radii [m] of any shape; exactly one of them.
+        branch : {"stable", "unstable"}, optional
+            Branch of the curve where adhesion gives two contacts the same load or approach.
+
+        Returns
+        -------
+        IndentSolution
+            Contacts in the shape of what was given.
+
+        Raises
+        ------
+        ValueError
+            If not exactly one is given, where nothing touches, where the contact would be larger
+            than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
+            pressure and gap of every contact are checked.
+        """
+        given: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+        return self._at(given, branch, "load")
+
+    def _at(self, given: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
+        states = self._planned.at(given, branch)
+        # What was given is the value that is not None.
+        name = next(name for name, value in given.items() if value is not None)
+        return IndentSolution._of(self, states, name, branch, control)
+
+    def curve(self, *, approach: Vector, wrt: Sequence[str] = ()) -> IndentCurve:
+        """Compute loads at approaches with their derivatives, by interpolation in the radius.
+
+        The error of the interpolation is 1e-9: for fits.
+
+        Parameters
+        ----------
+        approach : array_like
+            Approaches [m], of one dimension.
+        wrt : list of str, optional
+            Paths of parameters, as `parameters` lists them.
+
+        Returns
+        -------
+        IndentCurve
+            Load, radius, slope and derivatives, all 0 where nothing touches.
+
+        Raises
+        ------
+        ValueError
+            If the adhesion is Maugis's, the largest approach needs too large a contact, or a
+            contact is a ring.
+        """
+        curve = IndentCurve(*self._planned.curve(approach, wrt))
+        for message in curve.warnings:
+            warnings.warn(message, core.NacreWarning, stacklevel=2)
+        return curve
+
+    def pull_off(self, control: Control = "load") -> PullOff:
+        """Last stable state of the tip as it is pulled off under a given load or approach.
+
+        Parameters
+        ----------
+        control : {"load", "approach"}, optional
+            What is given while it is pulled.
+
+        Returns
+        -------
+        PullOff
+            Load, approach and radii.
+
+        Raises
+        ------
+        ValueError
+            If there is no adhesion.
+
+        Examples
+        --------
+        >>> test = nacre.indent.Indentation(
+        ...     nacre.Elastic(1e6, 0.5),
+        ...     nacre.indent.Tip.paraboloid(1e-5),
+        ...     adhesion=nacre.indent.Adhesion.jkr(0.05),
+        ... )
+        >>> last = test.pull_off()
+        >>> round(last.load / (-1.5 * 3.141592653589793 * 0.05 * 1e-5), 9)
+        1.0
+        """
+        return PullOff(*self._planned.pull_off(control))
+
+    def snap_in(self, control: Control = "load") -> IndentSolution:
+        """Return the contact into which the tip jumps as it comes near.
+
+        It comes near under no load (`control` "load"), or to the approach at which the surfaces
+        begin to attract each other ("approach"): 0 for JKR's adhesion, -work/strength for Maugis's.
+        """
+        states = self._planned.snap_in(control)
+        return IndentSolution._of(self, states, control, "stable", control, stacklevel=3)
+
+    def work_from_pull_off(self, force: float, control: Control = "load") -> float:
+        """Return the work of adhesion [J/m^2] from the force of pull-off [N], above 0.
+
+        It is that of JKR's adhesion where this indentation has none, else of its own kind.
+        """
+        return self._planned.work_from_pull_off(force, control)
+
+    def __repr__(self) -> str:
+        """Return the call that makes the plan."""
+        others = "" if self.counterbody is None else f", {self.counterbody!r}"
+        if self.adhesion is not None:
+            others += f", adhesion={self.adhesion!r}"
+        return f"Indentation({self.body!r}, {self.tip!r}{others})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return a callable and arguments with which a pickle of any protocol plans again."""
+        given = (self.body, self.tip, self.counterbody), {"adhesion": self.adhesion}
+        return copyreg.__newobj_ex__, (type(self), *given)  # type: ignore[attr-defined]
+
+
 def said(value: float, name: str) -> str:
     """Return a number of an indentation with its unit."""
     return written(value, INDENT_UNITS[name], 4) if math.isfinite(value) else str(value)
 
 
 def solve(
-    body: core.HalfSpace | core.Elastic,
+    body: Body,
     tip: core.Tip,
-    counterbody: core.HalfSpace | core.Elastic | None = None,
+    counterbody: Body | None = None,
     *,
     adhesion: core.Adhesion | None = None,
     load: npt.ArrayLike | None = None,
     approach: npt.ArrayLike | None = None,
     radius: npt.ArrayLike | None = None,
-    branch: Literal["stable", "unstable"] = "stable",
+    branch: Branch = "stable",
     control: Control = "load",
 ) -> IndentSolution:
     """Solve an indentation to a result that can be saved, and that studies take outputs from.
@@ -286,26 +707,8 @@ def solve(
     >>> found
     <IndentSolution: 1 contact, load 1 mN, approach 115.5 nm, radius 938.1 nm>
     """
-    if control not in ("load", "approach"):
+    if control not in get_args(Control):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
-    test = core.Indentation(body, tip, counterbody, adhesion=adhesion)
-    asked: dict[str, Any] = {"load": load, "approach": approach, "radius": radius}
-    asked = {name: plain(name, value) for name, value in asked.items()}
-    state = test.at(**asked, branch=branch)
-    # What was given is the value that is not None, as `at` has checked.
-    given: Any = next(name for name, value in asked.items() if value is not None)
-    numbers = {name: getattr(state, name) for name in NUMBERS[:-1]}
-    solution = IndentSolution(
-        body=test.body,
-        tip=test.tip,
-        counterbody=test.counterbody,
-        adhesion=test.adhesion,
-        given=given,
-        branch=branch,
-        control=control,
-        **numbers,
-        central_pressure=state.pressure(0.0),
-        warnings=tuple(state.warnings),
-    )
-    solution.__dict__.update(indentation=test, state=state)
-    return solution
+    test = Indentation(body, tip, counterbody, adhesion=adhesion)
+    given: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+    return test._at(given, branch, control)

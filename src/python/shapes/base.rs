@@ -3,26 +3,77 @@
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyTuple;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::model::surface::{self, Profile, Shifted, Superposition, Surface};
-use crate::python::arguments::{Real, Repr, array_repr, hash, remade};
+use crate::python::arguments::{Real, Repr, hash};
 use crate::python::grid::PyGrid;
+use crate::python::value::{Arguments, Reduced, call_text};
 
 /// A kind of shape with a Python class of the same name, which is also data. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface + Serialize + DeserializeOwned {
     /// Class of the objects.
     type Class: PyClass<BaseType = PyShape>;
+    /// What an object of the class holds beside its shape: nothing.
+    const CLASS: Self::Class;
 
-    /// Arguments of the constructor, by name and in their order, without those that are left out.
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>>;
+    /// Arguments of the constructor.
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>>;
 }
+
+/// Writes the class of a kind of shape, as [`class`](crate::python::value) does for other values.
+macro_rules! shape_class {
+    (
+        $(#[$meta:meta])*
+        $class:ident($kind:ty) is $name:literal;
+        |$of:ident, $py:ident|
+        arguments { $($(#[$doc:meta])* $argument:ident: $of_type:ty = $read:expr;)* }
+        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $found:expr;)* }
+        methods { $($methods:tt)* }
+    ) => {
+        $(#[$meta])*
+        #[pyclass(name = $name, module = "nacre", frozen, extends = PyShape)]
+        pub(super) struct $class;
+
+        impl Kind for $kind {
+            type Class = $class;
+            const CLASS: $class = $class;
+
+            fn arguments<'py>(&self, $py: Python<'py>) -> PyResult<Arguments<'py>> {
+                let $of = self;
+                Ok(vec![$((stringify!($argument), ($read).into_bound_py_any($py)?),)*])
+            }
+        }
+
+        #[pymethods]
+        impl $class {
+            $($methods)*
+
+            $($(#[$doc])*
+            #[getter]
+            fn $argument<'py>(slf: &Bound<'py, Self>) -> PyResult<$of_type> {
+                let ($of, $py) = (held::<_, $kind>(slf), slf.py());
+                let _ = $py;
+                Ok($read)
+            })*
+
+            $($(#[$more])*
+            #[getter]
+            fn $attribute<'py>(slf: &Bound<'py, Self>) -> PyResult<$type> {
+                let $of = held::<_, $kind>(slf);
+                Ok($found)
+            })*
+        }
+    };
+}
+
+pub(super) use shape_class;
 
 /// The kinds of shapes.
 macro_rules! kinds {
@@ -47,10 +98,21 @@ macro_rules! kinds {
             fn constructor<'py>(
                 &self,
                 py: Python<'py>,
-            ) -> PyResult<Option<(&'static str, Bound<'py, PyDict>)>> {
+            ) -> PyResult<Option<(&'static str, Arguments<'py>)>> {
                 Ok(match self {
                     $(Self::$kind(shape) => Some((stringify!($kind), shape.arguments(py)?)),)*
                     Self::Combined(_) => None,
+                })
+            }
+
+            /// Object of Python.
+            fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                Ok(match self {
+                    $(Self::$kind(shape) => {
+                        let made = object(surface::$kind::CLASS, shape.clone());
+                        Bound::new(py, made)?.into_any()
+                    })*
+                    Self::Combined(_) => Bound::new(py, PyShape(self.clone()))?.into_any(),
                 })
             }
         }
@@ -200,13 +262,6 @@ impl Shape {
         }
     }
 
-    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match self.constructor(py)? {
-            Some((class, arguments)) => class_of(py, class)?.call((), Some(&arguments)),
-            None => Ok(Bound::new(py, PyShape(self.clone()))?.into_any()),
-        }
-    }
-
     fn repr(&self, py: Python<'_>) -> PyResult<String> {
         if let Self::Combined(sum) = self {
             let texts = sum.flat().shapes().iter().map(|part| {
@@ -222,15 +277,7 @@ impl Shape {
         let Some((class, arguments)) = self.constructor(py)? else {
             unreachable!("all others have a constructor");
         };
-        let mut texts = Vec::new();
-        for (name, value) in arguments {
-            let text = match value.cast::<PyArrayDyn<f64>>() {
-                Ok(array) => array_repr(py, array.to_owned_array())?,
-                Err(_) => value.repr()?.to_string(),
-            };
-            texts.push(format!("{name}={text}"));
-        }
-        Ok(format!("{class}({})", texts.join(", ")))
+        call_text(class, &arguments, 0)
     }
 }
 
@@ -325,39 +372,36 @@ impl PyShape {
         hash(&self.0.key())
     }
 
-    /// Callable and arguments that make the shape again.
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        if let Some((class, arguments)) = self.0.constructor(py)? {
-            let class = class_of(py, class)?.cast_into()?;
-            return remade(class, PyTuple::empty(py), arguments);
-        }
+    /// Shapes of a sum, or the one that is moved, each with its whole shift; none of other shapes.
+    fn _parts<'py>(&self, py: Python<'py>) -> PyResult<Vec<Part<'py>>> {
         let Shape::Combined(sum) = &self.0 else {
-            unreachable!("all others have a constructor");
+            return Ok(Vec::new());
         };
-        let operator = py.import("operator")?;
-        let moved = |shift: [f64; 2]| {
-            operator.call_method1("methodcaller", ("shifted", shift[0], shift[1]))
-        };
-        if let [part] = sum.flat().shapes() {
-            let shape = part.shape().to_python(py)?;
-            return Ok((moved(part.shift())?, (shape,).into_pyobject(py)?));
+        let parts = sum.flat().shapes().iter();
+        parts.map(|part| Ok((part.shape().to_python(py)?, part.shift().into()))).collect()
+    }
+
+    /// Sum of shapes that are moved, for pickles.
+    #[staticmethod]
+    fn _of_parts(parts: Vec<(Bound<'_, Self>, [f64; 2])>) -> PyResult<Self> {
+        let parts = parts.into_iter().map(|(shape, shift)| (shape.get().0.clone(), shift));
+        Ok(Self(Shape::combined(parts.collect())))
+    }
+
+    /// Callable and arguments that make the shape again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let (py, class) = (slf.py(), slf.get_type());
+        if let Some((_, arguments)) = slf.get().0.constructor(py)? {
+            let arguments = arguments.into_iter().map(|(_, argument)| argument);
+            return Ok((class.into_any(), PyTuple::new(py, arguments.collect::<Vec<_>>())?));
         }
-        let parts = sum.flat().shapes().iter().map(|part| match is_moved(part) {
-            true => Shape::combined(vec![(part.shape().clone(), part.shift())]).to_python(py),
-            false => part.shape().to_python(py),
-        });
-        let parts = parts.collect::<PyResult<Vec<_>>>()?;
-        let reduce = py.import("functools")?.getattr("reduce")?;
-        Ok((reduce, (operator.getattr("add")?, parts).into_pyobject(py)?))
+        let parts = slf.get()._parts(py)?;
+        Ok((class.getattr("_of_parts")?, (parts,).into_pyobject(py)?))
     }
 }
 
-fn class_of<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    py.import("nacre._core")?.getattr(name)
-}
+/// A shape and its shift.
+type Part<'py> = (Bound<'py, PyAny>, (f64, f64));
 
 /// Shape from an argument.
 pub(in crate::python) fn shape<'a, 'py>(

@@ -4,11 +4,11 @@ use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
-use crate::python::arguments::{Repr, array_repr, mapped, read_only, real_array};
+use crate::python::arguments::{Repr, mapped, read_only, real_array};
+use crate::python::value::{self, Arguments, Value};
 
 /// A measured axial profile of a roller: drops at positions, linear in between, +inf beyond.
 ///
@@ -90,19 +90,27 @@ impl PySampledProfile {
         read_only(py, self.0.samples().map(|s| s[1]).collect())
     }
 
-    pub(super) fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let line = |k: usize| array_repr(py, self.0.samples().map(|s| s[k]).collect::<Array1<_>>());
-        Ok(format!("SampledProfile(x={}, drop={})", line(0)?, line(1)?))
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        value::repr(self, py)
     }
 
     /// Callable and arguments that make the profile again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        Ok((py.get_type::<Self>(), (self.x(py)?, self.drop(py)?)))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<value::Reduced<'py>> {
+        value::reduced(slf.get(), slf.get_type().as_any())
     }
 }
 
-type Line<'py> = Bound<'py, PyArray1<f64>>;
-type Reduced<'py> = (Bound<'py, PyType>, (Line<'py>, Line<'py>));
+impl Value for PySampledProfile {
+    const NAME: &'static str = "SampledProfile";
+
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        let line = |k: usize| {
+            let numbers: Array1<f64> = self.0.samples().map(|sample| sample[k]).collect();
+            read_only(py, numbers.into_dyn())
+        };
+        Ok(vec![("x", line(0)?.into_any()), ("drop", line(1)?.into_any())])
+    }
+}
 
 /// Profile from an argument: an object of either class, or a pair (x, drop).
 pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {

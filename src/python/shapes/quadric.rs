@@ -1,297 +1,206 @@
 //! `nacre.Sphere`, `nacre.Paraboloid`, `nacre.Cylinder` and `nacre.FlatPunch`.
 
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use super::base::{Kind, PyShape, held, object};
+use super::base::{Kind, PyShape, held, object, shape_class};
 use crate::model::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
-use crate::python::arguments::{Real, numbers};
+use crate::python::arguments::Real;
+use crate::python::value::Arguments;
 
-/// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
-///
-/// On a counterpart that is curved itself, such as a groove or a socket, the gap has that of the
-/// counterpart added, a piece of a torus with the radii ``R_x`` and ``R_y``:
-/// ``d = R_x - sqrt(R_x**2 - x**2)`` for y = 0, ``R_y - sqrt((R_y - d)**2 - y**2)`` elsewhere.
-///
-/// Parameters
-/// ----------
-/// radius : float
-///     Radius [m], above 0.
-/// counter_radius_x, counter_radius_y : float, optional
-///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
-///     (a raceway, a groove, a socket), which must be wider than the sphere. Straight by default.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the radius is not finite and above 0, or a concave counterpart is not wider.
-///
-/// Examples
-/// --------
-/// >>> nacre.Sphere(radius=5e-3)
-/// Sphere(radius=0.005)
-///
-/// A ball in the groove of an inner ring, which is concave across x and convex along y:
-///
-/// >>> ball = nacre.Sphere(5e-3, counter_radius_x=-5.2e-3, counter_radius_y=20e-3)
-/// >>> round(ball.equivalent_radius_x, 9), round(ball.equivalent_radius_y, 9)
-/// (0.13, 0.004)
-#[pyclass(name = "Sphere", module = "nacre", frozen, extends = PyShape)]
-pub(super) struct PySphere;
-
-impl Kind for Sphere {
-    type Class = PySphere;
-
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let [counter_x, counter_y] = self.counter_radii();
-        let radii = [
-            ("radius", Some(self.radius())),
-            ("counter_radius_x", counter_x),
-            ("counter_radius_y", counter_y),
-        ];
-        numbers(py, radii)
+shape_class! {
+    /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
+    ///
+    /// On a counterpart that is curved itself, such as a groove or a socket, the gap has that of the
+    /// counterpart added, a piece of a torus with the radii ``R_x`` and ``R_y``:
+    /// ``d = R_x - sqrt(R_x**2 - x**2)`` for y = 0, ``R_y - sqrt((R_y - d)**2 - y**2)`` elsewhere.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Radius [m], above 0.
+    /// counter_radius_x, counter_radius_y : float, optional
+    ///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
+    ///     (a raceway, a groove, a socket), which must be wider than the sphere. Straight by default.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the radius is not finite and above 0, or a concave counterpart is not wider.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Sphere(radius=5e-3)
+    /// Sphere(radius=0.005)
+    ///
+    /// A ball in the groove of an inner ring, which is concave across x and convex along y:
+    ///
+    /// >>> ball = nacre.Sphere(5e-3, counter_radius_x=-5.2e-3, counter_radius_y=20e-3)
+    /// >>> round(ball.equivalent_radius_x, 9), round(ball.equivalent_radius_y, 9)
+    /// (0.13, 0.004)
+    PySphere(Sphere) is "Sphere";
+    |of, py|
+    arguments {
+        /// Radius [m].
+        radius: f64 = of.radius();
+        /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
     }
-}
-
-#[pymethods]
-impl PySphere {
-    #[new]
-    #[pyo3(signature = (radius, counter_radius_x=None, counter_radius_y=None))]
-    fn new(
-        radius: Real,
-        counter_radius_x: Option<Real>,
-        counter_radius_y: Option<Real>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
-        let sphere = Sphere::new(radius.0)?.with_counter_radii(counter)?;
-        Ok(object(Self, sphere))
+    attributes {
+        /// Equivalent radius along x [m], ``1/(1/R + 1/R_x)``.
+        equivalent_radius_x: f64 = of.equivalent_radii()[0];
+        /// Equivalent radius along y [m], ``1/(1/R + 1/R_y)``.
+        equivalent_radius_y: f64 = of.equivalent_radii()[1];
     }
-
-    /// Radius [m].
-    #[getter]
-    fn radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Sphere>(slf).radius()
-    }
-
-    /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
-    #[getter]
-    fn counter_radius_x(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Sphere>(slf).counter_radii()[0]
-    }
-
-    /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
-    #[getter]
-    fn counter_radius_y(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Sphere>(slf).counter_radii()[1]
-    }
-
-    /// Equivalent radius along x [m], ``1/(1/R + 1/R_x)``.
-    #[getter]
-    fn equivalent_radius_x(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Sphere>(slf).equivalent_radii()[0]
-    }
-
-    /// Equivalent radius along y [m], ``1/(1/R + 1/R_y)``.
-    #[getter]
-    fn equivalent_radius_y(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Sphere>(slf).equivalent_radii()[1]
-    }
-}
-
-/// An elliptic paraboloid: ``h = x**2/(2 R_x) + y**2/(2 R_y)``.
-///
-/// On a counterpart that is curved itself, R_x and R_y are the equivalent radii of both:
-/// ``1/R = 1/radius + 1/counter_radius``.
-///
-/// Parameters
-/// ----------
-/// radius_x, radius_y : float
-///     Radii of curvature at the apex [m], above 0.
-/// counter_radius_x, counter_radius_y : float, optional
-///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
-///     (a raceway, a groove), which must be wider than the paraboloid. Straight by default.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If a radius is not finite and above 0, or a concave counterpart is not wider.
-///
-/// Examples
-/// --------
-/// >>> nacre.Paraboloid(5e-3, 5e-3)
-/// Paraboloid(radius_x=0.005, radius_y=0.005)
-#[pyclass(name = "Paraboloid", module = "nacre", frozen, extends = PyShape)]
-pub(super) struct PyParaboloid;
-
-impl Kind for Paraboloid {
-    type Class = PyParaboloid;
-
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let [counter_x, counter_y] = self.counter_radii();
-        let radii = [
-            ("radius_x", Some(self.radius_x())),
-            ("radius_y", Some(self.radius_y())),
-            ("counter_radius_x", counter_x),
-            ("counter_radius_y", counter_y),
-        ];
-        numbers(py, radii)
-    }
-}
-
-#[pymethods]
-impl PyParaboloid {
-    #[new]
-    #[pyo3(signature = (radius_x, radius_y, counter_radius_x=None, counter_radius_y=None))]
-    fn new(
-        radius_x: Real,
-        radius_y: Real,
-        counter_radius_x: Option<Real>,
-        counter_radius_y: Option<Real>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
-        let shape = Paraboloid::new(radius_x.0, radius_y.0)?.with_counter_radii(counter)?;
-        Ok(object(Self, shape))
-    }
-
-    /// Radius of curvature along x [m].
-    #[getter]
-    fn radius_x(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Paraboloid>(slf).radius_x()
-    }
-
-    /// Radius of curvature along y [m].
-    #[getter]
-    fn radius_y(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Paraboloid>(slf).radius_y()
-    }
-
-    /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
-    #[getter]
-    fn counter_radius_x(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Paraboloid>(slf).counter_radii()[0]
-    }
-
-    /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
-    #[getter]
-    fn counter_radius_y(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Paraboloid>(slf).counter_radii()[1]
-    }
-
-    /// Equivalent radius along x [m], ``1/(1/radius_x + 1/counter_radius_x)``.
-    #[getter]
-    fn equivalent_radius_x(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Paraboloid>(slf).equivalent_radii()[0]
-    }
-
-    /// Equivalent radius along y [m], ``1/(1/radius_y + 1/counter_radius_y)``.
-    #[getter]
-    fn equivalent_radius_y(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Paraboloid>(slf).equivalent_radii()[1]
-    }
-}
-
-/// An endless cylinder, axis along x: ``h = R - sqrt(R**2 - y**2)``, +inf beyond R.
-///
-/// The contact is as long as the grid, which must be given. On a raceway of radius ``R_2`` the gap has
-/// ``R_2 - sqrt(R_2**2 - y**2)`` added.
-///
-/// Parameters
-/// ----------
-/// radius : float
-///     Radius [m], above 0.
-/// counter_radius : float, optional
-///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
-///     where it is concave, as of an outer ring, which must be wider than the cylinder. A plane by default.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the radius is not finite and above 0, or a concave raceway is not wider.
-///
-/// Examples
-/// --------
-/// >>> nacre.Cylinder(radius=5e-3)
-/// Cylinder(radius=0.005)
-#[pyclass(name = "Cylinder", module = "nacre", frozen, extends = PyShape)]
-pub(super) struct PyCylinder;
-
-impl Kind for Cylinder {
-    type Class = PyCylinder;
-
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let radii = [("radius", Some(self.radius())), ("counter_radius", self.counter_radius())];
-        numbers(py, radii)
-    }
-}
-
-#[pymethods]
-impl PyCylinder {
-    #[new]
-    #[pyo3(signature = (radius, counter_radius=None))]
-    fn new(radius: Real, counter_radius: Option<Real>) -> PyResult<PyClassInitializer<Self>> {
-        let mut cylinder = Cylinder::new(radius.0)?;
-        if let Some(counter_radius) = counter_radius {
-            cylinder = cylinder.with_counter_radius(counter_radius.0)?;
+    methods {
+        #[new]
+        #[pyo3(signature = (radius, counter_radius_x=None, counter_radius_y=None))]
+        fn new(
+            radius: Real,
+            counter_radius_x: Option<Real>,
+            counter_radius_y: Option<Real>,
+        ) -> PyResult<PyClassInitializer<Self>> {
+            let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
+            Ok(object(Self, Sphere::new(radius.0)?.with_counter_radii(counter)?))
         }
-        Ok(object(Self, cylinder))
-    }
-
-    /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
-    #[getter]
-    fn counter_radius(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Cylinder>(slf).counter_radius()
-    }
-
-    /// Equivalent radius [m], ``1/(1/radius + 1/counter_radius)``.
-    #[getter]
-    fn equivalent_radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Cylinder>(slf).equivalent_radius()
-    }
-
-    /// Radius [m].
-    #[getter]
-    fn radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Cylinder>(slf).radius()
     }
 }
 
-/// A flat circular punch: ``h = 0`` for ``r <= a``, +inf beyond.
-///
-/// Parameters
-/// ----------
-/// radius : float
-///     Radius a [m], above 0.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the radius is not finite and above 0.
-///
-/// Examples
-/// --------
-/// >>> nacre.FlatPunch(radius=1e-3)
-/// FlatPunch(radius=0.001)
-#[pyclass(name = "FlatPunch", module = "nacre", frozen, extends = PyShape)]
-pub(super) struct PyFlatPunch;
-
-impl Kind for FlatPunch {
-    type Class = PyFlatPunch;
-
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        numbers(py, [("radius", Some(self.radius()))])
+shape_class! {
+    /// An elliptic paraboloid: ``h = x**2/(2 R_x) + y**2/(2 R_y)``.
+    ///
+    /// On a counterpart that is curved itself, R_x and R_y are the equivalent radii of both:
+    /// ``1/R = 1/radius + 1/counter_radius``.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius_x, radius_y : float
+    ///     Radii of curvature at the apex [m], above 0.
+    /// counter_radius_x, counter_radius_y : float, optional
+    ///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
+    ///     (a raceway, a groove), which must be wider than the paraboloid. Straight by default.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a radius is not finite and above 0, or a concave counterpart is not wider.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Paraboloid(5e-3, 5e-3)
+    /// Paraboloid(radius_x=0.005, radius_y=0.005)
+    PyParaboloid(Paraboloid) is "Paraboloid";
+    |of, py|
+    arguments {
+        /// Radius of curvature along x [m].
+        radius_x: f64 = of.radius_x();
+        /// Radius of curvature along y [m].
+        radius_y: f64 = of.radius_y();
+        /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
+    }
+    attributes {
+        /// Equivalent radius along x [m], ``1/(1/radius_x + 1/counter_radius_x)``.
+        equivalent_radius_x: f64 = of.equivalent_radii()[0];
+        /// Equivalent radius along y [m], ``1/(1/radius_y + 1/counter_radius_y)``.
+        equivalent_radius_y: f64 = of.equivalent_radii()[1];
+    }
+    methods {
+        #[new]
+        #[pyo3(signature = (radius_x, radius_y, counter_radius_x=None, counter_radius_y=None))]
+        fn new(
+            radius_x: Real,
+            radius_y: Real,
+            counter_radius_x: Option<Real>,
+            counter_radius_y: Option<Real>,
+        ) -> PyResult<PyClassInitializer<Self>> {
+            let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
+            let shape = Paraboloid::new(radius_x.0, radius_y.0)?.with_counter_radii(counter)?;
+            Ok(object(Self, shape))
+        }
     }
 }
 
-#[pymethods]
-impl PyFlatPunch {
-    #[new]
-    fn new(radius: Real) -> PyResult<PyClassInitializer<Self>> {
-        Ok(object(Self, FlatPunch::new(radius.0)?))
+shape_class! {
+    /// An endless cylinder, axis along x: ``h = R - sqrt(R**2 - y**2)``, +inf beyond R.
+    ///
+    /// The contact is as long as the grid, which must be given. On a raceway of radius ``R_2`` the gap has
+    /// ``R_2 - sqrt(R_2**2 - y**2)`` added.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Radius [m], above 0.
+    /// counter_radius : float, optional
+    ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
+    ///     where it is concave, as of an outer ring, which must be wider than the cylinder. A plane by default.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the radius is not finite and above 0, or a concave raceway is not wider.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Cylinder(radius=5e-3)
+    /// Cylinder(radius=0.005)
+    PyCylinder(Cylinder) is "Cylinder";
+    |of, py|
+    arguments {
+        /// Radius [m].
+        radius: f64 = of.radius();
+        /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
+        counter_radius: Option<f64> = of.counter_radius();
     }
+    attributes {
+        /// Equivalent radius [m], ``1/(1/radius + 1/counter_radius)``.
+        equivalent_radius: f64 = of.equivalent_radius();
+    }
+    methods {
+        #[new]
+        #[pyo3(signature = (radius, counter_radius=None))]
+        fn new(radius: Real, counter_radius: Option<Real>) -> PyResult<PyClassInitializer<Self>> {
+            let cylinder = Cylinder::new(radius.0)?;
+            Ok(object(Self, match counter_radius {
+                Some(counter_radius) => cylinder.with_counter_radius(counter_radius.0)?,
+                None => cylinder,
+            }))
+        }
+    }
+}
 
-    /// Radius [m].
-    #[getter]
-    fn radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, FlatPunch>(slf).radius()
+shape_class! {
+    /// A flat circular punch: ``h = 0`` for ``r <= a``, +inf beyond.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Radius a [m], above 0.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the radius is not finite and above 0.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.FlatPunch(radius=1e-3)
+    /// FlatPunch(radius=0.001)
+    PyFlatPunch(FlatPunch) is "FlatPunch";
+    |of, py|
+    arguments {
+        /// Radius [m].
+        radius: f64 = of.radius();
+    }
+    attributes {}
+    methods {
+        #[new]
+        fn new(radius: Real) -> PyResult<PyClassInitializer<Self>> {
+            Ok(object(Self, FlatPunch::new(radius.0)?))
+        }
     }
 }

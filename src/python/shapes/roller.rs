@@ -1,169 +1,121 @@
 //! `nacre.Roller`.
 
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use super::base::{Kind, PyShape, held, object};
+use super::base::{Kind, PyShape, held, object, shape_class};
 use super::profiles;
 use crate::error::Error;
 use crate::model::surface::{CrownedProfile, Profile, Roller};
 use crate::python::arguments::Real;
+use crate::python::value::Arguments;
 
-/// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
-///
-/// Crowned: ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
-/// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``. Spinu et al., The normal
-/// contact of finite length coated cylinders, eq. (3). Any other profile is averaged over each cell,
-/// so that the ends do not depend on where a cell's centre falls. On a raceway of radius ``R_2`` the gap
-/// has ``R_2 - sqrt(R_2**2 - y**2)`` added; the drop of a crowned raceway adds to that of the profile.
-///
-/// Parameters
-/// ----------
-/// radius : float
-///     Radius R [m], above 0.
-/// flat_length : float, optional
-///     Length of the straight part [m], at least 0.
-/// crown_radius : float, optional
-///     Radius R_a of the rounded ends [m], above 0.
-/// length : float, optional
-///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
-/// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
-///     Another axial profile, in place of `flat_length` and `crown_radius`. ``(positions, drops)`` are two
-///     arrays: places along the axis [m], and how far the surface has dropped there [m].
-/// counter_radius : float, optional
-///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
-///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If a length is out of range, there is neither a crown nor a profile, or both, or a concave raceway
-///     is not wider than the roller.
-///
-/// Examples
-/// --------
-/// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
-/// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None, profile=None)
-/// >>> nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, length=10e-3).ends
-/// (-0.005, 0.005)
-/// >>> outer = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, counter_radius=-30e-3)
-/// >>> round(outer.equivalent_radius, 9)
-/// 0.006
-#[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
-pub(super) struct PyRoller;
-
-impl Kind for Roller {
-    type Class = PyRoller;
-
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (flat_length, crown_radius) = match self.profile() {
-            Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
-            Profile::Logarithmic(_) | Profile::Sampled(_) => (None, None),
-        };
-        let arguments = PyDict::new(py);
-        arguments.set_item("radius", self.radius())?;
-        arguments.set_item("flat_length", flat_length)?;
-        arguments.set_item("crown_radius", crown_radius)?;
-        arguments.set_item("length", self.length())?;
-        arguments.set_item("profile", profiles::to_python(py, self.profile())?)?;
-        if let Some(counter_radius) = self.counter_radius() {
-            arguments.set_item("counter_radius", counter_radius)?;
-        }
-        Ok(arguments)
-    }
-}
-
-#[pymethods]
-impl PyRoller {
-    #[new]
-    #[pyo3(
-        signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None)
-    )]
-    fn new(
-        radius: Real,
-        flat_length: Option<Real>,
-        crown_radius: Option<Real>,
-        length: Option<Real>,
-        profile: Option<&Bound<'_, PyAny>>,
-        counter_radius: Option<Real>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        let mut roller = match (flat_length, crown_radius, profile) {
-            (Some(flat_length), Some(crown_radius), None) => {
-                Roller::new(radius.0, flat_length.0, crown_radius.0)?
-            }
-            (None, None, Some(profile)) => {
-                Roller::with_profile(radius.0, profiles::profile(profile)?)?
-            }
-            _ => {
-                return Err(Error::Inconsistent(
-                    "either flat_length and crown_radius or profile must be given",
-                )
-                .into());
-            }
-        };
-        if let Some(length) = length {
-            roller = roller.with_length(length.0)?;
-        }
-        if let Some(counter_radius) = counter_radius {
-            roller = roller.with_counter_radius(counter_radius.0)?;
-        }
-        Ok(object(Self, roller))
-    }
-
-    /// Radius [m].
-    #[getter]
-    fn radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Roller>(slf).radius()
-    }
-
-    /// Length of the straight part of a crowned roller [m].
-    #[getter]
-    fn flat_length(slf: &Bound<'_, Self>) -> Option<f64> {
-        crown(slf).map(|crown| crown.flat_length())
-    }
-
-    /// Radius of the ends of a crowned roller [m].
-    #[getter]
-    fn crown_radius(slf: &Bound<'_, Self>) -> Option<f64> {
-        crown(slf).map(|crown| crown.crown_radius())
-    }
-
-    /// Whole length [m] of a roller that is cut off; None for an endless one.
-    #[getter]
-    fn length(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Roller>(slf).length()
-    }
-
-    /// Coordinates x of both ends [m], which `HalfSpace` takes as those of the roller's body.
+shape_class! {
+    /// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
     ///
-    /// They are half of ``length`` on either side, or the ends of a profile; None where a crown ends the
-    /// roller.
-    #[getter]
-    fn ends(slf: &Bound<'_, Self>) -> (Option<f64>, Option<f64>) {
-        held::<_, Roller>(slf).ends().into()
+    /// Crowned: ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
+    /// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``. Spinu et al., The normal
+    /// contact of finite length coated cylinders, eq. (3). Any other profile is averaged over each cell,
+    /// so that the ends do not depend on where a cell's centre falls. On a raceway of radius ``R_2`` the gap
+    /// has ``R_2 - sqrt(R_2**2 - y**2)`` added; the drop of a crowned raceway adds to that of the profile.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Radius R [m], above 0.
+    /// flat_length : float, optional
+    ///     Length of the straight part [m], at least 0.
+    /// crown_radius : float, optional
+    ///     Radius R_a of the rounded ends [m], above 0.
+    /// length : float, optional
+    ///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
+    /// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
+    ///     Another axial profile, in place of `flat_length` and `crown_radius`. ``(positions, drops)`` are two
+    ///     arrays: places along the axis [m], and how far the surface has dropped there [m].
+    /// counter_radius : float, optional
+    ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
+    ///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a length is out of range, there is neither a crown nor a profile, or both, or a concave raceway
+    ///     is not wider than the roller.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+    /// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5)
+    /// >>> nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, length=10e-3).ends
+    /// (-0.005, 0.005)
+    /// >>> outer = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, counter_radius=-30e-3)
+    /// >>> round(outer.equivalent_radius, 9)
+    /// 0.006
+    PyRoller(Roller) is "Roller";
+    |of, py|
+    arguments {
+        /// Radius [m].
+        radius: f64 = of.radius();
+        /// Length of the straight part of a crowned roller [m].
+        flat_length: Option<f64> = crown(of).map(CrownedProfile::flat_length);
+        /// Radius of the ends of a crowned roller [m].
+        crown_radius: Option<f64> = crown(of).map(CrownedProfile::crown_radius);
+        /// Whole length [m] of a roller that is cut off; None for an endless one.
+        length: Option<f64> = of.length();
+        /// Axial profile; None for a crowned roller.
+        profile: Option<Bound<'py, PyAny>> = profiles::to_python(py, of.profile())?;
+        /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
+        counter_radius: Option<f64> = of.counter_radius();
     }
-
-    /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
-    #[getter]
-    fn counter_radius(slf: &Bound<'_, Self>) -> Option<f64> {
-        held::<_, Roller>(slf).counter_radius()
+    attributes {
+        /// Coordinates x of both ends [m], which `HalfSpace` takes as those of the roller's body.
+        ///
+        /// They are half of ``length`` on either side, or the ends of a profile; None where a crown ends the
+        /// roller.
+        ends: (Option<f64>, Option<f64>) = of.ends().into();
+        /// Equivalent radius of roller and raceway [m], ``1/(1/radius + 1/counter_radius)``.
+        equivalent_radius: f64 = of.equivalent_radius();
     }
-
-    /// Equivalent radius of roller and raceway [m], ``1/(1/radius + 1/counter_radius)``.
-    #[getter]
-    fn equivalent_radius(slf: &Bound<'_, Self>) -> f64 {
-        held::<_, Roller>(slf).equivalent_radius()
-    }
-
-    /// Axial profile; None for a crowned roller.
-    #[getter]
-    fn profile<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        profiles::to_python(slf.py(), held::<_, Roller>(slf).profile())
+    methods {
+        #[new]
+        #[pyo3(
+            signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None)
+        )]
+        fn new(
+            radius: Real,
+            flat_length: Option<Real>,
+            crown_radius: Option<Real>,
+            length: Option<Real>,
+            profile: Option<&Bound<'_, PyAny>>,
+            counter_radius: Option<Real>,
+        ) -> PyResult<PyClassInitializer<Self>> {
+            let mut roller = match (flat_length, crown_radius, profile) {
+                (Some(flat_length), Some(crown_radius), None) => {
+                    Roller::new(radius.0, flat_length.0, crown_radius.0)?
+                }
+                (None, None, Some(profile)) => {
+                    Roller::with_profile(radius.0, profiles::profile(profile)?)?
+                }
+                _ => {
+                    return Err(Error::Inconsistent(
+                        "either flat_length and crown_radius or profile must be given",
+                    )
+                    .into());
+                }
+            };
+            if let Some(length) = length {
+                roller = roller.with_length(length.0)?;
+            }
+            if let Some(counter_radius) = counter_radius {
+                roller = roller.with_counter_radius(counter_radius.0)?;
+            }
+            Ok(object(Self, roller))
+        }
     }
 }
 
-fn crown<'a>(roller: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
-    match held::<_, Roller>(roller).profile() {
+fn crown(roller: &Roller) -> Option<&CrownedProfile> {
+    match roller.profile() {
         Profile::Crowned(crown) => Some(crown),
         Profile::Logarithmic(_) | Profile::Sampled(_) => None,
     }
