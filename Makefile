@@ -22,34 +22,42 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test quick check bench fuzz peers kappa torch develop stubs docs publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers kappa torch develop stubs docs publishable
 
 help: ## list these commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
 
 demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
 	PYTHONPATH=examples $(BIN)/python -m paper --out out
 
+test: test-rust test-python ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
+
 # With PYO3_PYTHON=none, the crate that depends on nacre builds only if nacre needs no Python.
-test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
+test-rust: $(BUILD)
 	@if cargo nextest --version >/dev/null 2>&1; \
 	then echo cargo nextest run --features serde; cargo nextest run --features serde; \
 	else echo cargo test --tests --examples --features serde; cargo test --tests --examples --features serde; fi
-	cargo test --doc
-	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
-	$(BIN)/pytest
+	cargo test --doc --features serde
+	PYO3_PYTHON=none cargo run --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
+
+test-python: $(WHEEL) $(DEV)
+	$(BIN)/pytest -n 2
 
 # Unit tests of Rust, and Python without what takes seconds each: two minutes once built.
 quick: $(WHEEL) $(DEV) ## the tests of a daily edit: Rust unit tests, and those of Python that are fast
 	cargo test --lib --features serde
-	$(BIN)/pytest -q -m "not slow"
+	$(BIN)/pytest -q -n 2 -m "not slow"
 
-check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
+check: check-rust check-python ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
+
+check-rust: $(BUILD)
 	cargo fmt --check
 	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
 	cargo clippy --all-targets -- -D warnings
 	cargo clippy --all-targets --features python,serde -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+
+check-python: $(WHEEL) $(DEV)
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy

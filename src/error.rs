@@ -212,8 +212,9 @@ pub enum Error {
     },
     /// An approach to which no pressure belongs.
     #[error(
-        "approach must be below {most:.6e}, the mean gap, on a grid that repeats in both directions, was {approach:e}: the \
-         approach is that of the mean plane, and stays there while the load of a full contact grows; give a load"
+        "approach must be below {}, the mean gap, on a grid that repeats in both directions, was {}: the \
+         approach is that of the mean plane, and stays there while the load of a full contact grows; give a load",
+        plain(*most), plain(*approach)
     )]
     FullContact {
         /// The approach \[m\].
@@ -223,7 +224,8 @@ pub enum Error {
     },
     /// A load above what the surfaces bear at their hardness.
     #[error(
-        "load must be below what the hardness bears on the cells that can touch, {bears:.6e}, was {load:.6e}"
+        "load must be below what the hardness can carry on the cells that can touch, {}, was {}: where all of them \
+         yield, no approach is determined", plain(*bears), plain(*load)
     )]
     Overload {
         /// The load \[N\].
@@ -231,10 +233,10 @@ pub enum Error {
         /// Σ H dA over the cells that can touch \[N\].
         bears: f64,
     },
-    /// A moment that the surfaces do not bear at their hardness.
+    /// A moment that the surfaces cannot carry at their hardness.
     #[error(
-        "moment, or load times eccentricity, along {axis} must be between {:.6e} and {:.6e}, which the hardness bears, was \
-         {moment:.6e}", range[0], range[1]
+        "moment, or load times eccentricity, along {axis} must be between {} and {}, which the hardness can carry, was \
+         {}", plain(range[0]), plain(range[1]), plain(*moment)
     )]
     Overturned {
         /// `x` or `y`.
@@ -244,9 +246,10 @@ pub enum Error {
         /// The least and the largest moment \[N m\].
         range: [f64; 2],
     },
-    /// A tangential force or torque that friction does not bear.
+    /// A tangential force or torque that friction cannot carry.
     #[error(
-        "{name} must be below what friction bears, {bears:.4e}, was {value:.4e}: the contact would slide as a whole"
+        "{name} must be below what friction can carry, {}, was {}: the contact would slide as a whole",
+        plain(*bears), plain(*value)
     )]
     FullSlip {
         /// `force` or `torque`.
@@ -304,6 +307,15 @@ fn repeats(period: Option<f64>) -> String {
         || "a grid that does not repeat there".to_owned(),
         |period| format!("a grid of period {period:e}"),
     )
+}
+
+/// Seven digits of a number, without an exponent where it is neither large nor small.
+fn plain(value: f64) -> String {
+    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        1e-4..1e6 | 0.0 => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
 }
 
 /// The conditions of convergence that were not met.

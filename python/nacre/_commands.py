@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,14 +13,15 @@ import typer
 import nacre
 from nacre import _reference
 from nacre._disk import PICTURES
-from nacre._friction_display import shown
+from nacre._friction_display import NOISE, shown
 from nacre._outputs import ERROR, FRICTION, check_direction
 from nacre._progress import alive
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
-from nacre.units import system, written
+from nacre.studies import default_threads
+from nacre.units import energy, system, written
 
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
@@ -64,7 +64,7 @@ def info() -> None:
     """Print versions and the number of threads."""
     print(f"nacre   {nacre.__version__}")
     print(f"numpy   {np.__version__}")
-    print(f"threads {os.cpu_count()}")
+    print(f"threads {default_threads()}")
 
 
 @app.command()
@@ -229,7 +229,6 @@ def _history(steps: list[nacre.types.FrictionSolution]) -> str:
     """Return a table of the steps of a history."""
     line, rolls = steps[0].grid.is_line, steps[0].shift is None
     force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
-    energy = force if rolls else ("N" if line else "N m")
     lines = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
     lines[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
     for number, step in enumerate(steps):
@@ -237,7 +236,7 @@ def _history(steps: list[nacre.types.FrictionSolution]) -> str:
         assert motion is not None
         said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
         forces = [written(part, force) for part in shown(step.force)]
-        row = [str(number), *forces, *said, written(step.dissipated, energy)]
+        row = [str(number), *forces, *said, written(step.dissipated, energy(line, rolls))]
         lines.append([*row, step.report.termination])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return "\n".join(
@@ -299,7 +298,7 @@ def _cell(value: Any, error: float) -> str:
     if not isinstance(value, float | int):
         return str(value)
     share = 100 * abs(error / value) if value else 0.0
-    if not 0 < share < np.inf:
+    if not 100 * NOISE < share < np.inf:
         return f"{value:.5g}"
     return f"{value:.5g} ± {share:.1g} %" if share < 9.5 else f"{value:.5g} ± {share:.0f} %"
 

@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._journal import Record
 from nacre._outputs import AXES, ERROR, Output, errors
-from nacre.units import INDENT_UNITS, LINE_UNITS, UNITS, symbol, system
+from nacre.units import INDENT_UNITS, LINE_UNITS, UNITS, energy, symbol, system
 
 if TYPE_CHECKING:
     import xarray
@@ -73,7 +73,7 @@ def assembled(
     indents = any(record.get("indents") for record in records)
     units = INDENT_UNITS if indents else units
     if any(record.get("rolls") for record in records):
-        units = units | {"dissipated": units["force"]}  # over the distance rolled
+        units = units | {"dissipated": energy(units is LINE_UNITS, rolls=True)}
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
         found = [a.shape for a in arrays if a is not None]

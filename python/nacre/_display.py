@@ -45,7 +45,7 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
         ("load", written(solution.load, force)),
         ("acts at", _pair(solution.eccentricity, "m", arms) if touching else "nothing touches"),
         ("moment", _pair(solution.moment, moment, [solution.load * arm for arm in arms])),
-        ("approach", _estimated(solution, "approach", "m")),
+        ("approach", _approach(solution)),
         ("tilt", f"({solution.tilt[0]:.4g}, {solution.tilt[1]:.4g})"),
         ("motion", motion(report.motion)),
         ("peak pressure", _estimated(solution, "peak_pressure", "Pa")),
@@ -286,9 +286,19 @@ def _estimated(solution: Solution, name: str, unit: str) -> str:
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
         return f"{written(value, unit)} (error not known: see the warning)"
-    return written(value, unit) + (
-        f" ± {rounded(100 * abs(error / value), 1)} %" if error and value else ""
-    )
+    share = abs(error / value) if value else 0.0
+    return written(value, unit) + (f" ± {rounded(100 * share, 1)} %" if share > NOISE else "")
+
+
+def _approach(solution: Solution) -> str:
+    """Return the approach with its error, or with the datum that it depends on and no error."""
+    report = solution.report
+    bodies = [report.body] if report.counterbody is None else [report.body, report.counterbody]
+    repeats = (True, False) if report.grid.is_line else report.grid.periodic
+    if sum(repeats) != 1 or all(isinstance(body.substrate, Rigid) for body in bodies):
+        return _estimated(solution, "approach", "m")
+    datum = report.grid.size[repeats.index(False)]
+    return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
 
 
 def _pair(values: tuple[float, float], unit: str, noise: Sequence[float]) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nacre import values
 from nacre._display import numbers as normal_numbers
-from nacre.units import printable, symbol, written
+from nacre.units import energy, printable, symbol, written
 
 if TYPE_CHECKING:
     from nacre._friction_result import FrictionSolution
@@ -68,9 +68,10 @@ def numbers(solution: FrictionSolution) -> list[tuple[str, str]]:
     sticking = int(solution.stick.sum())
     state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
     rows.append(("friction", state if touching else "nothing touches"))
-    # In rolling, over the distance rolled.
-    dissipated = force if solution.shift is None else ("N" if line else "N m")
-    rows.append(("dissipated", written(solution.dissipated, dissipated)))
+    # Power over speed in rolling, and rounding where nothing slips.
+    work = max(map(abs, solution.force)) * max(map(abs, solution.shift or (1.0,)))
+    dissipated = solution.dissipated if solution.dissipated > NOISE * work else 0.0
+    rows.append(("dissipated", written(dissipated, energy(line, solution.shift is None))))
     coupled = f", {report.sweeps} sweeps" if report.coupled else ""
     rows.append(
         (

@@ -56,7 +56,7 @@ class FrictionReport(Result):
     """Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
     """
     imbalance: float
-    """Largest error of a given force or torque, over the largest that friction bears."""
+    """Largest error of a given force or torque, over the largest that friction can carry."""
     excess: float
     """Largest traction above its bound, over the largest bound."""
     pressure_change: float

@@ -323,9 +323,9 @@ class CaseTable(Bodies):
         name = "roll" if self.slide is None else "slide"
         if self.slide is not None and self.roll is not None:
             raise WrongValue("roll", "must not be given beside the table slide")
-        for key in ("algorithm", "max_iterations"):
-            if key in self.solve.model_fields_set:
-                raise WrongValue(f"solve.{key}", f"must not be given beside the table {name}")
+        known = inspect.signature(getattr(nacre, name)).parameters
+        if others := sorted(self.solve.model_fields_set - known.keys()):
+            raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
         if self.stress is not None and self.stress.friction:
             raise WrongValue(
                 "stress.friction", f"must be 0 beside the table {name}: its tractions are known"

@@ -46,6 +46,8 @@ from typing import Any
 from nacre._extras import extra
 from nacre._outputs import named
 
+__all__ = ["Case", "CaseError"]
+
 with extra("cli"):
     from pydantic import ValidationError
 

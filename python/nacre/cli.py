@@ -30,14 +30,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     """Run one command and return its exit code; an error is one line on stderr."""
+    import nacre
+
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    if given == ["--version"]:  # soon, without the libraries of all commands
+        print(f"nacre {nacre.__version__}")
+        return 0
     try:
         import typer
 
         from nacre._commands import app
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
-
-    import nacre
 
     try:
         return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)

@@ -15,10 +15,12 @@ from nacre._friction_display import checked
 from nacre._friction_result import FrictionSolution
 from nacre._result import Result
 from nacre.contact import MOTION, Contact, solve
-from nacre.units import symbol
+from nacre.units import energy, symbol
 
 if TYPE_CHECKING:
     import xarray
+
+__all__ = ["creep_coefficients", "creep_curve", "history"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -144,7 +146,7 @@ def history(solutions: Sequence[FrictionSolution]) -> xarray.Dataset:
         "dissipated": (
             ("step",),
             [s.dissipated for s in solutions],
-            symbol(force if rolls else ("N" if line else "N m")),
+            symbol(energy(line, rolls)),
         ),
         "stick_share": (
             ("step",),
@@ -255,7 +257,7 @@ def creep_curve(
         "torque": ([s.torque for s in solutions], symbol("N" if line else "N m")),
         "traction_ratio": (pulled / bears, "1"),
         "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
-        "power_over_speed": ([s.dissipated for s in solutions], unit),
+        "power_over_speed": ([s.dissipated for s in solutions], symbol(energy(line, rolls=True))),
     }
     dataset = xarray.Dataset(
         {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},

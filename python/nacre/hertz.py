@@ -204,7 +204,10 @@ class Line(_Hertzian):
     """Contact of two parallel cylinders, per unit length: a roller on a plane or on a raceway.
 
     Johnson, Contact Mechanics (1985), eqs (4.43)-(4.45), doi:10.1017/CBO9781139171731. The approach
-    of a line contact has no limit on a half-space, and is not among the attributes.
+    of a line contact has no limit on a half-space, and is not among the attributes: it depends on a
+    datum in each body. Two rollers approach by the sum of
+    ``W' (1 - poisson**2)/(pi young) (2 log(4 radius/half_width) - 1)`` over both, with the radius
+    of each, from axis to axis (section 5.6).
 
     Parameters
     ----------

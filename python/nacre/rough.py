@@ -22,6 +22,18 @@ from nacre.units import symbol
 if TYPE_CHECKING:
     import xarray
 
+__all__ = [
+    "corrected_area",
+    "gap_distribution",
+    "load_curve",
+    "patches",
+    "percolates",
+    "pressure_distribution",
+    "random_surface",
+    "spectral_slope",
+    "spectrum",
+]
+
 Array = npt.NDArray[np.float64]
 
 PERIMETER = (np.pi - 1 + np.log(2)) / 24

@@ -303,7 +303,7 @@ class Solution(Result, Stressed):
 
     @property
     def plastic_work(self) -> float:
-        """Energy that the permanent indentation has taken [N m], ``sum H w dA``.
+        """Energy that the permanent indentation has taken [J], ``sum H w dA``.
 
         It is 0 without hardness.
         """

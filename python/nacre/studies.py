@@ -294,7 +294,7 @@ def _run(
     A record is kept by the thread that solved it, before that thread begins another case: a kill
     loses only the cases that are being solved.
     """
-    pool = executor or ThreadPoolExecutor(max_workers=_cores())
+    pool = executor or ThreadPoolExecutor(max_workers=default_threads())
     futures: list[Future[Record]] = []
     ended: SimpleQueue[BaseException | None] = SimpleQueue()
     turn, stopped = Lock(), Event()
@@ -341,11 +341,9 @@ def _run(
             pool.shutdown()
 
 
-def _cores() -> int:
-    """Return how many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+def default_threads() -> int:
+    """Return how many threads plans have by default."""
+    return core.Convolution([[1.0]], None).threads()
 
 
 def _solve(

@@ -17,7 +17,7 @@ UNITS = {
     "displacement": "m",
     "indentation": "m",
     "hardness": "Pa",
-    "plastic_work": "N m",
+    "plastic_work": "J",
     "line_load": "N/m",
     "coefficients": "m/Pa",
     "load": "N",
@@ -31,8 +31,8 @@ UNITS = {
     "torque": "N m",
     "shift": "m",
     "twist": "rad",
-    "dissipated": "N m",
-    "tangential_energy": "N m",
+    "dissipated": "J",
+    "tangential_energy": "J",
     "von_mises": "Pa",
     "tension": "Pa",
     "max_shear": "Pa",
@@ -46,10 +46,10 @@ LINE_UNITS = UNITS | {
     "force": "N/m",
     "moment": "N",
     "contact_area": "m",
-    "plastic_work": "N",
+    "plastic_work": "J/m",
     "torque": "N",
-    "dissipated": "N",
-    "tangential_energy": "N",
+    "dissipated": "J/m",
+    "tangential_energy": "J/m",
 }
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
 INDENT_UNITS = UNITS | {
@@ -86,6 +86,7 @@ BASES = {
     "in": ("m", 0.0254),
     "Pa": ("Pa", 1.0),
     "psi": ("Pa", 4.4482216152605 / 0.0254**2),
+    "J": ("J", 1.0),
     "rad": ("rad", 1.0),
 }
 """Units that may be part of a unit: the SI unit of the quantity, and their size in it.
@@ -195,6 +196,11 @@ class System:
             "N/m": (force / length, f"{newton}/{metre}"),
             "N m": (force * length, f"{newton} {metre}"),
         }
+        work = {"J": "N m", "J/m": "N", "J/m²": "N/m"}
+        if self.name == "SI":
+            self.units |= {unit: (1.0, unit) for unit in work}
+        else:
+            self.units |= {unit: self.units[same] for unit, same in work.items()}
 
     @property
     def metres(self) -> float:
@@ -338,6 +344,15 @@ class Scale:
             exponent = min(exponent, 0)  # nobody writes kilometres
         factor = float(f"1e{-exponent * power}")
         return cls(size * factor, PREFIXES[exponent] + dimension)
+
+
+def energy(line: bool, rolls: bool = False) -> str:
+    """Return the SI unit of an energy: per length of a line contact, and per length rolled.
+
+    >>> energy(line=False), energy(line=True), energy(line=True, rolls=True)
+    ('J', 'J/m', 'J/m²')
+    """
+    return ("J", "J/m", "J/m²")[line + rolls]
 
 
 def written(value: float, unit: str, digits: int = 4) -> str:

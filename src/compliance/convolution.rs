@@ -11,16 +11,15 @@ use std::time::Instant;
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
-use crate::numerics::fft::{
-    EvenSpectrum, HalfSpectra, PaddedTransform, Scratches, TransformMemory,
-};
-use crate::numerics::parallel::{Lease, Pool, Threads, Written, memory_of};
+use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
+use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
 
 mod addition;
 mod periodic;
 
 use addition::AdditionMemory;
 pub(crate) use addition::{Addition, RowWeights, length, pair};
+pub(crate) use periodic::Approximation;
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
 ///
@@ -58,20 +57,8 @@ impl Clock {
     fn during<R>(&self, work: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = work();
-        self.add(start, 1);
+        self.0.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         result
-    }
-
-    /// Counts the time of `work`, one share of work that `among` threads do at the same time.
-    fn during_part(&self, among: usize, work: impl FnOnce()) {
-        let start = Instant::now();
-        work();
-        self.add(start, among as u64);
-    }
-
-    fn add(&self, start: Instant, among: u64) {
-        let spent = start.elapsed().as_nanos() as u64 / among;
-        self.0.fetch_add(spent, Ordering::Relaxed);
     }
 }
 
@@ -92,7 +79,7 @@ impl Convolution {
     /// threads; `None` stands for all threads of the machine.
     ///
     /// # Errors
-    /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
+    /// Where a coefficient is not finite, the shape is empty, `threads` is 0, or there is too little memory.
     pub fn plan(coefficients: &ArrayRef2<f64>, threads: Option<usize>) -> Result<Self> {
         Self::plan_on(coefficients, Arc::new(Threads::new(threads)?))
     }
@@ -113,6 +100,7 @@ impl Convolution {
             return Err(Error::Shape { name: "coefficients", expected: [1, 1], found: shape });
         }
         all_finite("coefficients", coefficients)?;
+        check_memory(shape, Self::memory(shape))?;
         let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
         Ok(Self::with(coefficients, transform, &threads, Pool::default(), Arc::default()))
     }
@@ -124,9 +112,11 @@ impl Convolution {
         idle: Pool<ConvolutionMemory>,
         clock: Arc<Clock>,
     ) -> Self {
-        let mut workspace = lease(&idle, &transform);
+        let mut workspace = idle.lease();
+        transform.reserve(&mut workspace.fft);
         let spectrum =
-            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0.fft, threads));
+            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.fft, threads));
+        drop(workspace);
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
@@ -233,7 +223,7 @@ impl Convolution {
 
     /// Memory for [`Convolution::apply_into`].
     pub fn workspace(&self) -> Workspace {
-        lease(&self.idle, &self.transform)
+        Workspace(self.idle.lease())
     }
 
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
@@ -241,16 +231,17 @@ impl Convolution {
     /// # Errors
     /// As [`Convolution::apply_into`].
     pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
+        check_memory(self.shape, memory_of(self.shape, 1))?;
         let mut displacement = Array2::zeros(self.shape);
         self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
         Ok(displacement)
     }
 
     /// Writes the displacement under `pressure` into `displacement`, as [`Convolution::apply`] computes
-    /// it. No memory is allocated where both arrays are in C order.
+    /// it. Where both arrays are in C order, memory is allocated at the first use of the workspace only.
     ///
     /// # Errors
-    /// Where an array does not have the shape of the convolution, or a pressure is not finite.
+    /// Where an array does not have the shape of the convolution, a pressure is not finite, or there is too little memory.
     pub fn apply_into(
         &self,
         pressure: &ArrayRef2<f64>,
@@ -260,6 +251,9 @@ impl Convolution {
         same_shape("pressure", pressure, self.shape)?;
         same_shape("displacement", displacement, self.shape)?;
         all_finite("pressure", pressure)?;
+        if let missing @ 1.. = self.transform.missing(&workspace.0.fft) {
+            check_memory(self.shape, missing)?;
+        }
         let standard = pressure.as_standard_layout();
         let input = standard.as_slice().unwrap_or(&[]);
         if let Some(output) = displacement.as_slice_mut() {
@@ -284,13 +278,32 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
+        self.apply_rows(0..self.shape[0], input, output, workspace);
+    }
+
+    /// [`Convolution::apply_slices`] for an `input` that is zero outside the rows `occupied`; only these are read.
+    pub(crate) fn apply_rows(
+        &self,
+        occupied: Range<usize>,
+        input: &[f64],
+        output: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
         let memory = &mut workspace.0;
         self.transform.reserve(&mut memory.fft);
         self.clock.during(|| {
-            let (spectrum, threads) = (&self.spectrum, &self.threads);
-            self.transform.convolve_into(spectrum, input, output, &mut memory.fft, threads);
-            self.respond(input, 0..self.shape[0], &mut memory.added);
-            self.add_rows(0, output, &memory.added);
+            let (transform, input_rows) = (&self.transform, (input, occupied.clone()));
+            transform.convolve_into(
+                &self.spectrum,
+                input_rows,
+                output,
+                &mut memory.fft,
+                &self.threads,
+            );
+            self.respond(input, occupied, &mut memory.added);
+            for (addition, memory) in self.additions.iter().zip(&memory.added) {
+                addition.add_rows(0, self.shape[1], output, memory);
+            }
         });
     }
 
@@ -300,102 +313,6 @@ impl Convolution {
         for (addition, memory) in self.additions.iter().zip(memory) {
             addition.respond(input, occupied.clone(), memory, &self.threads);
         }
-    }
-
-    /// Adds what the additions responded to rows of the output, from row `first` on.
-    fn add_rows(&self, first: usize, output: &mut [f64], memory: &[AdditionMemory]) {
-        for (addition, memory) in self.additions.iter().zip(memory) {
-            addition.add_rows(first, self.shape[1], output, memory);
-        }
-    }
-}
-
-/// A workspace from idle memory, large enough for `transform`.
-fn lease(idle: &Pool<ConvolutionMemory>, transform: &PaddedTransform) -> Workspace {
-    let mut memory = idle.lease();
-    transform.reserve(&mut memory.fft);
-    Workspace(memory)
-}
-
-impl Convolution {
-    /// First stage, row by row: a receiver of input rows, and the memory for their half spectra.
-    pub(crate) fn inwards<'a>(
-        &'a self,
-        workspace: &'a mut Workspace,
-    ) -> (Inwards<'a>, HalfSpectra<'a>) {
-        let memory = &mut workspace.0.fft;
-        self.transform.reserve(memory);
-        let (rows, scratches) = self.transform.half_spectra(memory);
-        let inwards = Inwards { convolution: self, scratches };
-        (inwards, rows)
-    }
-
-    /// First stage, for all rows of an input that is zero outside the rows `occupied`; only these are
-    /// read.
-    pub(crate) fn rows_in(&self, input: &[f64], occupied: Range<usize>, workspace: &mut Workspace) {
-        let memory = &mut workspace.0.fft;
-        self.transform.reserve(memory);
-        let input = (input, occupied);
-        let work = || self.transform.rows_in(input, memory, &self.threads);
-        self.clock.during(work);
-    }
-
-    /// Second stage, after the first stage of an `input` that is zero outside the rows `occupied`. Returns the
-    /// third stage, which can compute any rows of the output.
-    pub(crate) fn outwards<'a>(
-        &'a self,
-        input: &[f64],
-        occupied: Range<usize>,
-        workspace: &'a mut Workspace,
-    ) -> Outwards<'a> {
-        let memory = &mut *workspace.0;
-        self.clock.during(|| {
-            self.respond(input, occupied.clone(), &mut memory.added);
-            let (spectrum, threads) = (&self.spectrum, &self.threads);
-            self.transform.columns_through(spectrum, occupied, &mut memory.fft, threads);
-        });
-        Outwards { convolution: self, memory }
-    }
-}
-
-/// Rows of fields, together with the half spectra of the same rows.
-impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
-    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
-        let (fields, halves) = (self.0.split(rows, ny), self.1.split(rows));
-        ((fields.0, halves.0), (fields.1, halves.1))
-    }
-}
-
-/// Receiver of the rows of the input of a convolution.
-pub(crate) struct Inwards<'a> {
-    convolution: &'a Convolution,
-    scratches: &'a Scratches,
-}
-
-impl Inwards<'_> {
-    /// Transforms consecutive rows of the input into their half spectra `halves`.
-    pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
-        let Convolution { transform, clock, .. } = self.convolution;
-        clock.during_part(transform.scratches(), || {
-            transform.some_rows_in(values, halves, self.scratches);
-        });
-    }
-}
-
-/// Source of the rows of the output of a convolution.
-pub(crate) struct Outwards<'a> {
-    convolution: &'a Convolution,
-    memory: &'a ConvolutionMemory,
-}
-
-impl Outwards<'_> {
-    /// Computes rows of the output into `values`, from row `first` on and as many as fit.
-    pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
-        let Convolution { transform, clock, .. } = self.convolution;
-        clock.during_part(transform.scratches(), || {
-            transform.rows_out(first, values, &self.memory.fft);
-            self.convolution.add_rows(first, values, &self.memory.added);
-        });
     }
 }
 
@@ -409,13 +326,11 @@ mod tests {
         Array2::from_shape_fn((nx, ny), |(i, j)| ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0)
     }
 
-    /// Stages give the bits of `apply`, with groups of rows of any size, on two threads, and where only
-    /// some rows are occupied.
+    /// An input of which only some rows are occupied has the bits of a whole application, on two threads and on one.
     #[test]
-    fn stages_give_the_bits_of_a_whole_application() -> Result<()> {
+    fn occupied_rows_give_the_bits_of_all() -> Result<()> {
         for shape in [[1, 9], [7, 1], [23, 18], [150, 130], [230, 150]] {
             let convolution = Convolution::plan(&field(shape), Some(2))?;
-            let mut workspace = convolution.workspace();
             let [nx, ny] = shape;
             let occupied = nx / 3..nx - nx / 4;
             let mut input = field(shape);
@@ -425,30 +340,12 @@ mod tests {
                 }
             }
             let alone = Convolution::plan(&field(shape), Some(1))?;
-            let at_once = alone.apply(&input)?.into_raw_vec_and_offset().0;
+            let whole = alone.apply(&input)?.into_raw_vec_and_offset().0;
             let input = input.into_raw_vec_and_offset().0;
-            let mut of_occupied = vec![f64::NAN; nx * ny];
-            convolution.rows_in(&input, occupied.clone(), &mut workspace);
-            let outwards = convolution.outwards(&input, occupied, &mut workspace);
-            outwards.rows(0, &mut of_occupied);
-            let mut in_parts = vec![f64::NAN; nx * ny];
-            for length in [1, 3, 8, 11] {
-                let (inwards, mut halves) = convolution.inwards(&mut workspace);
-                for part in input.chunks(length * ny) {
-                    let (here, rest) = halves.split(part.len() / ny);
-                    inwards.rows(part, here);
-                    halves = rest;
-                }
-                let outwards = convolution.outwards(&input, 0..nx, &mut workspace);
-                for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
-                    outwards.rows(k * length, part);
-                }
-                for values in [&of_occupied, &in_parts] {
-                    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
-                    assert!(values.iter().zip(&at_once).all(same), "{shape:?} {length}");
-                }
-                in_parts.fill(f64::NAN);
-            }
+            let mut found = vec![f64::NAN; nx * ny];
+            convolution.apply_rows(occupied, &input, &mut found, &mut convolution.workspace());
+            let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+            assert!(found.iter().zip(&whole).all(same), "{shape:?}");
         }
         Ok(())
     }

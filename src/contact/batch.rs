@@ -113,7 +113,7 @@ impl Contact {
         if workers == 0 {
             return Ok(());
         }
-        check_memory(self.grid.shape(), workers as u64 * Self::memory(&self.grid))?;
+        check_memory(self.grid.shape(), workers as u64 * self.own_memory())?;
         let threads = self.convolution.threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -169,7 +169,7 @@ impl Contact {
         let solution = nx as u64 * ny as u64 * 24;
         let solutions = cases.len() as u64 * solution;
         let workers = self.workers(cases) as u64;
-        check_memory([nx, ny], workers * Self::memory(&self.grid) + solutions)
+        check_memory([nx, ny], workers * self.own_memory() + solutions)
     }
 
     /// Number of cases that are solved at once.

@@ -19,7 +19,7 @@ use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, bounds, copied, enclosing, widened};
 use crate::contact::problem::{LocalDisplacement, Problem, SolutionFields};
-use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
+use crate::contact::solver::preconditioned::Preconditioned;
 use crate::contact::solver::{
     Outcome, StopCriteria, Tally, Termination, active_set, polonsky_keer,
 };
@@ -27,7 +27,7 @@ use crate::contact::start::{checked_gaps, uniform_pressure};
 use crate::error::Result;
 use crate::model::grid::{Grid, full_window, repeating};
 use crate::model::surface::Surface;
-use crate::numerics::parallel::{Pool, Rows, all, update, update_with_largest};
+use crate::numerics::parallel::{Rows, all, update, update_with_largest};
 
 /// Tolerance on coarser grids, whose results tell the discretisation error. With 1e-4, estimates of peak pressures on hard
 /// coats that slip are four times too large; with 1e-3 and 1e-2, convolutions are 5 to 7 % fewer.
@@ -241,7 +241,6 @@ pub(crate) struct Levels {
     locals: Vec<LocalDisplacement>,
     /// Grids of levels 0, 1, 2, …
     grids: Vec<Grid>,
-    memory: Pool<Memory>,
 }
 
 impl Levels {
@@ -265,13 +264,7 @@ impl Levels {
             coefficients.push(coarse);
             grids.push(fine);
         }
-        Ok(Self {
-            coefficients: Arc::new(coefficients),
-            convolutions,
-            locals,
-            grids,
-            memory: Pool::default(),
-        })
+        Ok(Self { coefficients: Arc::new(coefficients), convolutions, locals, grids })
     }
 
     /// These levels on the threads of `finest`; all large arrays are shared.
@@ -282,7 +275,6 @@ impl Levels {
             convolutions: convolutions.map(|c| c.sharing_with(finest)).collect(),
             locals: self.locals.clone(),
             grids: self.grids.clone(),
-            memory: Pool::default(),
         }
     }
 
@@ -296,7 +288,6 @@ impl Levels {
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
             bounds: problem.bounds.clone(),
-            memory: self.memory(),
         }
     }
 
@@ -337,15 +328,9 @@ impl Levels {
                 freedoms,
                 gap: Cow::Owned(gap),
                 bounds: Bounds::none(grid.shape()[1]),
-                memory: self.memory(),
             });
         }
         Some(levels)
-    }
-
-    /// Memory of iterations, and the largest number of cells of one.
-    fn memory(&self) -> (&Pool<Memory>, usize) {
-        (&self.memory, self.coefficients[0].len())
     }
 }
 
@@ -377,8 +362,6 @@ pub(crate) struct Level<'a> {
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
     bounds: Bounds<'a>,
-    /// Memory of iterations, and the largest number of cells of one.
-    memory: (&'a Pool<Memory>, usize),
 }
 
 impl Level<'_> {
@@ -429,22 +412,10 @@ impl Level<'_> {
             let repeats = repeating(self.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
             let bounds = self.bounds.in_window(window);
-            let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
-            // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
-            let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
-                || {
-                    let first = window[0].start;
-                    let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
-                    (windowed, self.convolution.preconditioner(&corner, repeats))
-                },
-                || {
-                    let (memory, most) = self.memory;
-                    let mut memory = memory.lease();
-                    memory.reserve(&rows, most, freedoms.loaded);
-                    (copied(&self.gap, window), memory)
-                },
-            );
-            let approximation = Approximation { inverse, periodic };
+            let first = window[0].start;
+            let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
+            let approximation = self.convolution.approximation(&corner, repeats);
+            let gap = copied(&self.gap, window);
             let problem = Problem {
                 convolution: windowed.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
@@ -452,7 +423,7 @@ impl Level<'_> {
                 local: self.local,
                 bounds: &bounds,
             };
-            let mut solver = Preconditioned::new(&problem, &approximation, memory);
+            let mut solver = Preconditioned::new(&problem, &approximation);
             let mut outcome = solver.solve(&mut patch.values, criteria, tally);
             // The next solver reuses its workspace.
             drop(solver);

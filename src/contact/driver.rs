@@ -66,7 +66,7 @@ impl Contact {
     /// Presses `shape` into the body. The solution says whether it converged.
     ///
     /// # Errors
-    /// Bad input only.
+    /// Bad input, and too little memory.
     pub fn solve<'a>(
         &self,
         shape: &dyn Surface,
@@ -91,6 +91,7 @@ impl Contact {
     ) -> Result<Solution> {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
+        self.check_memory_of_solve(options.hardness.is_some())?;
         let Some(before) = &options.indentation else {
             return self.press(shape, sampled, motion, options, progress);
         };
@@ -383,7 +384,11 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// An error where the load, or a moment along one axis, is above what the cells that can touch bear.
+/// Share of what the cells bear that is rounding of their sum.
+const BEARING_ROUNDING: f64 = 1e-12;
+
+/// An error where the load, or a moment along one axis, is what the cells that can touch bear or above. At that limit all
+/// of them yield, and the rigid motion is not determined.
 ///
 /// # Errors
 /// [`Error::Overload`], [`Error::Overturned`].
@@ -391,7 +396,7 @@ fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
     let touching = (0..problem.gap.len()).filter(|&k| problem.gap[k].is_finite());
     let bears: f64 = touching.map(|k| hardness.at(k)).sum();
     let freedoms = problem.freedoms;
-    if freedoms.loaded[0] && freedoms.target[0] >= bears {
+    if freedoms.loaded[0] && freedoms.target[0] >= (1.0 - BEARING_ROUNDING) * bears {
         return Err(Error::Overload {
             load: freedoms.target[0] * freedoms.cell_area,
             bears: bears * freedoms.cell_area,
@@ -407,7 +412,8 @@ fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
         let load = freedoms.loaded[0].then_some(freedoms.target[0]);
         let lines: Vec<[f64; 2]> = at.iter().copied().zip(lines).map(Into::into).collect();
         let [low, high] = [-1.0, 1.0].map(|side| side * farthest(&lines, side, load));
-        if asked <= low || asked >= high {
+        let rounding = BEARING_ROUNDING * (high - low);
+        if asked <= low + rounding || asked >= high - rounding {
             return Err(Error::Overturned {
                 axis: ["x", "y"][axis],
                 moment: freedoms.moment(axis, asked),

@@ -15,7 +15,8 @@ pub struct Setup {
     /// another [`Method`](crate::influence::Method). Default: the exact ones of the bodies, from which solves also start
     /// on coarser grids where others are given.
     pub coefficients: Option<ArcArray2<f64>>,
-    /// Threads of the plan. Default: all of the machine's.
+    /// Threads of the plan. Default: all of the machine's, or fewer where an environment variable says so:
+    /// `NACRE_NUM_THREADS`, else `RAYON_NUM_THREADS`, else `OMP_NUM_THREADS`.
     pub threads: Option<usize>,
 }
 

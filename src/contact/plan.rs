@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, ArrayRef2};
@@ -23,6 +24,15 @@ use crate::numerics::parallel::{Threads, check_memory};
 /// Arrays of a solve, as many as there are on one cell at the same time. Measured: 135 bytes a cell in all
 /// where the contact fills the grid, 151 where it tilts as well, 67 where it fills a ninth.
 const ARRAYS: u64 = 18;
+
+/// Arrays of a solve after the first one, whose memory the plan keeps. Measured: 46 bytes a cell.
+const LATER_ARRAYS: u64 = 7;
+
+/// Arrays that a hardness adds. Measured: 40 bytes a cell.
+const YIELDING_ARRAYS: u64 = 5;
+
+/// Arrays that free ends add to the plan and to each workspace. Measured: 68 bytes a cell.
+const ENDS_ARRAYS: u64 = 9;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
@@ -52,6 +62,8 @@ pub struct Contact {
     pub(super) ends: Ends,
     /// Operators of tractions, made when friction first needs them.
     pub(super) tangential: OnceLock<Arc<Tangential>>,
+    /// Whether a solve has begun, whose memory the plan keeps.
+    worked: AtomicBool,
 }
 
 impl Contact {
@@ -61,8 +73,8 @@ impl Contact {
     /// Given coefficients that do not suit the grid, no threads, or too little memory.
     pub fn plan(body: impl Into<Body>, grid: Grid, setup: Setup) -> Result<Self> {
         let body = body.into();
-        check_memory(grid.shape(), Self::memory(&grid))?;
         let ends = Ends::of(&bodies(&body, &setup));
+        check_memory(grid.shape(), Self::memory(&grid, &ends))?;
         ends.check(&grid)?;
         refuse_if(
             ends.any() && grid.is_periodic()[0],
@@ -93,6 +105,7 @@ impl Contact {
             unresolved,
             ends,
             tangential: OnceLock::new(),
+            worked: AtomicBool::new(false),
         })
     }
 
@@ -151,6 +164,7 @@ impl Contact {
             datum: self.datum,
             ends: self.ends.clone(),
             tangential: self.tangential.clone(),
+            worked: AtomicBool::new(false),
         }
     }
 
@@ -160,11 +174,36 @@ impl Contact {
         self.convolution.own_threads().run_inside(nx * ny, work)
     }
 
-    /// Bytes that a plan with its coefficients, and the arrays of one solve take.
-    pub(super) fn memory(grid: &Grid) -> u64 {
-        let [nx, ny] = grid.shape();
-        Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * ARRAYS
+    /// Bytes that a plan with its coefficients, and the arrays of one solve take between free `ends`.
+    fn memory(grid: &Grid, ends: &Ends) -> u64 {
+        let of_ends = if ends.any() { ENDS_ARRAYS } else { 0 };
+        Convolution::memory(grid.shape()) + array(grid) * (ARRAYS + of_ends)
     }
+
+    /// Bytes of this plan and the arrays of one solve.
+    pub(super) fn own_memory(&self) -> u64 {
+        Self::memory(&self.grid, &self.ends)
+    }
+
+    /// Checks that there is memory for a solve, of surfaces that yield where they have a hardness.
+    ///
+    /// # Errors
+    /// Too little memory.
+    pub(super) fn check_memory_of_solve(&self, yields: bool) -> Result<()> {
+        let arrays = match self.worked.swap(true, Ordering::Relaxed) {
+            true => LATER_ARRAYS,
+            false if self.ends.any() => ARRAYS + ENDS_ARRAYS,
+            false => ARRAYS,
+        };
+        let of_hardness = if yields { YIELDING_ARRAYS } else { 0 };
+        check_memory(self.grid.shape(), array(&self.grid) * (arrays + of_hardness))
+    }
+}
+
+/// Bytes of an array of the cells of `grid`.
+fn array(grid: &Grid) -> u64 {
+    let [nx, ny] = grid.shape();
+    8 * nx as u64 * ny as u64
 }
 
 /// The two bodies, or the one that is not rigid.
@@ -393,7 +432,7 @@ fn total_pressure(
     let repeats = grid.is_periodic();
     let convolution = Convolution::plan_repeated(coefficients, repeats, Arc::clone(threads))?;
     let convolution = convolution.plus(additions.to_vec());
-    let [_, inverse] = convolution.preconditioner(coefficients, repeats);
+    let inverse = convolution.approximation(coefficients, repeats).inverse;
     let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
     let pressure = linear_cg::solve(
         &vec![1.0; coefficients.len()],

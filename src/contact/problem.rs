@@ -180,41 +180,23 @@ impl Problem<'_> {
         near: [f64; 3],
         workspace: &mut Workspace,
     ) -> ((Multipliers, Quality), f64) {
-        let (rows, ny) = (self.rows(), self.convolution.shape()[1]);
-        let occupied = || window[0].clone();
-        self.convolution.rows_in(p, occupied(), workspace);
-        let outwards = self.convolution.outwards(p, occupied(), workspace);
-        let displace = |first: usize, u: &mut [f64]| {
-            if !u.is_empty() {
-                outwards.rows(first, u);
-            }
-        };
-        let inputs = [p, self.gap];
-        // λ depends on the window's rows alone: they come first.
-        let fit = rows.blocks(inputs, [&mut *u], |block, [p, h], [u]| {
-            let local = block.local(&window[0]);
-            displace(block.first + local.start, &mut u[local.start * ny..local.end * ny]);
-            block.each([p, u, h], [], |row, [p, u, h], []| {
-                let inside = row.within(window, [p, u, h, self.bounds.row(row.number)]);
-                inside.map_or(FitSums::ZERO, |(row, [p, u, h, limit])| {
-                    self.fit_near(near, row, limit, [p, u, h])
-                })
+        self.convolution.apply_rows(window[0].clone(), p, u, workspace);
+        let (rows, inputs) = (self.rows(), [p, u, self.gap]);
+        let fit = rows.each(inputs, [], |row, [p, u, h], []| {
+            let inside = row.within(window, [p, u, h, self.bounds.row(row.number)]);
+            inside.map_or(FitSums::ZERO, |(row, [p, u, h, limit])| {
+                self.fit_near(near, row, limit, [p, u, h])
             })
         });
         let multipliers = Multipliers { base: near, change: self.freedoms.fitted(fit) };
-        let (sums, [not_finite, not_allowed]) = rows.blocks(inputs, [u], |block, [p, h], [u]| {
-            let local = block.local(&window[0]);
-            displace(block.first, &mut u[..local.start * ny]);
-            displace(block.first + local.end, &mut u[local.end * ny..]);
-            block.each([p, u, h], [], |row, [p, u, h], []| {
-                let fields = [p, self.bounds.row(row.number), u, h];
-                let (extremes, not_finite) = depths_of(multipliers, row, fields);
-                let inside = row.within(window, fields);
-                let carried = inside.map(|(row, fields)| works_of(multipliers, row, fields));
-                let [work, mismatch, held, not_allowed] = carried.unwrap_or_default();
-                let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
-                (sums, [not_finite, not_allowed])
-            })
+        let (sums, [not_finite, not_allowed]) = rows.each(inputs, [], |row, [p, u, h], []| {
+            let fields = [p, self.bounds.row(row.number), u, h];
+            let (extremes, not_finite) = depths_of(multipliers, row, fields);
+            let inside = row.within(window, fields);
+            let carried = inside.map(|(row, fields)| works_of(multipliers, row, fields));
+            let [work, mismatch, held, not_allowed] = carried.unwrap_or_default();
+            let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
+            (sums, [not_finite, not_allowed])
         });
         let quality = self.quality(sums, &fit);
         let quality = Quality {

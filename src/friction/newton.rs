@@ -8,9 +8,11 @@
 use std::ops::ControlFlow;
 
 use crate::compliance::traction::TangentialWindow;
+use crate::error::{Error, Result};
 use crate::friction::step::RollingDirection;
 use crate::numerics::dense::eliminate;
 use crate::numerics::parallel::dot;
+use crate::numerics::roots::bracketed;
 
 /// What is asked for: A q = g + C δ where cells stick, Cᵀ q = forces.
 pub(super) struct TractionProblem<'a> {
@@ -47,7 +49,7 @@ pub(super) struct TractionResult {
 pub(super) struct Misfit {
     /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
     pub(super) violation: f64,
-    /// Largest error of a force or torque, over the largest that friction bears.
+    /// Largest error of a force or torque, over the largest that friction can carry.
     pub(super) imbalance: f64,
 }
 
@@ -69,6 +71,9 @@ const MOST_INNER: usize = 200;
 
 /// Steps without a better misfit before they are halved.
 const PATIENCE: i32 = 5;
+
+/// Steps without a better misfit before Newton's method is given up. Chosen by trial.
+const GIVING_UP: i32 = 25;
 
 /// Tractions, and how they stand to the laws.
 struct Standing {
@@ -123,7 +128,43 @@ impl TractionProblem<'_> {
     }
 
     /// Solves from the tractions `q`.
+    ///
+    /// Where hardly a cell sticks and tractions have one direction, the sets of Newton's method are sent to and fro: no cell
+    /// is left whose displacement tells the motion. Then the motion is sought outside, with tractions for given motions.
     pub(super) fn solve(
+        &self,
+        q: Vec<f64>,
+        effort: Effort,
+        watch: &mut ConvolutionWatch,
+    ) -> TractionResult {
+        let found = self.newton(q, effort, watch);
+        let gave_up = !found.stopped && found.convolutions < effort.most;
+        match self.worst_force(&found.q) {
+            Some(number) if gave_up && found.misfit.worst() > effort.tolerance => {
+                MotionSearch::new(self, number, found, effort).run(watch)
+            }
+            _ => found,
+        }
+    }
+
+    /// Number of the force or torque with the largest error for the tractions `q`; `None` where none is given.
+    fn worst_force(&self, q: &[f64]) -> Option<usize> {
+        let numbers = 0..self.columns.len();
+        numbers.max_by(|a, b| self.imbalance(*a, q).abs().total_cmp(&self.imbalance(*b, q).abs()))
+    }
+
+    /// Error of a force or torque for the tractions `q`, over the largest that friction can carry.
+    fn imbalance(&self, number: usize, q: &[f64]) -> f64 {
+        let column = &self.columns[number];
+        let (x, y) = q.split_at(self.law.cells());
+        let used = || x.iter().zip(y).map(|(x, y)| x.hypot(*y)).sum();
+        let bearing = if self.law.most() > 0.0 { self.law.most() } else { used() };
+        let arm = column.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        (dot(column, q) - self.forces[number]) / (bearing * arm)
+    }
+
+    /// Newton's method from the tractions `q`. It gives up where it leads nowhere.
+    fn newton(
         &self,
         mut q: Vec<f64>,
         effort: Effort,
@@ -140,15 +181,10 @@ impl TractionProblem<'_> {
             convolutions += 1;
             let left = effort.most.saturating_sub(convolutions);
             let good = misfit.worst() <= effort.tolerance;
-            if good || left == 0 || stopped || watch(convolutions, misfit).is_break() {
-                return TractionResult {
-                    q,
-                    multipliers,
-                    states,
-                    misfit,
-                    convolutions,
-                    stopped: !good && left > 0,
-                };
+            let ended = good || left == 0 || stalled > GIVING_UP;
+            stopped |= !ended && watch(convolutions, misfit).is_break();
+            if ended || stopped {
+                return TractionResult { q, multipliers, states, misfit, convolutions, stopped };
             }
             restrict(&states, &mut residual);
             residual.iter_mut().for_each(|r| *r = -*r);
@@ -193,19 +229,113 @@ impl TractionProblem<'_> {
     }
 
     fn misfit(&self, q: &[f64], r: &[f64], largest: f64, states: &[CellState]) -> Misfit {
-        let given = self.given.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
-        let scale = if largest > 0.0 { largest } else { given };
-        let (x, y) = q.split_at(states.len());
-        let used: f64 = x.iter().zip(y).map(|(x, y)| x.hypot(*y)).sum();
-        let bearing = if self.law.most() > 0.0 { self.law.most() } else { used };
-        let forces = self.columns.iter().zip(&self.forces);
-        let imbalance = forces.fold(0.0_f64, |worst, (column, force)| {
-            let arm = column.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-            worst.max((force - dot(column, q)).abs() / (bearing * arm))
-        });
+        let scale = if largest > 0.0 { largest } else { largest_of(&self.given) };
+        let worst = self.worst_force(q);
+        let imbalance = worst.map_or(0.0, |number| self.imbalance(number, q).abs());
         let violation = self.law.violation(r, states);
         Misfit { violation: if scale > 0.0 { violation / scale } else { 0.0 }, imbalance }
     }
+}
+
+/// Doublings of a bracket of motions; at the last ones all cells slip.
+const DOUBLINGS: i32 = 60;
+
+/// Search for one loaded degree of freedom δ, with tractions for given δ: their force grows with δ, from that at which all
+/// cells slip one way to that at which all slip the other way.
+struct MotionSearch<'p, 'a> {
+    problem: &'p TractionProblem<'a>,
+    /// Number of the degree of freedom.
+    number: usize,
+    /// The size of motions.
+    unit: f64,
+    /// The best of what was found.
+    best: TractionResult,
+    /// Tractions to start from.
+    last: Vec<f64>,
+    effort: Effort,
+    /// Convolutions so far.
+    done: usize,
+    stopped: bool,
+}
+
+impl<'p, 'a> MotionSearch<'p, 'a> {
+    fn new(
+        problem: &'p TractionProblem<'a>,
+        number: usize,
+        found: TractionResult,
+        effort: Effort,
+    ) -> Self {
+        // What is given, and what a traction at its bound makes of its own cell.
+        let [own, other] = problem.operator.diagonal();
+        let size = largest_of(&problem.given) + own.max(other) * largest_of(&problem.law.bound);
+        let unit = size / largest_of(&problem.columns[number]);
+        let (last, done) = (found.q.clone(), found.convolutions);
+        Self { problem, number, unit, best: found, last, effort, done, stopped: false }
+    }
+
+    /// The tractions with the least misfit.
+    fn run(mut self, watch: &mut ConvolutionWatch) -> TractionResult {
+        for power in 0..DOUBLINGS {
+            let end = 2.0_f64.powi(power);
+            let found = bracketed(|motion| self.imbalance(motion, watch), [-end, end]);
+            if !matches!(found, Ok(None)) {
+                break;
+            }
+        }
+        // Between two motions that differ by rounding, the set of sticking cells is known.
+        let left = self.effort.most.saturating_sub(self.done);
+        if !self.stopped && left > 0 && self.best.misfit.worst() > self.effort.tolerance {
+            let (done, effort) = (self.done, Effort { most: left, ..self.effort });
+            let problem = self.problem;
+            let told = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
+            let found = problem.newton(self.best.q.clone(), effort, told);
+            self.keep(found);
+        }
+        TractionResult { convolutions: self.done, stopped: self.stopped, ..self.best }
+    }
+
+    /// Imbalance of the force at a motion, in units of its size; 0 where it is within the tolerance.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] where the search must end.
+    fn imbalance(&mut self, motion: f64, watch: &mut ConvolutionWatch) -> Result<f64> {
+        let (problem, number, done) = (self.problem, self.number, self.done);
+        let left = self.effort.most.saturating_sub(done);
+        if self.stopped || left == 0 {
+            return Err(Error::Stopped);
+        }
+        let delta = motion * self.unit;
+        let (mut columns, mut forces) = (problem.columns.clone(), problem.forces.clone());
+        let column = columns.remove(number);
+        forces.remove(number);
+        let mut given = problem.given.clone();
+        add(&mut given, delta, &column);
+        let (operator, law) = (problem.operator, problem.law);
+        let part = TractionProblem { operator, law, given, columns, forces };
+        let effort = Effort { most: left, ..self.effort };
+        let told = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
+        let mut found = part.newton(std::mem::take(&mut self.last), effort, told);
+        found.multipliers.insert(number, delta);
+        self.last.clone_from(&found.q);
+        let imbalance = problem.imbalance(number, &found.q);
+        found.misfit.imbalance = found.misfit.imbalance.max(imbalance.abs());
+        self.keep(found);
+        Ok(if imbalance.abs() <= self.effort.tolerance { 0.0 } else { imbalance })
+    }
+
+    /// Counts the work of what was found, and keeps it where it is better.
+    fn keep(&mut self, found: TractionResult) {
+        self.done += found.convolutions;
+        self.stopped |= found.stopped;
+        if found.misfit.worst() <= self.best.misfit.worst() {
+            self.best = found;
+        }
+    }
+}
+
+/// The largest magnitude.
+fn largest_of(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// From tractions to what must be given: displacements, or in rolling the change of displacement over a cell.

@@ -211,6 +211,7 @@ impl<'a> Session<'a> {
                 break (normal, None);
             }
             task.check(grid, &bound, tolerance)?;
+            task.check_memory(grid, &bound)?;
             let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
@@ -393,11 +394,10 @@ impl<'a> Session<'a> {
             Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
         let options = Options { tolerance: START, ..Options::default() };
         let sticking = self.contact.solve(self.shape, &less, &options)?;
-        for ((i, j), p) in normal.pressure.indexed_iter() {
-            let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);
-            for (traction, component) in tractions.iter_mut().zip(forces) {
-                traction[[i, j]] = q * component / force;
-            }
+        let more = (&normal.pressure - &sticking.pressure).mapv(|p| p.max(0.0));
+        let bound = friction.times(&more);
+        for (traction, component) in tractions.iter_mut().zip(forces) {
+            *traction = bound.mapv(|q| q * component / force);
         }
         Ok(tractions)
     }

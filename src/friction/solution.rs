@@ -51,7 +51,7 @@ pub struct FrictionReport {
     pub sweeps: usize,
     /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
     pub violation: f64,
-    /// Largest error of a given force or torque, over the largest that friction bears.
+    /// Largest error of a given force or torque, over the largest that friction can carry.
     pub imbalance: f64,
     /// Largest |q| − μp over the largest μp.
     pub excess: f64,

@@ -28,15 +28,7 @@ impl From<Array2<f64>> for Friction {
 }
 
 impl Friction {
-    /// The coefficient of one cell.
-    pub fn at(&self, cell: [usize; 2]) -> f64 {
-        match self {
-            Self::Uniform(coefficient) => *coefficient,
-            Self::Cells(coefficients) => coefficients[cell],
-        }
-    }
-
-    /// μp in each cell.
+    /// Bound μp of the traction in each cell: all that the rest of friction asks of the law.
     pub(super) fn times(&self, pressure: &Array2<f64>) -> Array2<f64> {
         match self {
             Self::Uniform(coefficient) => pressure * *coefficient,

@@ -15,6 +15,17 @@ use crate::compliance::traction::{Tangential, TangentialWindow};
 use crate::contact::{self, Warning};
 use crate::error::{Error, Result, require};
 use crate::model::grid::{Grid, Window, full_window};
+use crate::numerics::parallel::check_memory;
+
+/// Bytes that the fields of a solution, and the operators on the whole grid take for each cell. Measured, as those of
+/// iterations: 185.
+const GRID_BYTES: u64 = 200;
+
+/// Bytes of an iteration for each cell of its window, in sliding. Measured: 720.
+const SLIDING_BYTES: u64 = 800;
+
+/// The same in rolling. Measured: 1120.
+const ROLLING_BYTES: u64 = 1200;
 
 /// What is asked of the tangential motion.
 #[derive(Debug)]
@@ -101,7 +112,7 @@ impl TractionTask<'_> {
                 return Err(Error::FullSlip { name, value, bears });
             }
             let counts = value <= 0.0 || value >= 1e-100 * bears;
-            let requirement = "0, or at least 1e-100 of what friction bears";
+            let requirement = "0, or at least 1e-100 of what friction can carry";
             require(name, value, counts, requirement)?;
         }
         let leaves = |direction: RollingDirection| {
@@ -110,6 +121,15 @@ impl TractionTask<'_> {
             bound.index_axis(axis, edge).iter().any(|bound| *bound > 0.0)
         };
         if self.direction().is_some_and(leaves) { Err(Error::RollsOffGrid) } else { Ok(()) }
+    }
+
+    /// An error where there is too little memory for tractions within `bound`.
+    pub(super) fn check_memory(&self, grid: &Grid, bound: &Array2<f64>) -> Result<()> {
+        let window = self.window(PressedCells { grid, bound, spreading: bound });
+        let pressed = window.map_or(0, |[rows, columns]| rows.len() * columns.len());
+        let [nx, ny] = grid.shape();
+        let of_iteration = if self.slides() { SLIDING_BYTES } else { ROLLING_BYTES };
+        check_memory([nx, ny], (nx * ny) as u64 * GRID_BYTES + pressed as u64 * of_iteration)
     }
 
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;

@@ -118,6 +118,13 @@ impl Point {
 
 /// Contact of a cylinder, per unit length. Johnson (1985), eqs (4.43)–(4.45).
 ///
+/// The approach of a line contact depends on a datum in each body. The axes of two rollers, each loaded at the opposite
+/// side, approach by (§5.6)
+///
+/// ```text
+/// Σ W' (1 − ν²)/πE [2 ln(4R/b) − 1]
+/// ```
+///
 /// ```
 /// let contact = nacre::hertz::Line::new(5e-3, 115e9, 1e5)?;
 /// // W' = π/2 b p0

@@ -57,7 +57,8 @@ pub trait Surface: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Extents along x and along y.
+    /// Extents along x and along y. By default those of the base or, also for a gap that levels off,
+    /// [`Extent::Rising`].
     fn extent(&self) -> [Extent; 2] {
         self.base().map_or([Extent::Rising; 2], Surface::extent)
     }

@@ -22,7 +22,6 @@ mod stages;
 
 pub(crate) use parity::{Keep, KernelRows, QuarterTransform, Term, Transformed};
 pub(crate) use spectrum::{EvenSpectrum, ParitySpectrum};
-pub(crate) use stages::HalfSpectra;
 
 /// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
 /// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value
@@ -124,10 +123,16 @@ impl PaddedTransform {
         Self::with_periods(shape, shape, [false; 2], threads)
     }
 
-    /// Transforms that are padded by an eighth. Convolutions are periodic, with n as the period along directions that
-    /// are `periodic`, and the fast length ≥ 9/8 n along others.
-    pub(crate) fn plan_margin(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
-        Self::with_periods(shape, shape.map(|n| n + n.div_ceil(8)), periodic, threads)
+    /// Transforms that are padded by the share `margin` of n. Convolutions are periodic, with n as the period along
+    /// directions that are `periodic`, and the fast length ≥ (1 + margin) n along others.
+    pub(crate) fn plan_margin(
+        shape: [usize; 2],
+        margin: f64,
+        periodic: [bool; 2],
+        threads: &Threads,
+    ) -> Self {
+        let longer = |n: usize| n + (margin * n as f64).ceil() as usize;
+        Self::with_periods(shape, shape.map(longer), periodic, threads)
     }
 
     /// Transforms of fast lengths of at `least` so many points, but along directions that are `periodic`.
@@ -207,6 +212,12 @@ impl PaddedTransform {
         let mut workspace = TransformMemory::default();
         self.reserve(&mut workspace);
         workspace
+    }
+
+    /// Bytes by which the mesh of `workspace` is too small for this transform; all else is far smaller.
+    pub(crate) fn missing(&self, workspace: &TransformMemory) -> u64 {
+        let elements = self.blocks() * self.block_rows();
+        (elements.saturating_sub(workspace.mesh.len()) * size_of::<[Complex64; BLOCK]>()) as u64
     }
 
     /// Enlarges `workspace` where it is too small for this transform.

@@ -119,7 +119,11 @@ impl StressSummary {
             // Compression everywhere is no tension to be known.
             let known = if tension.value > 0.0 { 3 } else { 1 };
             let said = unresolved(&peaks[..known])?;
-            Some((format!("layers[{}]", layer.layer), said))
+            let place = match layer.depths[1].is_finite() {
+                true => format!("layers[{}]", layer.layer),
+                false => "the substrate".to_string(),
+            };
+            Some((place, said))
         });
         let interfaces = self.interfaces.iter().filter_map(|face| {
             let said = unresolved(&[("shear", &face.shear), ("compression", &face.compression)])?;

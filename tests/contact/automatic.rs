@@ -135,7 +135,7 @@ fn nothing_is_found_where_nothing_touches() -> Result<()> {
 }
 
 /// Cells of a grid that closes in on a place; odd, so that the axis of a roller is a line of centres.
-const LOOKED_AT: [usize; 2] = [481, 481];
+const LOOKED_AT: [usize; 2] = [241, 241];
 
 /// Heights of a tilted shape above the plane, and where they are, on a grid.
 fn heights(shape: &dyn Surface, tilt: [f64; 2], grid: &Grid) -> Result<Vec<(f64, [f64; 2])>> {
@@ -232,9 +232,10 @@ fn cells_are_divided_until_the_peak_is_resolved() -> Result<()> {
     assert!(error < 0.01 * peak && solution.report.warnings.is_empty());
     let [nx, ny] = grid.shape();
     assert!(nx > 1400, "{nx} cells");
-    let finer = Grid::new([4 * nx, ny], grid.size())?.centered_at(grid.center())?;
+    let finer = Grid::new([2 * nx, ny], grid.size())?.centered_at(grid.center())?;
     let finer = on_grid(&roller, &motion, finer)?.peak_pressure();
-    assert!((peak - finer).abs() < ESTIMATES * error);
+    // Of second order, half the cells have a quarter of the error left.
+    assert!(4.0 / 3.0 * (peak - finer).abs() < ESTIMATES * error);
     Ok(())
 }
 

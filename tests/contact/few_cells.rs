@@ -166,7 +166,7 @@ fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
     let contact = plan(&body, grid)?;
     // In some of the last cases, the contact cannot balance the moment during the iteration until the body has
     // turned by a large angle.
-    for seed in (0..8).chain([19, 45, 49]) {
+    for seed in (0..4).chain([19, 45, 49]) {
         let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?;
         let shape = Paraboloid::new(5e-3, 7.5e-3)?.plus(rough);
         let place = uniform([1, 2], seed + 100);

@@ -25,7 +25,8 @@ struct Line {
 impl Line {
     /// The load at which the pressures of the last two cells stand as the mean values of a root that begins at the
     /// edge, (2^{3/2} − 1) : 1. This fixes the half width but for a part of a cell that is the same for all grids.
-    fn new(ratio: f64, thickness: f64, cells: usize) -> Result<Self> {
+    /// On finer cells it is near that on coarser ones.
+    fn new(ratio: f64, thickness: f64, cells: usize, near: Option<f64>) -> Result<Self> {
         let all = cells + 20;
         let width = 2.0 * all as f64 / cells as f64;
         let contact = equal(coated(ratio, thickness)?, Grid::line(all, width)?)?;
@@ -40,8 +41,9 @@ impl Line {
                 std::cmp::Ordering::Equal => p[0] / p[1] - 1.0 / (2.0_f64.powf(1.5) - 1.0),
             })
         };
-        let (mut low, mut high) = (1e-3 / RADIUS, 1e2 / RADIUS);
-        while high / low > 1.0 + 1e-8 {
+        let all = [1e-3 / RADIUS, 1e2 / RADIUS];
+        let [mut low, mut high] = near.map_or(all, |load| [0.9, 1.1].map(|part| part * load));
+        while high / low > 1.0 + 1e-7 {
             let middle = (low * high).sqrt();
             match excess(middle)? > 0.0 {
                 true => high = middle,
@@ -86,8 +88,11 @@ fn each_pair(key: &str, check: impl Fn(&[Line; 3], &Value) -> Result<()>) -> Res
         let which = names.map(|name| case[name].to_string());
         if pairs.last().is_none_or(|(last, _)| *last != which) {
             let [ratio, thickness] = names.map(|name| number(case, name));
-            let [a, b, c] = CELLS.map(|cells| Line::new(ratio, thickness, cells));
-            pairs.push((which, [a?, b?, c?]));
+            let [coarse, middle, fine] = CELLS;
+            let first = Line::new(ratio, thickness, coarse, None)?;
+            let near = Some(first.load);
+            let [b, c] = [middle, fine].map(|cells| Line::new(ratio, thickness, cells, near));
+            pairs.push((which, [first, b?, c?]));
         }
         let (_, lines) = pairs.last().expect("a pair");
         check(lines, case)?;

@@ -17,7 +17,7 @@ struct Case {
     /// Rigid, equal, or a body without layers of this modulus.
     counterbody: Option<Option<f64>>,
     friction: [f64; 2],
-    /// Forces over what friction bears, and their directions.
+    /// Forces over what friction can carry, and their directions.
     pulls: Vec<(f64, f64)>,
     /// Approach of each pull over that of a contact without layers with a radius of 1.
     approaches: [f64; 3],

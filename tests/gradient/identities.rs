@@ -16,7 +16,7 @@ const EXACT: f64 = 1e-9;
 #[test]
 fn adjoint_and_tangent_agree() -> Result<()> {
     let (mut compared, mut cases) = (0, 0);
-    for number in 0..200 {
+    for number in 0..80 {
         let case = Case::new(number)?;
         let Ok(solution) = case.solve(1e-10) else {
             continue;
@@ -47,7 +47,7 @@ fn adjoint_and_tangent_agree() -> Result<()> {
         let other = (&tangent.pressure * &weights).sum();
         below!((one - other).abs() / scale(&tangent.pressure), EXACT);
     }
-    assert!(compared > 1500 && cases > 195, "{compared} {cases}");
+    assert!(compared > 600 && cases > 78, "{compared} {cases}");
     Ok(())
 }
 

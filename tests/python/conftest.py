@@ -25,8 +25,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(autouse=True)
-def _pictures_are_closed() -> Iterator[None]:
+def _nothing_is_left_behind() -> Iterator[None]:
+    environment = dict(os.environ)
     yield
+    if dict(os.environ) != environment:  # pools of processes set OMP_NUM_THREADS
+        os.environ.clear()
+        os.environ.update(environment)
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close("all")
 

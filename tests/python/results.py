@@ -38,6 +38,9 @@ NORMAL: dict[str, Callable[[], nacre.Solution]] = {
     "both coated, tilted": lambda: nacre.solve(
         BALL, LAYERED, LAYERED, grid=GRID, load=10.0, eccentricity=(1e-6, None), tilt=(None, 1e-4)
     ),
+    "yielded": lambda: nacre.solve(
+        BALL, STEEL, grid=nacre.Grid((20, 20), (2e-4, 2e-4)), load=10.0, hardness=1e9
+    ),
     "infinite gaps": lambda: nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
     "nothing touches": lambda: nacre.solve(BALL, STEEL, grid=GRID, approach=-1e-6),
     "line": lambda: nacre.solve(ROD, LAYERED, grid=nacre.Grid.line(64, 2e-4, 1e-6), load=1e4),

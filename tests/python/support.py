@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import io
 import os
+import runpy
 import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
+from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -66,6 +71,20 @@ def python(*arguments: object, folder: Path | None = None, **options: Any) -> An
     asked = [sys.executable, *map(str, arguments)]
     options = {"capture_output": True, "text": True, "timeout": 300} | options
     return subprocess.run(asked, cwd=folder, check=False, **options)
+
+
+def printed(program: Path, folder: Path) -> str:
+    """Return what a program prints in this process, in a folder and with warnings as errors."""
+    with (
+        contextlib.chdir(folder),
+        warnings.catch_warnings(),
+        contextlib.redirect_stdout(io.StringIO()) as output,
+        mock.patch.object(sys, "argv", [str(program)]),
+        nacre.display_units("SI"),
+    ):
+        warnings.simplefilter("error")
+        runpy.run_path(str(program), run_name="__main__")
+    return output.getvalue()
 
 
 class Interrupted(NamedTuple):

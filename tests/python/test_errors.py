@@ -25,17 +25,10 @@ TOO_LARGE = (2**20, 2**20)
 VALUES = {
     # materials and bodies
     "Elastic(-1.0, 0.3)": r"young must be .*above 0, got -1",
-    "Elastic(0.0, 0.3)": r"young must be .*above 0, got 0",
-    "Elastic(NAN, 0.3)": r"young must be .*got NaN",
-    "Elastic(INF, 0.3)": r"young must be finite.*got inf",
     "Elastic(10**400, 0.3)": r"young must be finite.*got inf",
     "Elastic(-10**400, 0.3)": r"young must be .*above 0, got -inf",
-    "Elastic(1.0, 0.51)": r"poisson must be .*at most 0\.5, got 0\.51",
     "Elastic(1.0, -1.0)": r"poisson must be above -1.*got -1",
-    "Elastic(1.0, NAN)": r"poisson must be .*got NaN",
-    "Layer(STEEL, 0.0)": r"thickness must be .*above 0, got 0",
     "Layer(STEEL, -1e-6)": r"thickness must be .*above 0, got -(0\.000001|1e-6)",
-    "Layer(STEEL, INF)": r"thickness must be finite.*got inf",
     "Layer(STEEL, 1.0, 'glued')": r"interface must be .*bonded.*frictionless.*glued",
     "Layer(STEEL, 1.0, name='')": r"name must be a text .*other than a number.*got \"\"",
     "Layer(STEEL, 1.0, name='substrate')": r"name must be .*got \"substrate\"",
@@ -55,10 +48,7 @@ VALUES = {
     r"shape that it carries: it ends at x = 1e-5, and the shape at 5e-4",
     # shapes
     "Sphere(0.0)": r"radius must be .*above 0, got 0",
-    "Sphere(INF)": r"radius must be finite.*got inf",
     "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
-    "Paraboloid(NAN, 1.0)": r"radius_x must be .*got NaN",
-    "Cylinder(-1.0)": r"radius must be .*above 0, got -1",
     "Cylinder(-30e-3)": r"radius must be .*raceway or groove use counter_radius.*got -0\.03",
     "Roller(-1.0, 1.0, 1.0)": r"radius must be .*counter_radius.*above 0, got -1",
     "Cylinder(5e-3, counter_radius=-4e-3)": r"counter_radius must be .*raceway.*wider.*got -0\.004",
@@ -78,14 +68,12 @@ VALUES = {
     "Roller(1.0, -1.0, 1.0)": r"flat_length must be .*at least 0, got -1",
     "Roller(1.0, 1.0, 0.0)": r"crown_radius must be .*above 0, got 0",
     "Roller(1.0, 1.0, 1.0, length=0.5)": r"length must be at least flat_length.*got 0\.5",
-    "Roller(1.0, 1.0, 1.0, length=NAN)": r"length must be .*got NaN",
     "Roller(1.0)": r"flat_length.*crown_radius.*profile",
     "Roller(1.0, 1.0)": r"flat_length.*crown_radius.*profile",
     "Roller(1.0, 1.0, 1.0, profile=PROFILE)": r"flat_length.*crown_radius.*profile",
     "LogarithmicProfile(0.0, 1.0)": r"amplitude must be .*above 0, got 0",
     "LogarithmicProfile(1.0, INF)": r"length must be finite.*got inf",
     "LogarithmicProfile(1.0, 1.0, 1.0)": r"flat_length must be .*below.*length, got 1",
-    "LogarithmicProfile(1.0, 1.0, 0.0, 1.5)": r"end_factor must be .*at most 1, got 1\.5",
     "LogarithmicProfile.lundberg(0.0, 1.0, 1.0)": r"length must be .*above 0, got 0",
     "LogarithmicProfile.iso16281(-1.0, 1.0)": r"diameter must be .*above 0, got -1",
     "LogarithmicProfile.fujiwara_kawase(1.0, 1.0, 1.0, 0.0, 1.0, 1.0)": r"k1 must be .*above 0",
@@ -93,30 +81,23 @@ VALUES = {
     "LogarithmicProfile.fujiwara_kawase(1.0, 1.0, 1.0, 1.0, 1.0, -1.0)": r"z_m must be .*above 0",
     "SampledProfile([0.0, 1.0], [0.0])": r"drop.*\b2\b.*\b1\b",
     "SampledProfile([0.0], [0.0])": r"at least two",
-    "SampledProfile([0.0, 0.0], [0.0, 1.0])": r"positions must be increasing, got 0",
     "SampledProfile([0.0, NAN], [0.0, 1.0])": r"not finite at .*1",
     "SampledProfile(HEIGHTS, HEIGHTS)": r"x must have one dimension.*\[4, 5\]",
     "BALL.shifted(NAN, 0.0)": r"x must be finite, got NaN",
-    "BALL.shifted(0.0, INF)": r"y must be finite, got inf",
     # height maps
     "HeightMap(NAN_AT_1_2, 1.0)": r"heights is not finite at \[1, 2\]",
-    "HeightMap(np.where(np.isnan(NAN_AT_1_2), INF, 0.0), 1.0)": r"heights is not finite at",
     "HeightMap([1.0, 2.0], 1.0)": r"heights must have two dimensions.*\[2\]",
     "HeightMap(np.zeros((2, 2, 2)), 1.0)": r"heights must have two dimensions.*\[2, 2, 2\]",
     "HeightMap([[1.0, 2.0]], 1.0)": "number of heights .* at least 2, got 1",
     "HeightMap(np.zeros((0, 0)), 1.0)": "number of heights .* at least 2, got 0",
-    "HeightMap(HEIGHTS, 0.0)": r"spacing must be .*above 0, got 0",
     "HeightMap(HEIGHTS, (1.0, -1.0))": r"spacing must be .*above 0, got -1",
     "HeightMap(HEIGHTS, 1.0, center=(NAN, 0.0))": r"center must be finite, got NaN",
     "HeightMap(HEIGHTS, 1e-9).gaps(GRID)": r"grid spacing must be at most twice.*got (0\.0|2\.5e-)",
     # grids
-    "Grid((0, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got 0",
-    "Grid((1, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got 1",
     "Grid((-4, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got -4",
     "Grid((4, 4, 4), (1.0, 1.0))": r"(?s)length 2.*3.*shape",
     "Grid((2**62, 2**62), (1.0, 1.0))": r"shape must be .*got 2126764793",
     "Grid((2**70, 4), (1.0, 1.0))": r"shape must be .*(count|at most).*got 11805916207174113",
-    "Grid((4, 4), (0.0, 1.0))": r"size must be .*above 0, got 0",
     "Grid((4, 4), (1.0, INF))": r"size must be finite.*got inf",
     "Grid((4, 4), (1.0, 1.0, 1.0))": r"(?s)length 2.*3.*size",
     "Grid((4, 4), (1.0, 1.0), center=(0.0, NAN))": r"center must be finite, got NaN",
@@ -135,8 +116,6 @@ VALUES = {
     "frequency_response(STEEL, [1.0, -2.0])": r"wavenumber must be .*above 0, got -2",
     "frequency_response(STEEL, 5e-324)": r"wavenumber must be .*finite: neither that small",
     "surface_compliance(STEEL, [1.0, 1e-323])": r"wavenumber must be .*neither that small",
-    "frequency_response(STEEL, NAN)": r"wavenumber must be .*got NaN",
-    "frequency_response(STEEL, INF)": r"wavenumber must be finite.*got inf",
     # graded coatings
     "graded_layers(STEEL, 0.0, 1e9, 0.3)": r"thickness must be .*above 0, got 0",
     "graded_layers(STEEL, 1.0, -1e9, 0.3)": r"young must be .*got -1000000000",
@@ -146,29 +125,19 @@ VALUES = {
     # controls
     "press()": r"exactly one of load and approach",
     "press(load=1.0, approach=1e-6)": r"exactly one of load and approach",
-    "press(load=0.0)": r"load must be .*above 0, got 0",
     "press(load=-1.0)": r"load must be .*above 0, got -1",
-    "press(load=NAN)": r"load must be .*got NaN",
-    "press(load=INF)": r"load must be finite.*got inf",
     "press(approach=NAN)": r"approach must be finite, got NaN",
     "press(load=1.0, eccentricity=(NAN, None))": r"eccentricity must be finite, got NaN",
     "press(load=1.0, moment=(None, INF))": r"moment must be finite, got inf",
-    "press(load=1.0, tilt=(-INF, None))": r"tilt must be finite, got -inf",
-    "press(approach=1e-6, eccentricity=(0.0, None))": r"eccentricity needs load",
     "press(approach=1e-6, eccentricity=(None, 0.0))": r"eccentricity needs load",
     "press(load=1.0, eccentricity=(0.0, None), tilt=(0.0, None))": r"along x at most one of",
-    "press(load=1.0, eccentricity=(None, 0.0), moment=(None, 0.0))": r"along y at most one of",
-    "press(load=1.0, moment=(0.0, None), tilt=(0.0, 0.0))": r"along x at most one of",
     # the load point, on a grid whose cell centres end at 1.875e-4
     "press(load=1.0, eccentricity=(1.9e-4, None))": r"load point \(1\.9.*must lie .*inside",
     "press(load=1.0, eccentricity=(None, -1.0))": r"load point \(0.*-1\.0.*must lie .*inside",
     "press(load=2.0, moment=(1.0, None))": r"load point \(5\.0*e-1.*must lie .*inside",
     "CONTACT.solve(PUNCH, load=1.0, eccentricity=(1.2e-4, 0.0))": r"load point \(1\.2.*inside",
-    "CONTACT.solve(BALL.shifted(1.0, 0.0), load=1.0)": r"no cell .*can touch",
     # options
-    "press(load=1.0, tolerance=0.0)": r"tolerance must be above 0.*got 0",
     "press(load=1.0, tolerance=1.0)": r"tolerance must be .*below 1, got 1",
-    "press(load=1.0, tolerance=NAN)": r"tolerance must be .*got NaN",
     "press(load=1.0, max_iterations=-1)": r"max_iterations must be .*at least 0, got -1",
     "press(load=1.0, algorithm='magic')": r"algorithm must be .*magic",
     "press(load=1.0, initial=np.zeros((3, 4)))": r"initial.*shape \[16, 20\].*\[3, 4\]",
@@ -360,7 +329,7 @@ FRICTION_VALUES = {
     "slides(shift=(1e300, None))": "shift must be at most a million times",
     "rolls(creepage=(1e300, None))": "creepage must be at most a million",
     "rolls(spin=1e300)": "spin must be at most a million over",
-    "slides(torque=1.0)": "torque must be below what friction bears",
+    "slides(torque=1.0)": "torque must be below what friction can carry",
     "slide(BALL, STEEL, steps=[], **HELD)": "steps must",
     "slides(friction=np.ones(28))": "friction must have two dimensions",
     "coefficients(STEEL, STEEL, (1.0, 1.0), cells=-4)": "cells must be .*at least 8",
@@ -467,8 +436,8 @@ FIELD_VALUES = {
     r"1e0 .* was a grid of period 5e-1",
     "solve(MAP, SOFT, grid=Grid.line(24, 0.75), load=1e-3)": "repeat along y",
     "solve(MAP + MAP, SOFT, grid=OPEN, load=1e-3)": "repeat along x",
-    "solve(MAP, SOFT, approach=1.01 * MEAN)": r"approach must be below 1\.4\d+e-3, the mean gap.*"
-    r"was 1\.5\d+e-3",
+    "solve(MAP, SOFT, approach=1.01 * MEAN)": r"approach must be below 0\.00149\d*, the mean gap.*"
+    r"was 0\.0015\d*",
     # stresses
     "PRESSED.stress(-1e-6)": r"^z must be finite and at least 0, got -0.000001$",
     "PRESSED.stress(NAN)": r"^z must be finite and at least 0, got NaN$",
@@ -561,6 +530,7 @@ def test_a_list_or_an_array_is_as_good_as_a_tuple(like: Any) -> None:
     assert nacre.HeightMap(HEIGHTS, like(pair)).spacing == pair
     assert nacre.HeightMap(HEIGHTS, pair, center=like(pair)).center == pair
     moved = CONTACT.solve(BALL, load=100.0, eccentricity=like((1e-5, 0.0)))
+    assert CONTACT.solve(BALL, load=100.0, tilt=like((1e-4, 2e-4))).tilt == (1e-4, 2e-4)
     assert moved.report.motion["eccentricity"] == (1e-5, 0.0)
     field = moved.stress(1e-5, friction=0.1, direction=like((0.0, 1.0)))
     assert field.friction == (0.0, 0.1)
@@ -586,7 +556,7 @@ def test_missing_samples_are_refused() -> None:
     ("wrong", "words"),
     [
         ({"force": (NAN, None)}, "force must be finite"),
-        ({"force": (3.1, None)}, "force must be below what friction bears"),
+        ({"force": (3.1, None)}, "force must be below what friction can carry"),
         ({"friction": np.ones((3, 3))}, "friction: expected shape"),
     ],
 )

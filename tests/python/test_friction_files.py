@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import pickle
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
-import pyvista
 
 import nacre
 import results
@@ -74,44 +71,6 @@ def test_other_units_change_the_names_of_units_alone() -> None:
         assert f"{shift_of(solution)[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
         assert "spin           3 /mm" in str(solved("rolled"))
     np.testing.assert_array_equal(dataset.traction, solution.traction)
-
-
-@every
-def test_pyvista_reads_the_vtk_file_back(kind: str, tmp_path: Path) -> None:
-    solution = solved(kind)
-    mesh = pyvista.read(solution.save(tmp_path / "a.vtr"))
-    assert isinstance(mesh, pyvista.RectilinearGrid)
-    shape = solution.grid.shape
-    for name in ("pressure", "stick"):
-        read = np.asarray(mesh.cell_data[name]).reshape(shape, order="F")
-        np.testing.assert_array_equal(read, getattr(solution, name))
-    for name in ("traction", "displacement", "slip"):
-        vectors = np.asarray(mesh.cell_data[name]).reshape(*shape, 3, order="F")
-        expected = np.moveaxis(getattr(solution, name), 0, -1)
-        np.testing.assert_array_equal(vectors[..., :2], expected)
-        assert not vectors[..., 2].any()
-    edges = np.asarray(mesh.x)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    np.testing.assert_allclose(middles, solution.x, rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("kind", ["slid", "rolled", "line slid"])
-def test_csv_holds_every_cell(kind: str, tmp_path: Path) -> None:
-    solution = solved(kind)
-    lines = solution.save(tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
-    comments = [line for line in lines if line.startswith("# ")]
-    assert comments[0] == f"# source: nacre {nacre.__version__}"
-    rows = list(csv.DictReader(lines[len(comments) :]))
-    slip = "slip {} [1]" if kind == "rolled" else "slip {} [m]"
-    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
-    expected = {
-        **{"x [m]": x, "y [m]": y, "pressure [Pa]": solution.pressure, "stick": solution.stick},
-        **{f"traction {n} [Pa]": q for n, q in zip("xy", solution.traction, strict=True)},
-        **{slip.format(n): s for n, s in zip("xy", solution.slip, strict=True)},
-    }
-    assert set(rows[0]) == set(expected)
-    for name, field in expected.items():
-        assert [float(row[name]) for row in rows] == field.ravel().tolist()
 
 
 # Text.

@@ -29,7 +29,7 @@ def test_a_history_is_a_dataset() -> None:
     for name in ("force", "shift", "torque", "dissipated", "twist"):
         np.testing.assert_array_equal(study[name], [getattr(s, name) for s in loop])
     assert {n: study[n].units for n in study} == {
-        **{"load": "N", "force": "N", "torque": "N m", "dissipated": "N m", "stick_share": "1"},
+        **{"load": "N", "force": "N", "torque": "N m", "dissipated": "J", "stick_share": "1"},
         **{"convolutions": "1", "shift": "m", "twist": "rad"},
     }
     share = [s.stick.sum() / np.count_nonzero(s.pressure) for s in loop]
@@ -37,7 +37,7 @@ def test_a_history_is_a_dataset() -> None:
     assert nacre.friction.history([SOLVED["apart"]]).stick_share.item() == 0
     rolls = nacre.friction.history([SOLVED["rolled"]])
     np.testing.assert_array_equal(rolls.creepage, [SOLVED["rolled"].creepage])
-    assert (rolls.dissipated.units, "shift" in rolls) == ("N", False)
+    assert (rolls.dissipated.units, "shift" in rolls) == ("J/m", False)
     assert nacre.friction.history([SOLVED["line slid"]]).force.units == "N/m"
 
 

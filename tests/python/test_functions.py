@@ -34,7 +34,7 @@ SHEAR = {"stress": "von_mises", "at": (1e-5, 0.0, 3e-5)}
 OUTPUTS = {"approach": "approach", "norm": ("pressure_norm", 16.0), "shear": SHEAR}
 THICKNESS = "body.layers[0].thickness"
 WEIGHTS = np.random.default_rng(2).normal(size=GRID.shape) / 1e10
-STEP, BAR = 1e-5, 1e-6
+STEP, BAR = 1e-5, 2e-7
 """Steps of logarithms, within the valid ones, and what differences of them are worth."""
 
 

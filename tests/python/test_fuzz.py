@@ -6,12 +6,9 @@ A hundred calls that are the same in every run; ``make fuzz`` tries many others.
 from __future__ import annotations
 
 import math
-import pickle
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -71,33 +68,6 @@ def pressed(
 
 
 @fuzz
-@given(shapes, bodies, grids, depths, st.tuples(*[st.floats(-1e-2, 1e-2)] * 2))
-def test_given_grid(
-    shape: nacre.types.Shape,
-    body: nacre.HalfSpace,
-    grid: nacre.Grid,
-    depth: float,
-    tilt: tuple[float, float],
-) -> None:
-    assume(np.isfinite(shape.gaps(grid)).any())
-    solution = pressed(shape, body, grid=grid, approach=depth, tilt=tilt)
-    assert solution is not None
-    # The displacement from the coefficients of the same body, and the gap from the definition.
-    displacement = nacre.Convolution(nacre.influence_coefficients(body, grid)).apply(
-        solution.pressure
-    )
-    largest = max(np.abs(displacement).max(), depth)
-    np.testing.assert_allclose(solution.displacement, displacement, rtol=0, atol=1e-10 * largest)
-    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
-    gap = shape.gaps(grid) + displacement - depth - tilt[0] * x - tilt[1] * y
-    touching = np.isfinite(gap)
-    assert (gap[touching] >= -1e-7 * largest).all()
-    assert (solution.pressure[~touching] == 0).all()
-    pressure, work = solution.pressure[touching], (solution.pressure * np.abs(displacement)).sum()
-    assert (pressure * np.abs(gap[touching])).sum() <= 1e-7 * work
-
-
-@fuzz
 @given(shapes, bodies, grids, depths, st.floats(0.0, 0.5), powers(-6, -3))
 def test_stresses_are_finite_and_linear_in_friction(
     shape: nacre.types.Shape,
@@ -119,27 +89,6 @@ def test_stresses_are_finite_and_linear_in_friction(
         assert np.isfinite(b).all()
         size = max(np.abs(a).max(), np.abs(c).max())
         np.testing.assert_allclose(b, a + friction * (c - a), rtol=0, atol=1e-10 * size)
-
-
-@fuzz
-@given(shapes, bodies, grids, depths)
-def test_files_and_pickles_keep_every_bit(
-    tmp_path_factory: pytest.TempPathFactory,
-    shape: nacre.types.Shape,
-    body: nacre.HalfSpace,
-    grid: nacre.Grid,
-    depth: float,
-) -> None:
-    assume(np.isfinite(shape.gaps(grid)).any())
-    solution = pressed(shape, body, grid=grid, approach=depth)
-    assert solution is not None
-    path: Path = tmp_path_factory.mktemp("fuzz") / "a.nc"
-    solution.save(path)
-    for again in (nacre.load(path), pickle.loads(pickle.dumps(solution))):
-        assert again.report.body == body
-        assert again.pressure.tobytes() == solution.pressure.tobytes()
-        assert again.gap.tobytes() == solution.gap.tobytes()
-        assert again.approach == solution.approach
 
 
 @fuzz

@@ -73,25 +73,6 @@ def test_derivatives_equal_differences_within_the_valid_step(solution: nacre.Sol
     assert gradient["load"] == pytest.approx(difference, rel=1e-5)
 
 
-def test_the_shear_of_an_interface_has_the_derivatives_of_differences() -> None:
-    shear = {"stress": "plane_shear", "interface": 0, "sharpness": 200.0}
-    numbers = {"body.layers[0].thickness": 2e-5, "body.substrate.young": 2e11, "shape.radius": 5e-3}
-
-    def found(values: dict[str, float]) -> nacre.types.Gradient:
-        thickness, young, radius = values.values()
-        layer = nacre.Layer(nacre.Elastic(400e9, 0.2), thickness)
-        body = nacre.HalfSpace(nacre.Elastic(young, 0.3), [layer])
-        cells = nacre.Grid((24, 24), (3e-4, 3e-4))
-        solution = nacre.solve(nacre.Sphere(radius), body, grid=cells, load=8.0, tolerance=1e-12)
-        return solution.gradient(shear, list(values), tolerance=1e-11)
-
-    gradient = found(numbers)
-    for path, value in numbers.items():
-        more, less = (found(numbers | {path: value * (1 + step)}).value for step in (1e-4, -1e-4))
-        # The contact keeps its cells, and differences are as good as their step.
-        assert gradient[path] == pytest.approx((more - less) / (2e-4 * value), rel=1e-4)
-
-
 def test_several_outputs_give_a_list(solution: nacre.Solution) -> None:
     stress = {"stress": "von_mises", "interface": 0, "side": "above"}
     outputs: list[Any] = [

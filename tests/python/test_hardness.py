@@ -36,22 +36,6 @@ def test_the_pressure_ends_at_the_hardness() -> None:
     assert LOADED.plastic_work == pytest.approx(work, rel=1e-12)
 
 
-def test_moments_that_the_hardness_does_not_bear_are_refused_before_the_iteration() -> None:
-    """On cells of one hardness, a load at the rim needs a strip of load over (hardness × side)."""
-    side, load = 5e-4, 100.0
-    strip = load / (LIMIT * side)
-    farthest = 0.5 * (side - strip)
-    told: list[object] = []
-    keywords: dict[str, Any] = {"load": load, "hardness": LIMIT, "progress": told.append}
-    # A strip of whole cells and part of one, at the centre of a cell: within half a cell.
-    for share in (1.06, -1.06):
-        with pytest.raises(ValueError, match=r"along x must be between -1\.99.*e-2 and 1\.99"):
-            CONTACT.solve(BALL, eccentricity=(share * farthest, None), **keywords)
-    with pytest.raises(ValueError, match="along y must be between"):
-        CONTACT.solve(BALL, approach=1e-7, moment=(None, 1e3), hardness=LIMIT)
-    assert not told
-
-
 def test_elastic_surfaces_have_no_hardness() -> None:
     elastic = CONTACT.solve(BALL, load=10.0)
     assert elastic.hardness is None
@@ -110,20 +94,8 @@ def test_wrong_hardness_is_refused(wrong: Any) -> None:
 
 
 def test_too_much_load_is_refused_with_both_numbers() -> None:
-    with pytest.raises(ValueError, match=r"hardness bears .* 2\.5\d*e1, was 1\.0\d*e2"):
+    with pytest.raises(ValueError, match=r"hardness can carry .* 25, was 100:"):
         CONTACT.solve(BALL, load=100.0, hardness=1e8)
-
-
-def test_stresses_are_those_of_the_limited_pressure() -> None:
-    """σ_zz at the surface is minus the pressure; far below, only the force counts, 3W/2πz²."""
-    surface = LOADED.stress(0.0)
-    assert surface.zz == pytest.approx(-LOADED.pressure, abs=1e-9 * LIMIT)
-    deep = 4e-3
-    below = LOADED.stress(deep, x=0.0, y=0.0)
-    # The force acts on a radius of a thirtieth of the depth, which changes (a/z)² at most.
-    assert float(below.zz.ravel()[0]) == pytest.approx(-150 / np.pi / deep**2, rel=5e-3)
-    summary = LOADED.stress_summary(friction=0.1, direction=(1, 0))
-    assert summary.layers[0].von_mises[0] > 0.5 * LIMIT
 
 
 @pytest.mark.parametrize("hardness", [LIMIT, np.full(GRID.shape, LIMIT)], ids=["number", "cells"])

@@ -143,20 +143,6 @@ def test_a_saved_case_is_loaded(tmp_path: Path, capsys: Capture) -> None:
     assert "--save must end in" in capsys.readouterr().err
 
 
-def test_the_reference_has_every_tip_and_key(capsys: Capture) -> None:
-    assert command("schema") == 0
-    told = capsys.readouterr().out
-    for kind in ("sphere", "area_function", "berkovich"):
-        assert f'`[tip]` with `kind = "{kind}"`' in told
-    assert '`[adhesion]` with `kind = "maugis"`' in told
-    assert "`work`: finite number [N/m]; required" in told
-    assert "half_angle" in told
-    assert "`approach`: finite number or a list of finite numbers, at most 10000 [m]" in told
-    assert command("schema", "--json") == 0
-    schema = json.loads(capsys.readouterr().out)["$defs"]
-    assert {"SphereTip", "JkrAdhesion", "Indent", "IndentCase"} <= schema.keys()
-
-
 def test_a_case_from_python_has_the_arguments_of_solve() -> None:
     case = Case.read(EXAMPLE)
     assert case.is_indentation

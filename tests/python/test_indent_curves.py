@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import copy
-import doctest
 import pickle
 import time
 from collections.abc import Callable
@@ -17,7 +16,6 @@ import pytest
 
 import nacre
 import nacre.indent
-from nacre.indent import _text, checks, curves
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve, read
 
@@ -180,6 +178,7 @@ def test_the_encoding_is_found(encoding: str, tmp_path: Path) -> None:
         ("Penetration depth in Å\tNormal Load {kN}", (10, 1e-6)),
         ("depth nm\tload gf", (1, 1 / 9.80665)),
         ("Depth Corrected (nm)\tRaw Load (mN)", (1, 1)),
+        ("Depth (in)\tForce (mN)", (1e-9 / 0.0254, 1)),
     ],
 )
 def test_units_stand_in_names_in_any_usual_form(
@@ -188,27 +187,6 @@ def test_units_stand_in_names_in_any_usual_form(
     text = names + "\n" + rows(sizes[0] * DEPTH, sizes[1] * FORCE, form="%.17g")
     (tmp_path / "a.txt").write_text(text, encoding="utf-8")
     is_whole(read(tmp_path / "a.txt"), timed=False)
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("nm", ("m", 1e-9)),
-        ("µm", ("m", 1e-6)),
-        ("um", ("m", 1e-6)),
-        ("in", ("m", 0.0254)),
-        ("kN", ("N", 1e3)),
-        ("ms", ("s", 1e-3)),
-        ("sec", ("s", 1.0)),
-        ("min", ("s", 60.0)),
-        ("V", None),
-        ("Pa", None),
-        ("N/m", None),
-        ("measured", None),
-    ],
-)
-def test_a_unit_is_a_length_a_force_or_a_time(name: str, expected: Any) -> None:
-    assert _text.unit_of(name) == expected
 
 
 def test_tables_are_chosen_by_number(tmp_path: Path) -> None:
@@ -223,6 +201,15 @@ def test_tables_are_chosen_by_number(tmp_path: Path) -> None:
     assert read(path, segment=1) == unloading
     np.testing.assert_allclose(loading.depth, 1e-9 * DEPTH[up], rtol=ROUNDING)
     np.testing.assert_allclose(unloading.force, 1e-3 * FORCE[down], rtol=ROUNDING)
+
+
+@pytest.mark.parametrize(("unit", "size"), [("ms", 1e-3), ("sec", 1.0), ("min", 60.0)])
+def test_times_have_units_too(unit: str, size: float, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text(f"h (nm)\tF (mN)\tt ({unit})\n" + rows(DEPTH, FORCE, TIME))
+    found = read(path).time
+    assert found is not None
+    np.testing.assert_allclose(found, size * TIME, rtol=ROUNDING)
 
 
 def test_a_time_that_falls_is_left_out(tmp_path: Path) -> None:
@@ -276,108 +263,51 @@ def test_the_decimal_mark_is_that_of_the_whole_table(
     )
 
 
+PAIRS, TRIPLES = "1\t2\n3\t4\n5\t6\n", "1\t1\t1\n2\t2\t2\n3\t3\t3\n"
 TWO = "Depth (nm)\tLoad (mN)\n1\t1\n2\t2\n3\t3\n"
+UNKNOWN: list[tuple[str, dict[str, Any], str]] = [
+    ("nothing\n", {}, "'.*a.txt' must hold a table of 3 rows of two or more numbers, found none"),
+    ("1\t2\n3\t4\n", {}, "must hold a table of 3 rows"),
+    (f"a\tb\n{PAIRS}", {}, r"depth must be given: '.*' has the columns 0 'a', 1 'b'; gi"),
+    (PAIRS, {}, "depth must be given: the 2 columns of .* their first row is 1, 2"),
+    (PAIRS, {"depth": 0, "force": 1}, "units must be given: .* for column 0, such"),
+    (f"Depth\tLoad\n{PAIRS}", {}, "units must be given: .* no unit of length for 'Depth'"),
+    (f"h (nm)\tF (V)\n{PAIRS}", {}, "force must be given: .* 1 'F .V.'; give force="),
+    (f"h (nm)\tF (V)\n{PAIRS}", {"force": 1}, "no unit of force for 'F .V.'"),
+    (f"h (nm)\tF (m)\n{PAIRS}", {"force": 1}, "force must have a unit of force, got 'm'"),
+    ("F (N)\n0,5;1\n1,5;2\n2,5;3\n", {}, r"2 columns .*line 2 below the line 'F \(N\)'"),
+    ("h (nm),F (N)\n0,5,1,5\n1,5,2,5\n2,5,3,5\n", {}, "4 columns .*below the line 'h .nm.,F"),
+    (f"h (nm)\th (nm)\tF (N)\n{TRIPLES}", {}, "depth must be given: 2 columns"),
+    (f"Depth A (nm)\tDepth B (nm)\tF (N)\n{TRIPLES}", {}, "depth must be given"),
+    ("h (nm)\tF (mN)\n1,125\t1\n2,125\t2\n3,125\t3\n", {}, "decimal must be given: .* in '1,125'"),
+    ("h (nm)\tF (mN)\n1,5\t1\n2.5\t2\n3\t3\n", {}, "decimal commas, has both '2.5' and '1"),
+    (f"{TWO}4\tx4\n", {}, "numbers in each row, line 5 has 'x4'"),
+    (f"{TWO}4\t4\t4\n", {}, "line 5 has 3 and the line before 2"),
+    (f"h (nm)\tF (mN)\tt (s)\n{TRIPLES}4\tnan\t4\n", {}, "force must be finite: line 5 of"),
+    (f"h (nm)\tF (mN)\tt (s)\n{TRIPLES}4\t\t4\n", {}, "force must be finite: .* has ''"),
+    (f"h (nm)\tF (mN)\tt (s)\n{TRIPLES}4\t4\t2\n", {"time": "t"}, "time must not fall, got 2"),
+    (TWO + TWO, {}, "segment must be given: .* 2 tables, 0 .3 rows from line 2., 1 .3 rows from l"),
+    (TWO, {"segment": 1}, "segment must be one of the file's, got 1: .* has 1 tables"),
+    (TWO, {"depth": "height"}, "depth must name one column, got 'height': .* 0 'Depth .nm.'"),
+    (TWO, {"depth": 2}, "depth must name one column, got 2"),
+    (TWO, {"depth": 1}, "depth must have a unit of length, got 'mN' for 'Load .mN.'"),
+    (TWO, {"units": {"depth": "parsec"}}, "units must give a length for 'depth'.*got 'parsec'"),
+    (TWO, {"units": {"depth": "mN"}}, "got 'mN' for 'depth'"),
+    (TWO, {"units": {"load": "mN"}}, "got 'mN' for 'load'"),
+    (TWO, {"decimal": ";"}, "decimal must be '.' or ',', got ';'"),
+    (TWO, {"delimiter": "ab"}, "delimiter must be one character, got 'ab'"),
+    (TWO, {"delimiter": ",", "decimal": ","}, "delimiter must differ from decimal"),
+    (TWO, {"delimiter": ";"}, "found none with ';' between"),
+    (TWO, {"encoding": "latin-99"}, "encoding must suit '.*a.txt', got 'latin-99'"),
+    ("\x00\x01\x02PK", {}, "must be text, got binary data"),
+    *(
+        (f"Depth [nm],Force [nN]\n1,1\n2,2\n3,3\n{row}\n5,5\n", {}, "in each row, line 5 has")
+        for row in ("4,", ",4", "4, ", '4,""', "x,4", "4,x")
+    ),
+]
 
 
-@pytest.mark.parametrize(
-    ("text", "options", "message"),
-    [
-        (
-            "nothing\n",
-            {},
-            "'.*a.txt' must hold a table of 3 rows of two or more numbers, found none",
-        ),
-        ("1\t2\n3\t4\n", {}, "must hold a table of 3 rows"),
-        (
-            "a\tb\n1\t2\n3\t4\n5\t6\n",
-            {},
-            r"depth must be given: '.*' has the columns 0 'a', 1 'b'; gi",
-        ),
-        (
-            "1\t2\n3\t4\n5\t6\n",
-            {},
-            "depth must be given: the 2 columns of .* their first row is 1, 2",
-        ),
-        (
-            "1\t2\n3\t4\n5\t6\n",
-            {"depth": 0, "force": 1},
-            "units must be given: .* for column 0, such",
-        ),
-        (
-            "Depth\tLoad\n1\t2\n3\t4\n5\t6\n",
-            {},
-            "units must be given: .* no unit of length for 'Depth'",
-        ),
-        ("h (nm)\tF (V)\n1\t2\n3\t4\n5\t6\n", {}, "force must be given: .* 1 'F .V.'; give force="),
-        ("h (nm)\tF (V)\n1\t2\n3\t4\n5\t6\n", {"force": 1}, "no unit of force for 'F .V.'"),
-        (
-            "h (nm)\tF (m)\n1\t2\n3\t4\n5\t6\n",
-            {"force": 1},
-            "force must have a unit of force, got 'm'",
-        ),
-        ("F (N)\n0,5;1\n1,5;2\n2,5;3\n", {}, r"2 columns .*line 2 below the line 'F \(N\)'"),
-        (
-            "h (nm),F (N)\n0,5,1,5\n1,5,2,5\n2,5,3,5\n",
-            {},
-            "4 columns .*below the line 'h .nm.,F .N.'",
-        ),
-        (
-            "h (nm)\th (nm)\tF (N)\n1\t1\t1\n2\t2\t2\n3\t3\t3\n",
-            {},
-            "depth must be given: 2 columns",
-        ),
-        (
-            "Depth A (nm)\tDepth B (nm)\tF (N)\n1\t1\t1\n2\t2\t2\n3\t3\t3\n",
-            {},
-            "depth must be given",
-        ),
-        (
-            "h (nm)\tF (mN)\n1,125\t1\n2,125\t2\n3,125\t3\n",
-            {},
-            "decimal must be given: .* as in '1,125'",
-        ),
-        (
-            "h (nm)\tF (mN)\n1,5\t1\n2.5\t2\n3\t3\n",
-            {},
-            "points or decimal commas, has both '2.5' and '1",
-        ),
-        ("h (nm)\tF (mN)\n1\t1\n2\t2\n3\t3\n4\tx4\n", {}, "numbers in each row, line 5 has 'x4'"),
-        ("h (nm)\tF (mN)\n1\t1\n2\t2\n3\t3\n4\t4\t4\n", {}, "line 5 has 3 and the line before 2"),
-        (
-            "h (nm)\tF (mN)\tt (s)\n1\t1\t1\n2\tnan\t2\n3\t3\t3\n",
-            {},
-            "force must be finite: line 3 of",
-        ),
-        (
-            "h (nm)\tF (mN)\tt (s)\n1\t1\t1\n2\t\t2\n3\t3\t3\n",
-            {},
-            "force must be finite: .* has ''",
-        ),
-        (
-            "h (nm)\tF (mN)\tt (s)\n1\t1\t3\n2\t2\t2\n3\t3\t3\n",
-            {"time": "t"},
-            "a.txt': time must not fall, got 2",
-        ),
-        (
-            TWO + TWO,
-            {},
-            "segment must be given: .* 2 tables, 0 .3 rows from line 2., 1 .3 rows from l",
-        ),
-        (TWO, {"segment": 1}, "segment must be one of the file's, got 1: .* has 1 tables"),
-        (TWO, {"depth": "height"}, "depth must name one column, got 'height': .* 0 'Depth .nm.'"),
-        (TWO, {"depth": 2}, "depth must name one column, got 2"),
-        (TWO, {"depth": 1}, "depth must have a unit of length, got 'mN' for 'Load .mN.'"),
-        (TWO, {"units": {"depth": "parsec"}}, "units must give a length for 'depth'.*got 'parsec'"),
-        (TWO, {"units": {"depth": "mN"}}, "got 'mN' for 'depth'"),
-        (TWO, {"units": {"load": "mN"}}, "got 'mN' for 'load'"),
-        (TWO, {"decimal": ";"}, "decimal must be '.' or ',', got ';'"),
-        (TWO, {"delimiter": "ab"}, "delimiter must be one character, got 'ab'"),
-        (TWO, {"delimiter": ",", "decimal": ","}, "delimiter must differ from decimal"),
-        (TWO, {"delimiter": ";"}, "found none with ';' between"),
-        (TWO, {"encoding": "latin-99"}, "encoding must suit '.*a.txt', got 'latin-99'"),
-        ("\x00\x01\x02PK", {}, "must be text, got binary data"),
-    ],
-)
+@pytest.mark.parametrize(("text", "options", "message"), UNKNOWN)
 def test_what_is_not_recognised_is_an_error_that_says_what_to_give(
     text: str, options: dict[str, Any], message: str, tmp_path: Path
 ) -> None:
@@ -697,50 +627,6 @@ def test_arguments_of_the_contact_point_are_checked(options: dict[str, Any], mes
     depth = np.linspace(0, 1e-7, 50)
     with pytest.raises(ValueError, match=message):
         contact_point(Curve(depth, STIFFNESS * depth**1.5), **options)
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "Curve",
-        "Curve.between",
-        "Curve.shifted",
-        "read",
-        "check",
-        "suspicious_units",
-        "contact_point",
-    ],
-)
-def test_its_examples_are_true(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    public: dict[str, Any] = {"Curve": Curve, "read": read, "check": check}
-    public |= {"suspicious_units": suspicious_units, "contact_point": contact_point}
-    for key, value in public.items():
-        monkeypatch.setattr(nacre.indent, key, value, raising=False)
-    thing: Any = public[name.split(".")[0]]
-    for attribute in name.split(".")[1:]:
-        thing = getattr(thing, attribute)
-    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-    example = doctest.DocTestParser().get_doctest(
-        thing.__doc__, {"nacre": nacre, "np": np}, name, None, 0
-    )
-    said: list[str] = []
-    result = doctest.DocTestRunner(optionflags=flags).run(example, out=said.append)
-    assert result.attempted > 0
-    assert result.failed == 0, "".join(said)
-
-
-def test_examples_of_the_module_that_reads_text_are_true() -> None:
-    assert doctest.testmod(_text).failed == 0
-    assert checks.SURE > 0
-    assert curves.LEAST_POINTS == 3
-
-
-@pytest.mark.parametrize("row", ["4,", ",4", "4, ", '4,""', "x,4", "4,x"])
-def test_a_missing_value_is_named_by_its_line(row: str, tmp_path: Path) -> None:
-    path = tmp_path / "a.txt"
-    path.write_text(f"Depth [nm],Force [nN]\n1,1\n2,2\n3,3\n{row}\n5,5\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="must hold numbers in each row, line 5 has"):
-        nacre.indent.read(path)
 
 
 @pytest.mark.parametrize("long", ["(", "_", '"', " ", "1", "a ", "1 ", "1,", '"a', "[nm] "])

@@ -11,18 +11,25 @@ from nbclient import NotebookClient
 
 from support import Patch
 
-FIRST = """\
+CELLS = (
+    """\
 import nacre
 steel = nacre.Elastic(young=210e9, poisson=0.3)
 solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
 axes = solution.plot()
-"""
-CELLS = (
-    FIRST,
+""",
     "axes = solution.plot_section('x')",
     "axes = solution.plot_3d()",
     "from nacre import plot; axes = plot.stress_section(solution, rows=8)",
 )
+
+
+STUDY = """\
+import sys; sys.modules["ipywidgets"] = None  # as if it were not installed
+loads = lambda load: {"shape": nacre.Sphere(5e-3), "body": steel, "load": load}
+study = nacre.sweep(loads, {"load": [10.0, 20.0]})
+nacre.display_units("N-m-Pa")
+"""
 
 
 def images(outputs: list[dict[str, Any]]) -> int:
@@ -36,21 +43,12 @@ def executed(folder: Path, *sources: str) -> Any:
     return NotebookClient(notebook, timeout=120, resources=resources).execute().cells
 
 
-def test_every_cell_of_a_notebook_shows_its_picture(tmp_path: Path, monkeypatch: Patch) -> None:
+def test_each_cell_shows_its_picture_and_a_study_nothing_without_widgets(
+    tmp_path: Path, monkeypatch: Patch
+) -> None:
     monkeypatch.delenv("MPLBACKEND", raising=False)
-    cells = executed(tmp_path, *CELLS)
-    shown = [images(cell["outputs"]) for cell in cells]
-    assert shown == [1] * len(CELLS), json.dumps(cells[-1]["outputs"])[:500]
-
-
-def test_a_study_shows_nothing_in_a_notebook_without_widgets(tmp_path: Path) -> None:
-    study = f"""{FIRST}
-import matplotlib.pyplot as plt; plt.close()
-import sys; sys.modules["ipywidgets"] = None  # as if it were not installed
-loads = lambda load: {{"shape": nacre.Sphere(5e-3), "body": steel, "load": load}}
-study = nacre.sweep(loads, {{"load": [10.0, 20.0]}})
-nacre.display_units("N-m-Pa")
-"""
-    (cell,) = executed(tmp_path, study)
-    assert [output["output_type"] for output in cell["outputs"]] == ["execute_result"], cell
-    assert cell["outputs"][0]["data"] == {"text/plain": "numbers are in N, m, Pa"}
+    *pictures, study = executed(tmp_path, *CELLS, STUDY)
+    shown = [images(cell["outputs"]) for cell in pictures]
+    assert shown == [1] * len(CELLS), json.dumps(pictures[-1]["outputs"])[:500]
+    assert [output["output_type"] for output in study["outputs"]] == ["execute_result"], study
+    assert study["outputs"][0]["data"] == {"text/plain": "numbers are in N, m, Pa"}

@@ -57,14 +57,6 @@ def test_the_map_says_once_that_it_repeats() -> None:
     assert solution.report.warnings == []
 
 
-def test_the_spectral_method_has_waves_exactly() -> None:
-    waves = nacre.influence_coefficients(BODY, GRID, "spectral")
-    contact = nacre.Contact(BODY, GRID, coefficients=waves)
-    full = contact.solve(MAP, load=0.006, tolerance=1e-12)
-    wave = np.pi * 1e-3 * np.cos(2 * np.pi * X) + np.pi * 5e-4 / 0.75 * np.cos(2 * np.pi * Y / 0.75)
-    np.testing.assert_allclose(full.pressure, 0.008 + wave, rtol=1e-11)
-
-
 def test_it_keeps_its_period_everywhere(tmp_path: Path) -> None:
     solution = nacre.solve(MAP, BODY, load=1e-3)
     for value in (GRID, MAP, MAP.shifted(0.1, 0.2), nacre.Contact(BODY, GRID), solution):

@@ -7,6 +7,7 @@ from how its input was made, or from the reader of the format alone.
 from __future__ import annotations
 
 import copy
+import math
 import os
 import pickle
 import re
@@ -14,7 +15,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +29,8 @@ from nacre.surfaces import read_profile
 Array = npt.NDArray[np.float64]
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
+FILM = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-3)])
+STEEL = nacre.Elastic(210e9, 0.3)
 DIGITS = 1e-5
 """Relative error of right values, which were printed with six digits and more."""
 
@@ -602,6 +605,104 @@ def test_a_result_is_printed_in_any_encoding(encoding: str) -> None:
     assert ("ν 0.3" if encoding in ("utf-8", "cp932", "gbk") else "nu 0.3") in said
 
 
+def run(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a program without other numbers of threads than those in `environment`."""
+    kept = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+    return subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=kept | environment
+    )
+
+
+THREADS = """
+import nacre
+from nacre.studies import default_threads
+steel, grid = nacre.Elastic(210e9, 0.3), nacre.Grid((16, 16), (1e-4, 1e-4))
+print(nacre.Contact(steel, grid).threads, default_threads(), nacre.Convolution([[1.0]]).threads)
+print(nacre.Contact(steel, grid, threads=3).threads)
+"""
+
+
+@MARK(
+    "environment",
+    [
+        {"NACRE_NUM_THREADS": "1"},
+        {"RAYON_NUM_THREADS": "1"},
+        {"OMP_NUM_THREADS": "1"},
+        {"OMP_NUM_THREADS": "1,8", "RAYON_NUM_THREADS": "0"},
+        {"NACRE_NUM_THREADS": "1", "RAYON_NUM_THREADS": "8", "OMP_NUM_THREADS": "8"},
+        {"NACRE_NUM_THREADS": " ", "RAYON_NUM_THREADS": "1", "OMP_NUM_THREADS": "8"},
+    ],
+    ids=str,
+)
+def test_the_environment_limits_the_threads(environment: dict[str, str]) -> None:
+    assert run(THREADS, **environment).stdout.split() == ["1", "1", "1", "3"]
+
+
+def test_the_environment_adds_no_threads() -> None:
+    free = run(THREADS).stdout
+    assert free.split()[-1] == "3"
+    assert run(THREADS, NACRE_NUM_THREADS="4000", OMP_NUM_THREADS="1").stdout == free
+    assert run(THREADS, OMP_NUM_THREADS="many").stdout == free
+
+
+def test_a_wrong_number_of_threads_is_named() -> None:
+    said = run(THREADS, NACRE_NUM_THREADS="two", OMP_NUM_THREADS="1").stderr
+    assert 'ValueError: NACRE_NUM_THREADS must be a whole number of at least 1, got "two"' in said
+
+
+LIMITED = """
+import resource, sys
+import numpy as np
+import nacre
+steel, shape = nacre.Elastic(210e9, 0.3), nacre.Sphere(5e-3)
+grid = nacre.Grid((256, 256), (2e-4, 2e-4))
+nacre.solve(shape, steel, load=1.0, grid=nacre.Grid((64, 64), (2e-4, 2e-4)))
+name, key, left, work = sys.argv[1:]
+with open("/proc/self/status") as status:
+    used = next(int(line.split()[1]) for line in status if line.startswith(key))
+resource.setrlimit(getattr(resource, name), ((used << 10) + (int(left) << 20),) * 2)
+kept = []
+contact = nacre.Contact(steel, grid) if work == "keep" else None
+try:
+    for _ in range(400):
+        if work == "solve":
+            nacre.solve(shape, steel, load=10.0, grid=nacre.Grid((2048, 2048), (2e-4, 2e-4)))
+        elif work == "plan":
+            kept.append(nacre.Contact(steel, grid))
+        elif work == "keep":
+            kept.append(contact.solve(shape, load=10.0))
+        elif work == "slide":
+            arguments = dict(load=10.0, friction=0.3, force=(1.0, 0.0), grid=grid)
+            kept.append(nacre.slide(shape, steel, **arguments))
+        else:
+            kept.append(nacre.Convolution.of_bodies(steel, grid).apply(np.ones((256, 256))))
+except MemoryError as error:
+    kept.clear()
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are those of Linux")
+@MARK("work", ["solve", "plan", "keep", "slide", "apply"])
+@MARK(
+    ("limit", "used", "left"),
+    [("RLIMIT_AS", "VmSize:", 60), ("RLIMIT_AS", "VmSize:", 170), ("RLIMIT_DATA", "VmData:", 100)],
+)
+def test_a_limit_of_memory_is_an_error(limit: str, used: str, left: int, work: str) -> None:
+    command = [sys.executable, "-c", LIMITED, limit, used, str(left), work]
+    # Otherwise glibc reserves 64 MiB for each of the first threads, beside what they use.
+    environment = {**os.environ, "MALLOC_ARENA_MAX": "1"}
+    ended = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert ended.returncode == 0, ended.stderr
+    said = re.fullmatch(
+        r"a grid of \[(\d+), \1\] cells needs about (\d+) MiB, and (\d+) MiB are available; take "
+        "fewer cells\n",
+        ended.stdout,
+    )
+    assert said is not None, ended.stdout
+    assert int(said[2]) >= int(said[3])
+
+
 def test_without_docstrings_all_works() -> None:
     program = "import nacre.case, nacre.cli; nacre.cli.main(['schema'])"
     run = subprocess.run([sys.executable, "-OO", "-c", program], capture_output=True)
@@ -659,3 +760,118 @@ def test_labelled_axes_are_put_in_order() -> None:
         plain("heights", image.rename(y="z"))
     with pytest.raises(TypeError, match="with a unit"):
         plain("heights", image.assign_attrs(units="µm"))
+
+
+# Solves.
+
+
+def printed(solution: nacre.Solution, name: str) -> str:
+    """Return the value of a row of the printed solution."""
+    rows = [line for line in str(solution).splitlines() if line.startswith(f"{name}  ")]
+    assert len(rows) == 1
+    return rows[0].removeprefix(name).strip()
+
+
+@MARK(
+    ("grid", "body", "counterbody", "datum"),
+    [
+        (nacre.Grid.line(256, 1e-3), STEEL, STEEL, "1 mm"),
+        (nacre.Grid.line(384, 1.5e-3), STEEL, None, "1.5 mm"),
+        (nacre.Grid.line(256, 1e-3), FILM, STEEL, "1 mm"),
+        (nacre.Grid.line(256, 1e-3), FILM, None, None),
+        (nacre.Grid((8, 512), (1e-3, 2e-3), periodic=(True, False)), STEEL, None, "2 mm"),
+        (nacre.Grid((8, 512), (1e-3, 2e-3), periodic=(True, False)), FILM, None, None),
+        (nacre.Grid((64, 64), (1e-3, 1e-3)), STEEL, None, None),
+    ],
+)
+def test_the_approach_of_a_line_contact_names_its_datum(
+    grid: nacre.Grid, body: nacre.Elastic, counterbody: nacre.Elastic | None, datum: str | None
+) -> None:
+    shape = nacre.Cylinder(10e-3) if sum(grid.shape) > 128 else nacre.Sphere(10e-3)
+    load = 1e4 if grid.is_line else 10.0
+    row = printed(nacre.solve(shape, body, counterbody, load=load, grid=grid), "approach")
+    if datum is None:
+        assert "away" not in row
+    else:
+        assert row.endswith(f"m, from the surface {datum} away")
+        assert "±" not in row
+
+
+def test_two_rollers_approach_as_johnson_says() -> None:
+    # Johnson (1985), section 5.6, from the approach of a grid: theory/influence.md, eq. (datum).
+    load, radii, width = 1e5, (15e-3, 30e-3), 2e-3
+    bodies = (STEEL, nacre.Elastic(100e9, 0.2))
+    radius = nacre.hertz.equivalent_radius(*radii)
+    hertz = nacre.hertz.Line(radius, nacre.hertz.contact_modulus(*bodies), load)
+    solution = nacre.solve(
+        nacre.Cylinder(radius), *bodies, load=load, grid=nacre.Grid.line(512, width)
+    )
+    approach, expected = solution.approach, 0.0
+    for one, of in zip(bodies, radii, strict=True):
+        compliance = load * (1 - one.poisson**2) / (np.pi * one.young)
+        approach += 2 * compliance * np.log(2 * of / (math.e * width))
+        expected += compliance * (2 * np.log(4 * of / hertz.half_width) - 1)
+    # The contact is 85 cells wide, of which the rim may err by a part.
+    assert abs(approach / expected - 1) < 1e-4
+
+
+ALUMINIUM, HARD = nacre.Elastic(2 * 23e9 * 1.31, 0.31), nacre.Elastic(2 * 82e9 * 1.28, 0.28)
+
+
+def rolled(friction: float, force: float, cells: int = 216, **keywords: Any) -> Any:
+    """Return a roller of aluminium on one of steel, half-width 0.1 mm, at a part of full slip."""
+    load = 16.2019e3
+    return nacre.roll(
+        nacre.Cylinder(25e-3),
+        ALUMINIUM,
+        HARD,
+        grid=nacre.Grid.line(cells, 0.216e-3),
+        load=load,
+        friction=friction,
+        force=(force * friction * load, None),
+        **keywords,
+    )
+
+
+@MARK(
+    ("friction", "creepage"),
+    # CONTACT prints 5.260e-4 for the first; the others by bisection with given creepages.
+    [(1e-4, 5.261e-4), (1e-3, 5.253e-4), (2e-3, 5.236e-4), (5e-3, 5.166e-4)],
+)
+def test_free_rolling_with_little_friction_converges(friction: float, creepage: float) -> None:
+    # The right values have four digits.
+    assert rolled(friction, 0.0).creepage[0] == pytest.approx(creepage, rel=2e-4)
+
+
+@MARK("friction", [1e-5, 1e-4, 7e-4, 3e-3])
+@MARK("force", [-0.97, 0.0, 0.4, 0.97])
+@MARK("direction", ["+y", "-y"])
+def test_rolling_with_little_friction_is_that_of_its_creepage(
+    friction: float, force: float, direction: Literal["+y", "-y"]
+) -> None:
+    found = rolled(friction, force, 150, direction=direction)
+    again = nacre.roll(
+        nacre.Cylinder(25e-3),
+        ALUMINIUM,
+        HARD,
+        grid=nacre.Grid.line(150, 0.216e-3),
+        load=found.normal.load,
+        friction=friction,
+        creepage=found.creepage,
+        direction=direction,
+    )
+    # Displacements within the tolerance of 1e-8 tell a force to 1e-8 of the load, or less.
+    np.testing.assert_allclose(again.force, found.force, atol=1e-8 * found.normal.load)
+
+
+def test_a_load_at_the_limit_of_the_hardness_is_refused() -> None:
+    shape = nacre.rough.random_surface(
+        (32, 32), (64e-6, 48e-6), hurst=0.8, rms_slope=0.08, shortest=8e-6, longest=48e-6, seed=2
+    )
+    hardness = 0.1 * STEEL.plane_strain_modulus
+    bears = hardness * 64e-6 * 48e-6
+    full = nacre.solve(shape, STEEL, load=(1 - 1e-9) * bears, hardness=hardness)
+    assert full.contact_area == pytest.approx(64e-6 * 48e-6)
+    for part in (1 - 1e-15, 1.0, 1 + 1e-15, 1.1):
+        with pytest.raises(ValueError, match="all of them yield, no approach is determined"):
+            nacre.solve(shape, STEEL, load=part * bears, hardness=hardness)

@@ -40,78 +40,29 @@ def largest_difference(a: nacre.Solution, b: nacre.Solution) -> float:
 
 # Controls.
 
-CONTROLS: dict[str, dict[str, Any]] = {
-    "load": {"load": LOAD},
-    "load, eccentricity x": {"load": LOAD, "eccentricity": (2e-5, None)},
-    "load, eccentricity y": {"load": LOAD, "eccentricity": (None, -1e-5)},
-    "load, eccentricity": {"load": LOAD, "eccentricity": (2e-5, -1e-5)},
-    "load, free under a centred force": {"load": LOAD, "eccentricity": (0.0, 0.0)},
-    "load, moment x": {"load": LOAD, "moment": (2e-4, None)},
-    "load, moment": {"load": LOAD, "moment": (2e-4, -1e-4)},
-    "load, tilt": {"load": LOAD, "tilt": (2e-3, -1e-3)},
-    "load, eccentricity x, moment y": {
-        "load": LOAD,
-        "eccentricity": (2e-5, None),
-        "moment": (None, -1e-4),
-    },
-    "load, tilt x, eccentricity y": {
-        "load": LOAD,
-        "tilt": (2e-3, None),
-        "eccentricity": (None, -1e-5),
-    },
-    "approach": {"approach": 5e-7},
-    "approach, tilt": {"approach": 5e-7, "tilt": (2e-3, -1e-3)},
-    "approach, moment x": {"approach": 5e-7, "moment": (1e-4, None)},
-    "approach, moment": {"approach": 5e-7, "moment": (1e-4, -5e-5)},
-    "approach, moment x, tilt y": {"approach": 5e-7, "moment": (1e-4, None), "tilt": (None, 1e-3)},
-}
+CONTROLS: list[dict[str, Any]] = [
+    {"load": LOAD, "eccentricity": (2e-5, None), "moment": (None, -1e-4)},
+    {"load": LOAD, "tilt": (2e-3, None), "eccentricity": (None, -1e-5)},
+    {"approach": 5e-7, "moment": (1e-4, None), "tilt": (None, 1e-3)},
+]
+"""All mixtures are those of tests/contact/invariants.rs."""
 
 
-@pytest.mark.parametrize("controls", CONTROLS.values(), ids=CONTROLS.keys())
-def test_what_is_asked_is_met_and_the_motion_gives_the_same_pressure(
-    controls: dict[str, Any],
-) -> None:
+@pytest.mark.parametrize("controls", CONTROLS)
+def test_what_is_asked_is_met(controls: dict[str, Any]) -> None:
     solution = CONTACT.solve(PARABOLOID, **controls)
     assert solution.report.converged
-    if "load" in controls:
-        assert solution.load == pytest.approx(controls["load"], rel=BALANCE)
-    else:
-        assert solution.approach == controls["approach"]
-    for axis, side in enumerate(GRID.size):
-        asked = {
-            name: controls.get(name, (None, None))[axis]
-            for name in ("eccentricity", "moment", "tilt")
-        }
-        free = BALANCE * 0.5 * side
-        if (eccentricity := asked["eccentricity"]) is not None:
-            assert solution.eccentricity[axis] == pytest.approx(eccentricity, abs=free)
-        elif (moment := asked["moment"]) is not None:
-            assert solution.moment[axis] == pytest.approx(moment, abs=free * solution.load)
-        else:
-            assert solution.tilt[axis] == (asked["tilt"] or 0.0)
-    motion: dict[str, Any] = {"approach": solution.approach, "tilt": solution.tilt}
-    for algorithm in ("cascade", "polonsky-keer"):
-        again = CONTACT.solve(PARABOLOID, algorithm=algorithm, **motion)
-        assert largest_difference(again, solution) < CONVERGED
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_a_positive_eccentricity_gives_a_positive_tilt(axis: int) -> None:
-    eccentricity = (2e-5, 0.0) if axis == 0 else (0.0, 2e-5)
-    tilt = CONTACT.solve(PARABOLOID, load=LOAD, eccentricity=eccentricity).tilt
-    assert tilt[axis] == pytest.approx(2e-5 / 5e-3, rel=1e-3)  # e/R, and the grid's error
-    assert abs(tilt[1 - axis]) < SIMILAR
-
-
-def test_an_approach_that_touches_nothing_is_an_answer() -> None:
-    for solution in (
-        CONTACT.solve(BALL, approach=-1e-6),
-        nacre.solve(BALL, COATED, approach=-1e-6),
-    ):
-        assert solution.report.termination == "converged"
-        assert solution.load == solution.peak_pressure == solution.contact_area == 0.0
-        assert solution.approach == -1e-6
-        assert not solution.pressure.any()
+    assert solution.report.motion == controls
+    free = BALANCE * 0.5 * max(GRID.size) * solution.load
+    for name, asked in controls.items():
+        found = getattr(solution, name)
+        if name in ("load", "approach"):
+            assert found == pytest.approx(asked, rel=BALANCE)
+            continue
+        scale = {"eccentricity": solution.load, "moment": 1.0, "tilt": 0.0}[name]
+        for one, due in zip(found, asked, strict=True):
+            assert due is None or scale * abs(one - due) <= free
+            assert due is None or scale > 0 or one == due
 
 
 @pytest.mark.parametrize("field", ["gap", "displacement", "pressure"])
@@ -124,25 +75,10 @@ def test_no_field_holds_nan_and_only_gaps_are_infinite(field: str) -> None:
     assert not solution.in_contact[cannot_touch].any()
 
 
-@pytest.mark.parametrize(
-    ("young", "load"), [(210e9, 1e300), (210e9, 1e-300), (1e-300, 1.0), (1e300, 1.0)]
-)
-def test_no_number_is_so_large_that_nan_is_returned(young: float, load: float) -> None:
-    contact = nacre.Contact(nacre.Elastic(young, 0.3), GRID)
-    try:
-        solution = quiet(contact.solve, BALL, load=load)
-    except (ValueError, nacre.ConvergenceError):
-        return
-    assert np.isfinite(solution.pressure).all()
-    assert np.isfinite(solution.gap).all()
-    assert math.isfinite(solution.approach)
-    assert solution.load == pytest.approx(load, rel=BALANCE)
-
-
 # Bodies.
 
 
-def test_bodies_are_half_spaces_that_can_be_exchanged() -> None:
+def test_a_material_is_a_half_space_and_both_bodies_are_pressed() -> None:
     def pressed(*bodies: Any) -> nacre.Solution:
         return nacre.solve(BALL, *bodies, load=LOAD, grid=GRID)
 
@@ -151,9 +87,6 @@ def test_bodies_are_half_spaces_that_can_be_exchanged() -> None:
     # Two equal bodies are one of half the modulus.
     one_of_half = pressed(nacre.Elastic(105e9, 0.3))
     assert largest_difference(pressed(STEEL, STEEL), one_of_half) < SIMILAR
-    one, other = pressed(COATED, STEEL), pressed(STEEL, COATED)
-    assert largest_difference(one, other) < SIMILAR
-    assert one.approach > 1.5 * pressed(COATED).approach
 
 
 # The grid that is chosen.
@@ -410,27 +343,6 @@ def test_a_warning_can_be_made_an_error() -> None:
 # Enough cells, and enough of them in contact, for the work to be shared among threads.
 FINE_GRID = nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4))
 HEAVY = 250.0
-
-
-@pytest.mark.slow
-def test_solves_on_one_plan_at_once_give_the_same_bits() -> None:
-    contact = nacre.Contact(COATED, FINE_GRID, threads=2)
-    loads = [HEAVY, 0.9 * HEAVY, 0.8 * HEAVY, 0.7 * HEAVY]
-
-    def pressure(load: float) -> bytes:
-        return contact.solve(BALL, load=load).pressure.tobytes()
-
-    with ThreadPoolExecutor(max_workers=3) as pool:
-        at_once = list(pool.map(pressure, loads))
-    assert at_once == [pressure(load) for load in loads]
-
-
-def test_the_number_of_threads_changes_no_bit() -> None:
-    one, three = (nacre.Contact(COATED, FINE_GRID, threads=threads) for threads in (1, 3))
-    assert (one.threads, three.threads) == (1, 3)
-    np.testing.assert_array_equal(
-        one.solve(BALL, load=HEAVY).pressure, three.solve(BALL, load=HEAVY).pressure
-    )
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ import copy
 import json
 import pickle
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ import nacre
 import results
 from bodies import BALL, STEEL
 from nacre import values
-from nacre._journal import Journal
 from results import solved
 
 GRID = nacre.Grid((24, 20), (3e-4, 2e-4), (1e-5, -2e-6))
@@ -168,24 +166,6 @@ def test_the_name_of_a_layer_is_kept_and_may_be_missing() -> None:
     # As data that were written before layers had names.
     assert "name" not in values.encode(plain)["Layer"]
     assert values.decode(values.encode(plain)) == plain
-
-
-def test_a_newer_journal_is_refused_by_the_version_that_wrote_it(tmp_path: Path) -> None:
-    path = tmp_path / "study.journal"
-    with Journal(path) as journal:
-        journal.add({"key": "a", "values": {}})
-    head, record = path.read_text().splitlines()
-    assert head == f"nacre {nacre.__version__}, journal of format 1"
-    checksum, _, text = record.partition(" ")
-    assert len(checksum) == 16
-    assert json.loads(text) == {"key": "a", "values": {}}
-    with Journal(path) as journal:
-        assert journal.records == {"a": {"key": "a", "values": {}}}
-    newer = f"nacre 7.3.1, journal of format 2\n{record}\n"
-    path.write_text(newer)
-    with pytest.raises(ValueError, match=r"has format 2, written by nacre 7\.3\.1"), Journal(path):
-        pass
-    assert path.read_text() == newer
 
 
 @pytest.mark.parametrize(

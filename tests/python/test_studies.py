@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import json
 import math
 import multiprocessing
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
@@ -25,21 +27,21 @@ import pytest
 import xarray
 
 import nacre
-from nacre import _progress, design
-from nacre._journal import Journal
+from bodies import BALL, ROD, STEEL, coated
+from nacre import design
+from support import Capture, Patch, python
 
 Output = str | Callable[[Any], Any]
-STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
 
 
 def ball(thickness: float, young: float, load: float = 10.0) -> dict[str, Any]:
-    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(young, 0.3), thickness)])
-    return {"shape": nacre.Sphere(5e-3), "body": body, "grid": GRID, "load": load}
+    return {"shape": BALL, "body": coated(young, thickness), "grid": GRID, "load": load}
 
 
 THICKNESS, YOUNG = [5e-6, 2e-5, 4e-5], [105e9, 420e9]
 PARAMETERS = {"thickness": THICKNESS, "young": YOUNG}
+ONE = {"thickness": [1e-5], "young": [1e11]}
 
 
 def mean_pressure(solution: nacre.Solution) -> float:
@@ -143,13 +145,11 @@ def test_friction_without_a_direction_is_refused_before_a_solve() -> None:
         )
     assert all(message in str(error) for error in study.error.values.ravel())
     with pytest.raises(ValueError, match=message):
-        design.coating_chart(
-            nacre.Sphere(5e-3), STEEL, thickness=[2e-5], young=YOUNG, friction=0.2, load=1.0
-        )
+        design.coating_chart(BALL, STEEL, thickness=[2e-5], young=YOUNG, friction=0.2, load=1.0)
     # A cylinder has a rolling direction.
     grid = nacre.Grid.line(96, 1.2e-4)
     chart = design.coating_chart(
-        nacre.Cylinder(5e-3),
+        ROD,
         STEEL,
         thickness=[2e-5],
         young=[420e9],
@@ -157,15 +157,14 @@ def test_friction_without_a_direction_is_refused_before_a_solve() -> None:
         grid=grid,
         load=1e4,
     )
-    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.3), 2e-5)])
-    solution = nacre.solve(nacre.Cylinder(5e-3), body, grid=grid, load=1e4)
+    solution = nacre.solve(ROD, coated(420e9, 2e-5), grid=grid, load=1e4)
     field = solution.stress([0.0, 2e-5], side="above", friction=0.2, direction=(0, 1))
     assert chart.coating_tension.item() == field.peak("tension")[0]
 
 
 def test_a_bare_body_has_no_stress_in_a_coating() -> None:
     study = nacre.sweep(
-        {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": GRID},
+        {"shape": BALL, "body": STEEL, "grid": GRID},
         {"load": [5.0]},
         outputs=STRESSES,
     )
@@ -177,9 +176,7 @@ def test_a_bare_body_has_no_stress_in_a_coating() -> None:
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")  # fork, Python 3.12
 @pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")  # JAX, which other tests have begun
 @pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
-def test_the_executor_changes_no_bit(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_executor_changes_no_bit(kind: str, tmp_path: Path, monkeypatch: Patch) -> None:
     if kind not in ("one thread", "dask", *multiprocessing.get_all_start_methods()):
         pytest.skip(f"no {kind} here")
     name = f"study_on_{kind.replace(' ', '_')}"
@@ -228,7 +225,7 @@ def test_parameters_that_share_a_dimension_vary_together() -> None:
 
 @pytest.mark.filterwarnings("ignore:.* cases have warnings")  # few cells under the small sphere
 def test_shapes_and_pairs_are_parameters_with_labels() -> None:
-    shapes = {"small": nacre.Sphere(1e-3), "large": nacre.Sphere(5e-3)}
+    shapes = {"small": nacre.Sphere(1e-3), "large": BALL}
     tilts = [(None, None), (1e-4, None)]
     case = {"body": STEEL, "load": 5.0, "grid": GRID}
     study = nacre.sweep(case, {"shape": shapes, "tilt": tilts}, outputs=["peak_pressure"])
@@ -240,7 +237,7 @@ def test_shapes_and_pairs_are_parameters_with_labels() -> None:
 
 
 def test_each_solve_has_one_thread_unless_the_case_says_otherwise(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: Patch,
 ) -> None:
     asked = []
 
@@ -274,7 +271,7 @@ def test_a_failure_is_recorded_and_stops_nothing(tmp_path: Path) -> None:
 
     limit = 1.0
     with pytest.warns(nacre.NacreWarning, match="1 of 1 cases failed"):
-        study = nacre.sweep(ball, {"thickness": [1e-5], "young": [1e11]}, outputs=[fails, "tilt"])
+        study = nacre.sweep(ball, ONE, outputs=[fails, "tilt"])
     assert "math domain error" in str(study.error.item())
     assert np.isnan(study.fails).all()
     assert study.tilt.sizes["axis"] == 2
@@ -294,7 +291,7 @@ def test_warnings_of_the_cases_are_in_the_dataset_and_counted_by_kind(tmp_path: 
 
 def test_estimated_errors_stand_beside_their_quantities() -> None:
     grid = nacre.Grid((64, 64), (2e-4, 2e-4))
-    case: dict[str, Any] = {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": grid}
+    case: dict[str, Any] = {"shape": BALL, "body": STEEL, "grid": grid}
     study = nacre.sweep(case, {"load": [5.0, 10.0]}, outputs={"peak": "peak_pressure"})
     assert study.peak_discretisation.attrs["units"] == "Pa"
     for load in (5.0, 10.0):
@@ -313,7 +310,7 @@ def test_estimated_errors_stand_beside_their_quantities() -> None:
     assert few.load_discretisation.item() == pytest.approx(5.0)
 
 
-def count_solves(monkeypatch: pytest.MonkeyPatch) -> list[None]:
+def count_solves(monkeypatch: Patch) -> list[None]:
     solves: list[None] = []
 
     def solve(**arguments: Any) -> nacre.Solution:
@@ -324,7 +321,7 @@ def count_solves(monkeypatch: pytest.MonkeyPatch) -> list[None]:
     return solves
 
 
-def test_what_is_finished_is_not_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_finished_is_not_repeated(tmp_path: Path, monkeypatch: Patch) -> None:
     solves = count_solves(monkeypatch)
     store = tmp_path / "study.nc"
     first = nacre.sweep(ball, PARAMETERS, store=store)
@@ -339,60 +336,8 @@ def test_what_is_finished_is_not_repeated(tmp_path: Path, monkeypatch: pytest.Mo
     assert len(solves) == 16  # the same case twice in one study
 
 
-def test_a_changed_output_function_is_another_question(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    solves = count_solves(monkeypatch)
-    case = {"thickness": [1e-5], "young": [1e11]}
-    long = np.ones(5000)  # its repr leaves out the middle
-    changed = long.copy()
-    changed[2500] = 2.0
-    for weights in (long, changed, changed.copy()):
-
-        def total(solution: nacre.Solution, weights: Any = weights) -> float:
-            return float(weights.sum()) * solution.load
-
-        study = nacre.sweep(ball, case, outputs=[total], store=tmp_path / "study.nc")
-        assert study.total.item() == pytest.approx(weights.sum() * 10.0, rel=1e-9)
-    assert len(solves) == 2
-
-
-class Scaled:
-    """An object of the user's, whose method is an output."""
-
-    def __init__(self, factor: float) -> None:
-        self.factor = {"load": factor}
-
-    def total(self, solution: nacre.Solution) -> float:
-        return solution.load * self.factor["load"]
-
-
-def test_a_closure_or_a_bound_object_that_changes_is_another_question(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    solves = count_solves(monkeypatch)
-    case = {"thickness": [1e-5], "young": [1e11]}
-    scale, nested = Scaled(2.0), {"factor": [2.0]}
-    outputs: dict[str, Output] = {
-        "bound": scale.total,
-        "inside": lambda solution: nested["factor"][0] * solution.load,
-    }
-
-    def found() -> list[float]:
-        study = nacre.sweep(ball, case, outputs=outputs, store=tmp_path / "study.nc")
-        return [round(study[name].item() / 10.0, 6) for name in outputs]
-
-    assert found() == found() == [2.0, 2.0]
-    assert len(solves) == 1
-    nested["factor"] = [3.0]
-    assert found() == [2.0, 3.0]
-    scale.factor["load"] = 4.0
-    assert found() == found() == [4.0, 3.0]
-    assert len(solves) == 3
-
-
 def test_what_cannot_be_compared_is_solved_again_or_has_a_version(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: Patch
 ) -> None:
     solves = count_solves(monkeypatch)
     factors = (factor for factor in (1.0, 2.0, 3.0, 4.0))  # a generator: nothing can look into it
@@ -401,7 +346,7 @@ def test_what_cannot_be_compared_is_solved_again_or_has_a_version(
         return solution.load * next(factors)
 
     def found(version: str | None = None) -> float:
-        case = {"thickness": [1e-5], "young": [1e11]}
+        case = ONE
         store = tmp_path / "study.nc"
         study = nacre.sweep(ball, case, outputs=[scaled], store=store, version=version)
         return float(round(study.scaled.item() / 10.0, 6))
@@ -428,6 +373,12 @@ CHANGES = {
     "type": ("def g(k):\n def f(s): return k\n return f\nf = g(1)", "g(1)", "g(1.0)"),
     "set": ("def g(k):\n return lambda s: k\nf = g({'a', 'b'})", "'b'", "'c'"),
     "array": ("import numpy\ndef g(k):\n return lambda s: k\nf = g(numpy.ones(3))", "3", "4"),
+    "long array": (  # whose repr leaves out the middle
+        "import numpy\nw = numpy.ones(5000)\nw[2500] = 1.5\ndef g(k):\n return lambda s: k.sum()\n"
+        "f = g(w)",
+        "1.5",
+        "2.5",
+    ),
     "function": ("def g(k):\n return lambda s: k(s)\nf = g(lambda s: s + 1)", "+ 1", "+ 2"),
     "object": (
         "class A:\n def m(self, s): return self.k\na = A()\na.k = 1\nf = a.m",
@@ -446,6 +397,7 @@ CHANGES = {
         "w(1)",
         "w(2)",
     ),
+    "nested": ("def g(k):\n return lambda s: k[0]['a']\nf = g([{'a': 1}])", "1", "2"),
     "itself": ("def g(k):\n def f(s): return f(s) + k\n return f\nf = g(1)", "g(1)", "g(2)"),
 }
 
@@ -458,48 +410,56 @@ UNKNOWN = {
     ),
     "f (has no source text)": "f = eval('lambda s: 1')",
 }
-IDENTITIES = """
-import importlib, json, sys
-from nacre._identity import identified
 
-names = json.loads(sys.argv[1])
-print(json.dumps({name: identified({"f": importlib.import_module(name).f}, {}) for name in names}))
+
+QUESTIONS = """
+import importlib, sys, warnings
+import nacre
+
+warnings.simplefilter("always")
+case = {"shape": nacre.Sphere(5e-3), "body": nacre.Elastic(2e11, 0.3)}
+case["grid"] = nacre.Grid((8, 8), (2e-4, 2e-4))
+for name in sys.argv[1:]:
+    f = importlib.import_module(name).f
+    nacre.sweep(case, {"load": [9.0]}, outputs={"f": f}, store=f"{name}.nc", progress=False)
 """
 
 
-def identities(folder: Path, sources: dict[str, str], seed: int) -> dict[str, Any]:
-    """Return data and unknown parts of the function `f` of each module, in another process."""
-    names = {kind: f"user{number}" for number, kind in enumerate(sources)}
-    for kind, source in sources.items():
-        (folder / f"{names[kind]}.py").write_text(source)
-    command = [sys.executable, "-c", IDENTITIES, json.dumps(list(names.values()))]
+def asked(folder: Path, sources: Iterable[str], seed: int) -> tuple[list[int], str]:
+    """Return how many cases studies with the functions `f` of modules have kept, and warnings.
+
+    They run in another process, and each study has its store.
+    """
+    names = []
+    for number, source in enumerate(sources):
+        names.append(f"user{number}")
+        (folder / f"user{number}.py").write_text(source)
     environment = os.environ | {"PYTHONHASHSEED": str(seed), "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
-    found = json.loads(done.stdout)
-    return {kind: found[name] for kind, name in names.items()}
+    done = python("-c", QUESTIONS, *names, folder=folder, env=environment)
+    assert done.returncode == 0, done.stderr
+    return [len(journaled(folder / f"{name}.journal")) for name in names], done.stderr
 
 
 def test_a_changed_function_is_another_one_and_the_same_is_so_in_every_process(
     tmp_path: Path,
 ) -> None:
-    sources = {kind: source for kind, (source, _, _) in CHANGES.items()}
-    changed = {kind: source.replace(old, new) for kind, (source, old, new) in CHANGES.items()}
+    sources = [source for source, _, _ in CHANGES.values()]
+    changed = [source.replace(old, new) for source, old, new in CHANGES.values()]
     assert all(source.count(old) == 1 for source, old, _ in CHANGES.values())
-    first = identities(tmp_path, sources, 1)
-    assert first == identities(tmp_path, sources, 2)
-    others = identities(tmp_path, changed, 1)
-    for kind in CHANGES:
-        assert first[kind][1] == others[kind][1] == [], kind
-        assert json.dumps(first[kind][0]) != json.dumps(others[kind][0]), kind
+    for these, seed, kept in ((sources, 1, 1), (sources, 2, 1), (changed, 1, 2)):
+        found, warned = asked(tmp_path, these, seed)
+        assert dict(zip(CHANGES, found, strict=True)) == dict.fromkeys(CHANGES, kept)
+        assert "cannot be compared" not in warned
 
 
 def test_what_a_function_hides_is_known_to_be_unknown(tmp_path: Path) -> None:
-    found = identities(tmp_path, UNKNOWN, 1)
-    assert {reason: [reason] for reason in UNKNOWN} == {k: one[1] for k, one in found.items()}
+    _, warned = asked(tmp_path, UNKNOWN.values(), 1)
+    for reason in UNKNOWN:
+        assert f"cannot be compared with an earlier run: {reason}; all cases" in warned
 
 
 def test_a_log_gets_a_line_now_and_then(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, capsys: Capture, monkeypatch: Patch
 ) -> None:
     for name in ("FORCE_COLOR", "TTY_COMPATIBLE"):
         monkeypatch.delenv(name, raising=False)  # Rich would take any stream for a terminal
@@ -511,20 +471,19 @@ def test_a_log_gets_a_line_now_and_then(
     assert lines[0] == "nacre.sweep: 2 of 6 cases (2 of 6 found in the store)"
     assert lines[-1].startswith("nacre.sweep: 6 of 6 cases (2 of 6 found in the store), 0:00:0")
     assert len(lines) == 2
-    monkeypatch.setattr(_progress, "EVERY", 0.0)
-    nacre.sweep(ball, PARAMETERS, outputs=["load"])
+    with monkeypatch.context() as patch:  # a clock on which each look is a minute later
+        now, minutes = time.monotonic(), itertools.count(0, 60)
+        patch.setattr("time.monotonic", lambda: now + next(minutes))
+        nacre.sweep(ball, PARAMETERS, outputs=["load"])
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 7  # one for each case, and the last
-    assert lines[2].startswith("nacre.sweep: 3 of 6 cases, 0:00:0")
-    assert " left" in lines[2]
+    assert re.match(r"nacre.sweep: 3 of 6 cases, 0:\d\d:00 so far, about .* left", lines[2])
     nacre.sweep(ball, PARAMETERS, progress=False)
     assert capsys.readouterr().err == ""
 
 
-def test_failed_cases_are_tried_again_when_asked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    store, case = tmp_path / "study.nc", {"thickness": [1e-5], "young": [1e11]}
+def test_failed_cases_are_tried_again_when_asked(tmp_path: Path, monkeypatch: Patch) -> None:
+    store, case = tmp_path / "study.nc", ONE
 
     def exhausted(**_: object) -> None:
         raise MemoryError("no room")
@@ -540,7 +499,7 @@ def test_failed_cases_are_tried_again_when_asked(
 
 
 def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: Patch
 ) -> None:
     store, journal = tmp_path / "study.nc", tmp_path / "study.journal"
     expected = nacre.sweep(ball, PARAMETERS, store=store)
@@ -558,16 +517,12 @@ def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
     journal.write_bytes(b"{" + whole)
     with pytest.raises(ValueError, match="is no journal of a study: line 1"):
         nacre.sweep(ball, PARAMETERS, store=store)
-    journal.write_bytes(b"A text that is no journal")
-    with pytest.raises(ValueError, match="is no journal of a study: line 1"):
-        nacre.sweep(ball, PARAMETERS, store=store)
-    assert journal.read_bytes() == b"A text that is no journal"
 
 
 def test_only_a_study_is_continued_or_replaced(tmp_path: Path) -> None:
-    one = {"thickness": [1e-5], "young": [1e11]}
+    one = ONE
     store, journal = tmp_path / "study.nc", tmp_path / "study.journal"
-    saved = nacre.solve(nacre.Sphere(5e-3), nacre.Elastic(210e9, 0.3), load=1.0).save(store)
+    saved = nacre.solve(BALL, STEEL, load=1.0).save(store)
     for content in (saved.read_bytes(), b"", b"a text"):
         store.write_bytes(content)
         with pytest.raises(ValueError, match="store must be a new file or a study, got"):
@@ -586,73 +541,49 @@ def test_only_a_study_is_continued_or_replaced(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "content",
     [
-        *(b"{", b"{}", b'{"a": 1}', b'{"key": "a", "values": 3}\n', b"[]", b"\n", b"nacre "),
-        *(
-            b"nacre is a word\n",
-            b"nacre 0.1.0, journal of format x\n",
-            b"nacre 0.1, jou",
-            b"\xff\n",
-        ),
+        *(b"{", b"{}", b'{"a": 1}', b'{"key": "a", "values": 3}\n', b"[]", b"\n", b"no journal"),
+        *(b"nacre is a word\n", b"nacre 0.1.0, journal of format x\n"),
+        *(b"nacre 0.1, jou", b"\xff\n"),
     ],
 )
 def test_a_foreign_file_is_no_journal_and_stays_as_it_is(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "study.journal"
     path.write_bytes(content)
-    if content == b"nacre ":  # the first line may have been cut there
-        with Journal(path) as journal:
-            assert journal.records == {}
-        return
-    with pytest.raises(ValueError, match="is no journal of a study: line 1"), Journal(path):
-        pass
+    with pytest.raises(ValueError, match="is no journal of a study: line 1"):
+        nacre.sweep(ball, ONE, store=tmp_path / "study.nc")
     assert path.read_bytes() == content
 
 
-def test_a_journal_with_a_flipped_bit_is_refused_or_solved_again(tmp_path: Path) -> None:
-    journal = tmp_path / "study.journal"
-    records = [
-        {"key": str(k), "parameters": {"load": 1.5}, "values": {"load": [1.5 * k, np.nan]}}
-        for k in range(2)
-    ]
-    with Journal(journal) as kept:
-        for record in records:
-            kept.add(record)
-    whole = journal.read_bytes()
-    refused = 0
-    for bit in range(8 * len(whole)):
-        flipped = bytearray(whole)
-        flipped[bit // 8] ^= 1 << bit % 8
-        journal.write_bytes(flipped)
-        try:
-            with Journal(journal) as kept:
-                found = kept.records
-        except ValueError as error:
-            refused += "study.journal" in str(error)
-            continue
-        for key, record in found.items():
-            assert repr(record) == repr(records[int(key)])
-    assert refused > 4 * len(whole) / 2 * 0.9  # half of the lines are not the last one
+def test_a_newer_journal_is_refused_by_the_version_that_wrote_it(tmp_path: Path) -> None:
+    store, path = tmp_path / "study.nc", tmp_path / "study.journal"
+    path.write_bytes(b"nacre ")  # the first line may have been cut there
+    nacre.sweep(ball, ONE, store=store)
+    head, record = path.read_text().splitlines()
+    assert head == f"nacre {nacre.__version__}, journal of format 1"
+    assert len(record.partition(" ")[0]) == 16
+    newer = f"nacre 7.3.1, journal of format 2\n{record}\n"
+    path.write_text(newer)
+    with pytest.raises(ValueError, match=r"has format 2, written by nacre 7\.3\.1"):
+        nacre.sweep(ball, ONE, store=store)
+    assert path.read_text() == newer
 
 
-def test_a_journal_on_a_full_disk_stays_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    journal = tmp_path / "study.journal"
-    with Journal(journal) as kept:
-        kept.add({"key": "a", "values": {"load": 1.0}})
-        before = journal.read_bytes()
+def test_a_journal_on_a_full_disk_stays_whole(tmp_path: Path, monkeypatch: Patch) -> None:
+    store, journal = tmp_path / "study.nc", tmp_path / "study.journal"
+    nacre.sweep(ball, ONE, store=store)
+    before = journal.read_bytes()
 
-        def fail(*_: object) -> None:
-            raise OSError("no space left on device")
+    def fail(*_: object) -> None:
+        raise OSError("no space left on device")
 
-        with monkeypatch.context() as patch:
-            patch.setattr("os.fsync", fail)
-            with pytest.raises(OSError, match="no space"):
-                kept.add({"key": "b", "values": {"load": 2.0}})
-        assert journal.read_bytes() == before
-        assert list(kept.records) == ["a"]
-        kept.add({"key": "c", "values": {"load": 3.0}})
-    with Journal(journal) as kept:
-        assert list(kept.records) == ["a", "c"]
+    with monkeypatch.context() as patch:
+        patch.setattr("os.fsync", fail)
+        with pytest.raises(OSError, match="no space"):
+            nacre.sweep(ball, PARAMETERS, store=store)
+    assert journal.read_bytes() == before
+    nacre.sweep(ball, PARAMETERS, store=store)
+    assert journal.read_bytes().startswith(before)
+    assert len(journaled(journal)) == 1 + 6
 
 
 KILLED = """
@@ -672,7 +603,7 @@ nacre.sweep(ball, parameters, outputs=[cases.logged, "approach"], store="study.n
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
-    count, kills = 200, 3
+    count, kills = 110, 2
     (tmp_path / "cases.py").write_text(MODULE)
     (tmp_path / "script.py").write_text(KILLED)
     store, journal, log = (tmp_path / name for name in ("study.nc", "study.journal", "cases.log"))
@@ -684,7 +615,7 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     rng = random.Random(7)
     kept: list[str] = []
     for kill in range(kills):
-        target = len(kept) + rng.randint(5, 50)
+        target = len(kept) + rng.randint(5, 45)
         with subprocess.Popen(command, cwd=tmp_path) as process:
             while process.poll() is None and len(finished()) < target:
                 time.sleep(1e-4)
@@ -704,7 +635,7 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     assert sum(solved.values()) - count <= kills * (os.cpu_count() or 1)
     study = xarray.load_dataset(store, engine="h5netcdf")
     assert (study.error == "").all()
-    for load in (5.0, 5.5, 6.99):
+    for load in (5.0, 5.5, 6.09):
         one = study.sel(load=load, method="nearest")
         expected = nacre.solve(**ball(1e-5, 1e11, one["load"].item()))
         assert one.logged.item() == expected.peak_pressure
@@ -732,14 +663,16 @@ def test_ctrl_c_stops_a_study_and_keeps_what_is_finished(tmp_path: Path) -> None
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the lock is another there")
 def test_two_processes_do_not_write_one_study(tmp_path: Path) -> None:
-    store = tmp_path / "study.nc"
-    hold = (
-        "import sys; from pathlib import Path; from nacre._journal import Journal\n"
-        f"with Journal(Path({str(store.with_suffix('.journal'))!r})):\n"
-        "    print('held', flush=True); sys.stdin.read()"
-    )
+    hold = """
+import sys, nacre
+steel, ball = nacre.Elastic(210e9, 0.3), nacre.Sphere(5e-3)
+wait = lambda solution: len((print("held", flush=True) or sys.stdin.read()))
+case = {"shape": ball, "body": steel}
+nacre.sweep(case, {"load": [1.0]}, outputs={"wait": wait}, store="study.nc", progress=False)
+"""
+    store, pipe = tmp_path / "study.nc", subprocess.PIPE
     command = [sys.executable, "-c", hold]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, cwd=tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"held\n"
         with pytest.raises(BlockingIOError, match="another process is running this study"):
@@ -749,7 +682,7 @@ def test_two_processes_do_not_write_one_study(tmp_path: Path) -> None:
 
 
 def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: Patch
 ) -> None:
     (tmp_path / "study_that_breaks.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
@@ -799,7 +732,7 @@ def test_bad_input_is_refused_before_anything_is_solved(
 
 
 def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
-    curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [1.0, 10.0, 100.0])
+    curve = design.load_curve(BALL, STEEL, [1.0, 10.0, 100.0])
     radius = (0.75 * curve["load"] * 5e-3 / STEEL.plane_strain_modulus) ** (1 / 3)
     # Discretisation with 64 cells over the contact: approach 1e-3, stiffness follows the area of
     # whole cells, 3e-3.
@@ -807,7 +740,7 @@ def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
     hertz = 2 * STEEL.plane_strain_modulus * radius
     np.testing.assert_allclose(curve.stiffness, hertz, rtol=5e-3)
     # And it is the slope of the curve: a difference quotient of the same discrete contact.
-    near = design.load_curve(nacre.Sphere(5e-3), STEEL, [9.99, 10.01], grid=GRID)
+    near = design.load_curve(BALL, STEEL, [9.99, 10.01], grid=GRID)
     slope = float(near["load"].diff("load")[0] / near.approach.diff("load")[0])
     mean = float(near.stiffness.mean())
     # The contact gains cells one by one, each of 1/n of the stiffness of n cells: below 5e-3.
@@ -816,14 +749,14 @@ def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
 
 def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> None:
     chart = design.coating_chart(
-        nacre.Sphere(5e-3),
+        BALL,
         STEEL,
         thickness=[1e-6, 1e-4],
         young=[105e9, 210e9, 420e9],
         load=10.0,
         grid=GRID,
     )
-    bare = nacre.solve(nacre.Sphere(5e-3), STEEL, load=10.0, grid=GRID)
+    bare = nacre.solve(BALL, STEEL, load=10.0, grid=GRID)
     same = chart.peak_pressure.sel(young=210e9)
     np.testing.assert_allclose(same, bare.peak_pressure, rtol=1e-6)  # tolerance of the solver, 1e-8
     assert (chart.peak_pressure.diff("young") > 0).all()
@@ -838,7 +771,7 @@ def test_the_stresses_of_the_chart_are_those_of_the_summary(friction: float) -> 
     thickness, young = [2e-6, 2e-5, 1e-4], [52.5e9, 840e9]
     options: dict[str, Any] = {"grid": GRID, "load": 10.0}
     chart = design.coating_chart(
-        nacre.Sphere(5e-3),
+        BALL,
         STEEL,
         thickness=thickness,
         young=young,
@@ -879,7 +812,7 @@ def test_the_tilt_curve_is_odd_and_inverts_the_eccentricity() -> None:
 
 def test_an_unknown_option_of_a_helper_is_refused() -> None:
     with pytest.raises(TypeError, match="force: no argument of"):
-        design.load_curve(nacre.Sphere(5e-3), STEEL, [1.0], force=3)
+        design.load_curve(BALL, STEEL, [1.0], force=3)
 
 
 def test_a_case_that_is_no_case_is_named() -> None:

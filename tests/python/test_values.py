@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+import json
 import pickle
 from typing import Any
 
@@ -78,6 +79,7 @@ MADE_BY_A_CALL: dict[str, Any] = {
         threads=1,
     ),
 }
+NOT_KEPT = {"point contact", "line contact", "ellipse", "contact", "contact with everything"}
 VALUES = MADE_BY_A_CALL | {
     "solution": SOLUTION,
     "convolution": nacre.Convolution(THIRDS, threads=2),
@@ -130,6 +132,12 @@ def test_pickles_and_copies_are_equal_values(value: object) -> None:
 def test_repr_is_the_call_that_makes_it(value: object) -> None:
     back = eval(repr(value), {"array": np.array} | vars(nacre) | vars(nacre.hertz))
     assert back == value
+
+
+@pytest.mark.parametrize("name", sorted(MADE_BY_A_CALL.keys() - NOT_KEPT))
+def test_values_survive_as_plain_data(name: str) -> None:
+    data = json.loads(json.dumps(values.encode(MADE_BY_A_CALL[name])))
+    assert values.decode(data) == MADE_BY_A_CALL[name]
 
 
 def test_different_values_differ() -> None:

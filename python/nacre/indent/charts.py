@@ -11,6 +11,8 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre.indent.solution import Control, Indentation
 
+__all__ = ["bulk_limit", "coated", "information", "pull_off_over_thickness"]
+
 Array = npt.NDArray[np.float64]
 
 EPSILON = 0.75

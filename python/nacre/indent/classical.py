@@ -12,6 +12,8 @@ import nacre._core as core
 from nacre.indent.curves import Curve
 from nacre.indent.solution import Indentation
 
+__all__ = ["Classical", "classical", "gao_weights", "oliver_pharr"]
+
 Array = npt.NDArray[np.float64]
 
 EPSILON = 0.75

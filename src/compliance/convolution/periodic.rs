@@ -28,18 +28,26 @@ use ndarray::{Array2, ArrayRef2, Axis};
 use super::Convolution;
 use crate::numerics::fft::PaddedTransform;
 
+/// Approximations of a convolution on the same window, periodic on a mesh that is longer by [`MARGIN`]. Each
+/// costs a quarter of an exact convolution.
+pub(crate) struct Approximation {
+    /// M, an approximation of the inverse, which preconditions: symmetric and positive definite.
+    pub(crate) inverse: Convolution,
+    /// An approximation of the convolution itself.
+    pub(crate) periodic: Convolution,
+}
+
+/// Cells by which the mesh is longer than the window, as a share of it; see the head of this file.
+const MARGIN: f64 = 0.125;
+
 impl Convolution {
-    /// A periodic convolution that approximates the one with `coefficients`, and its inverse, which is
-    /// symmetric and positive definite and preconditions the exact convolution. The mesh is padded by an eighth,
-    /// and each of them costs a quarter of an exact convolution.
-    ///
-    /// Where pressures repeat along directions that are `periodic`, the mesh does too; along both, it is the convolution
-    /// itself.
-    pub(crate) fn preconditioner(
+    /// Approximations of the convolution with `coefficients`. Along directions in which pressures repeat, the mesh has no
+    /// margin; where they repeat along both, the approximation is the convolution itself.
+    pub(crate) fn approximation(
         &self,
         coefficients: &ArrayRef2<f64>,
         repeats: [bool; 2],
-    ) -> [Self; 2] {
+    ) -> Approximation {
         // Bound on the smallest entry of the spectrum, as a share of the largest, so that the inverse
         // is positive for any coefficients, and rounding does not grow further.
         const FLOOR: f64 = 1e-6;
@@ -47,7 +55,7 @@ impl Convolution {
         // trusted. Measured for coatings 0.1 to 1e5 times as hard as the body: above 0.95, or below 0.
         const TRUSTED: f64 = 0.5;
         let shape = [coefficients.nrows(), coefficients.ncols()];
-        let transform = PaddedTransform::plan_margin(shape, repeats, &self.threads);
+        let transform = PaddedTransform::plan_margin(shape, MARGIN, repeats, &self.threads);
         let with = |coefficients: &ArrayRef2<f64>| {
             let (idle, clock) = (self.idle.clone(), Arc::clone(&self.clock));
             Self::with(coefficients, transform.clone(), &self.threads, idle, clock)
@@ -73,7 +81,7 @@ impl Convolution {
             clock: Arc::clone(&periodic.clock),
             ..periodic
         };
-        [periodic, inverse]
+        Approximation { inverse, periodic }
     }
 }
 
@@ -151,7 +159,7 @@ mod tests {
 
     use ndarray::Array2;
 
-    use super::weights;
+    use super::{Approximation, weights};
     use crate::compliance::convolution::Convolution;
     use crate::compliance::influence::{Method, influence_coefficients};
     use crate::error::Result;
@@ -191,7 +199,8 @@ mod tests {
                     let grid = Grid::new(shape, shape.map(|n| n as f64))?;
                     let coefficients = influence_coefficients(body, &grid, Method::Exact)?;
                     let convolution = Convolution::plan(&coefficients, Some(1))?;
-                    let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
+                    let Approximation { inverse, periodic } =
+                        convolution.approximation(&coefficients, [false; 2]);
                     let [smallest, largest] = periodic.transform.extremes(&periodic.spectrum);
                     assert!(smallest > 0.0, "{ratio} {thickness}: {smallest:e} {largest:e}");
                     if smallest < 1e-6 * largest {

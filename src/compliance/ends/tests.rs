@@ -188,7 +188,7 @@ fn operators_are_symmetric_and_positive() -> Result<()> {
     };
     let half_space = Body::from(&body(0.0, [None; 2])?);
     let least = smallest_eigenvalue(&dense(&[&half_space], &grid)?);
-    for poisson in [0.0, 0.25, 0.3, 0.4, 0.5] {
+    for poisson in [0.0, 0.3, 0.5] {
         let [low, high, flush, beyond] = ENDS;
         let cases = [
             vec![low],

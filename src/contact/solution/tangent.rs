@@ -77,7 +77,7 @@ impl Tangent {
         let repeats = repeating(grid, &window);
         let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
         let convolution = convolution.plus(within.collect());
-        let [_, inverse] = convolution.preconditioner(&corner, repeats);
+        let inverse = convolution.approximation(&corner, repeats).inverse;
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
         let coordinates = [part(0), part(1)];

@@ -1,124 +1,119 @@
-//! Preconditioned conjugate gradients, deflated by the loaded degrees of freedom; developed here
+//! Preconditioned conjugate gradients with bounds, deflated by the loaded degrees of freedom; developed here
 //! from known parts.
 //!
-//! On the contact C the gap must vanish: K p = Bλ − h. The residual r = Bλ − h − K p is preconditioned by
-//! an approximate inverse M of the convolution, and made orthogonal to the loaded degrees of freedom, so
-//! that force and moments stay balanced. Cells leave C when their pressure turns negative, and join it
-//! when they overlap; neither restarts the iteration.
+//! On the contact C the gap must vanish: K p = Bλ − h. One iteration, in the order of the code:
+//!
+//! ```text
+//! u = K p
+//! λ    least |u + h − Bλ| over the cells whose pressure is free
+//! r  = Bλ − h − u on C, the cells that are free or overlap
+//! z  = M r − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ M r
+//! d  ← z + β d on C
+//! p  ← [p + d (r·d)/(d·K d)]₊, brought into balance
+//! ```
+//!
+//! M approximates the inverse of K, and the deflated z changes neither force nor moments. Cells leave C when their
+//! pressure reaches a bound, and join it when they overlap; neither restarts the iteration.
 //!
 //! - Vollebregt, J. Optim. Theory Appl. 162 (2014) 931, doi:10.1007/s10957-013-0499-x: conjugate gradients
-//!   with bounds, which restart when cells join.
+//!   with bounds. There they restart when cells join.
 //! - Vollebregt, J. Comput. Phys. 257 (2014) 333, doi:10.1016/j.jcp.2013.10.005: preconditioning by FFT,
-//!   and deflation.
+//!   and deflation. There the images MB are those of the contact; here they may be those of an earlier one while the
+//!   contact changes.
+//! - A step on which cells leave is not the step that was planned, and its displacement takes a second
+//!   convolution. After such a step, the next takes its length from a periodic convolution, at a quarter of the cost.
 //!
-//! Passes over arrays would take as long as the transforms if each operation were a pass of its own:
-//! operations that can share a pass do. `textbook.rs` has the same iteration with one operation a line.
-
-mod steps;
-#[cfg(test)]
-mod textbook;
+//! Operations that share a pass over arrays are those that would otherwise take as long as the transforms.
 
 use std::mem;
+use std::ops::Range;
 
-use crate::compliance::convolution::{Convolution, Workspace};
-use crate::contact::problem::balance::FitSums;
-use crate::contact::problem::bounds::{in_contact, is_free, residual};
+use crate::compliance::convolution::{Approximation, Workspace};
+use crate::contact::problem::balance::Products;
+use crate::contact::problem::bounds::{clip, in_contact, is_free, not_allowed, residual};
 use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
 use crate::contact::solver::linear_cg::Conjugacy;
+use crate::contact::solver::stagnation::Course;
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, active_set};
 use crate::numerics::parallel::{
-    Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest, where_positive,
+    ONE, Rows, Total, ZERO, all, dot, sum, update, update_with_largest,
 };
 
-/// Approximations of the convolution, periodic on the window.
-pub(crate) struct Approximation {
-    /// M, an approximation of the inverse.
-    pub(crate) inverse: Convolution,
-    /// An approximation of the convolution itself, at a quarter of its cost.
-    pub(crate) periodic: Convolution,
-}
+/// Iterations by which most contacts have converged. After them a contact of a few cells is left to
+/// [`active_set`]; chosen by trial.
+const PATIENCE: usize = 20;
 
-/// The iteration of one problem.
+/// Best length along the change of a step, relative to the planned one. Outside this range so many cells have
+/// left that the plan was worth little; beyond 2 the energy would rise. Chosen by trial.
+const AS_PLANNED: Range<f64> = 0.6..1.8;
+
+/// Bounds of one change of the ratio of curvatures, and of the ratio itself; chosen by trial.
+const CHANGE_OF_RATIO: [f64; 2] = [0.8, 1.25];
+const RATIO: [f64; 2] = [0.5, 2.0];
+
+/// The iteration of one problem, with a field on all cells for each letter.
 pub(crate) struct Preconditioned<'a> {
     problem: &'a Problem<'a>,
     approximation: &'a Approximation,
     rows: Rows<'a>,
     workspace: Workspace,
-    memory: Lease<Memory>,
-    displacement: Displacement,
-    images: Images,
+    /// u, the displacement; it lacks `behind` times `response`.
+    u: Vec<f64>,
+    behind: f64,
+    /// K applied to the last direction, or to the last change of the pressure.
+    response: Vec<f64>,
+    /// r, 0 outside the contact, and the one of the iteration before.
+    r: Vec<f64>,
+    r_before: Vec<f64>,
+    /// z
+    z: Vec<f64>,
+    /// d
+    direction: Vec<f64>,
+    /// The pressure of the iteration before, and then the change from it.
+    change: Vec<f64>,
+    /// M applied to each loaded degree of freedom on a contact; the others are empty.
+    images: [Vec<f64>; 3],
+    /// Whether the images are those of an earlier contact.
+    stale: bool,
+    /// Whether any cell has left or joined the contact in the last step.
+    contact_changed: bool,
     conjugacy: Conjugacy,
     /// Number of cells in the contact.
     members: f64,
-    /// λ of the last assessment.
     lambda: [f64; 3],
+    /// Whether cells left in the last step, which went as planned otherwise.
+    losing: bool,
     /// Curvature of the energy by the exact convolution, relative to that by the periodic one, in the last
     /// step that used both.
     curvature_ratio: f64,
-    /// Work done so far, in the unit of [`Convolution::work`].
+    /// Work done so far, in the unit of `Convolution::work`.
     work: f64,
 }
 
-/// Iterations by which most contacts have converged. After them a contact of a few cells is left to
-/// [`active_set`], and images do not grow old; chosen by trial.
-const PATIENCE: usize = 20;
-
-/// What the last step left to do before the displacement u is that of the pressure.
-#[derive(Debug, Clone, Copy)]
-enum Displacement {
-    /// u = K p.
-    Current,
-    /// u = K p, and the sums for the fit of λ are known.
-    Fitted(FitSums),
-    /// This multiple of the response must still be added to u.
-    Behind(f64),
-}
-
-/// Contact that the images of the loaded degrees of freedom were computed for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Images {
-    /// The images belong to the contact as it was last seen.
-    Current,
-    /// The contact has changed this many times since the images were computed.
-    Stale(usize),
-}
-
-/// Outcome of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum StepOutcome {
-    /// The step was made as planned.
-    Whole,
-    /// Cells lost their pressure on the way.
-    Truncated,
-    /// No descent direction is left; the pressure is unchanged up to rounding.
-    Stalled,
-}
-
-/// The state of an iteration, as [`Preconditioned::assess`] finds it.
-struct Assessment {
-    lambda: [f64; 3],
-    quality: Quality,
-    /// Whether any cell has left or joined the contact since the last assessment.
-    contact_changed: bool,
-}
-
 impl<'a> Preconditioned<'a> {
-    pub(crate) fn new(
-        problem: &'a Problem<'a>,
-        approximation: &'a Approximation,
-        memory: Lease<Memory>,
-    ) -> Self {
+    pub(crate) fn new(problem: &'a Problem<'a>, approximation: &'a Approximation) -> Self {
+        let zeros = || vec![0.0; problem.gap.len()];
+        let image = |loaded| if loaded { zeros() } else { Vec::new() };
         Self {
             problem,
             approximation,
             rows: problem.rows(),
             workspace: problem.convolution.workspace(),
-            memory,
-            displacement: Displacement::Current,
-            images: Images::Current,
+            u: zeros(),
+            behind: 0.0,
+            response: zeros(),
+            r: zeros(),
+            r_before: zeros(),
+            z: zeros(),
+            direction: zeros(),
+            change: zeros(),
+            images: problem.freedoms.loaded.map(image),
+            stale: false,
+            contact_changed: false,
             conjugacy: Conjugacy::default(),
             members: 0.0,
             lambda: [0.0; 3],
+            losing: true,
             curvature_ratio: 1.0,
             work: 0.0,
         }
@@ -130,17 +125,17 @@ impl<'a> Preconditioned<'a> {
     /// computes them afresh.
     pub(crate) fn solve(
         &mut self,
-        p: &mut [f64],
+        p: &mut Vec<f64>,
         criteria: StopCriteria,
         tally: &mut Tally,
     ) -> Outcome {
         let before = tally.work;
-        let mut last = StepOutcome::Truncated;
         let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
-            let Assessment { lambda, quality, contact_changed } = self.assess(p);
+            let quality = self.assess(p);
             tally.work = before + self.work;
+            let lambda = self.lambda;
             let end = |termination| Outcome { solver: Solver::Preconditioned, termination, lambda };
             if quality.meets(criteria.tolerance) {
                 return end(Termination::Converged);
@@ -156,10 +151,9 @@ impl<'a> Preconditioned<'a> {
                 course.restore(p);
                 return end(Termination::IterationLimit);
             }
-            self.prepare_images(p, contact_changed, iterations);
-            last = self.step(p, last);
+            let descends = self.step(p);
             tally.work = before + self.work;
-            if last == StepOutcome::Stalled {
+            if !descends {
                 return end(Termination::IterationLimit);
             }
             tally.iterations += 1;
@@ -167,254 +161,371 @@ impl<'a> Preconditioned<'a> {
         unreachable!("the loop ends by its limit")
     }
 
-    /// Takes the cells with a pressure for the contact.
+    /// Takes the cells whose pressure is free for the contact. u = K p
     fn start(&mut self, p: &[f64]) {
-        let Arrays { r, .. } = self.memory.arrays(p.len());
         let bounds = self.problem.bounds;
-        [self.members] = self.rows.each([p], [r], |row, [p], [r]| {
+        [self.members] = self.rows.each([p], [&mut self.r], |row, [p], [r]| {
             update([p, bounds.row(row.number)], [r], |[p, limit], _| {
                 ([ZERO], [is_free(p, limit) & ONE])
             })
         });
         self.invert_freedoms(p);
-        self.displace(p);
-    }
-
-    /// u = K p
-    fn displace(&mut self, p: &[f64]) {
-        let Arrays { u, .. } = self.memory.arrays(p.len());
-        self.problem.apply(p, u, &mut self.workspace);
+        self.problem.apply(p, &mut self.u, &mut self.workspace);
         self.work += self.problem.convolution.work();
-        self.displacement = Displacement::Current;
     }
 
-    /// Finds the multipliers, the quality of the pressure, and the residual on the contact. Cells without
-    /// pressure leave the contact, and cells that overlap join it.
-    fn assess(&mut self, p: &[f64]) -> Assessment {
-        // Pressed cells per joining cell below which the directions so far say little; chosen by trial.
-        const PRESSED_PER_JOINING: f64 = 10.0;
-        let (problem, bounds) = (self.problem, self.problem.bounds);
-        let freedoms = problem.freedoms;
-        self.memory.keep_residual();
-        let Arrays { u, r, response, .. } = self.memory.arrays(p.len());
-        let mut catch_up = |factor: f64| {
-            let (factor, inputs) = (all(factor), [p, response, problem.gap]);
-            self.rows.each(inputs, [&mut *u], |row, inputs, [u]| {
-                let limit = bounds.row(row.number);
-                freedoms.fit_row(row, limit, inputs, [u], |[p, response, h, ..], [u]| {
-                    // At a factor of 0 the response may hold anything.
-                    let u = u + where_positive(factor, factor * response);
-                    ([u], [p, u + h, ZERO])
-                })
-            })
-        };
-        let fit = match mem::replace(&mut self.displacement, Displacement::Current) {
-            Displacement::Fitted(sums) => sums,
-            Displacement::Current => catch_up(0.0),
-            Displacement::Behind(factor) => catch_up(factor),
-        };
-        let lambda = match fit.cells() > 0.0 {
-            true => freedoms.fitted(fit),
-            false => problem.until_touching(p, u, self.lambda),
-        };
-        self.lambda = lambda;
-        let inputs = [p, u, problem.gap];
-        let (sums, [free, inside]) = self.rows.each(inputs, [r], |row, [p, u, h], [r]| {
-            let (base, slope) = (all(lambda[0] + lambda[1] * row.x), all(lambda[2]));
-            let step = |[p, limit, u, h]: [Lanes; 4], motion: Lanes| {
-                let overlap = motion - (h + u);
-                let residual = residual(p, limit, overlap);
-                let free = is_free(p, limit) & ONE;
-                let inside = in_contact(p, limit, residual) & ONE;
-                let [work, mismatch, held] = works(p, limit, u, overlap);
-                let sums = [work, mismatch, held, free, inside];
-                ([residual], depths(p, limit, u, overlap), sums)
-            };
+    /// Finds λ, the residual r on the contact, and the quality of the pressure.
+    fn assess(&mut self, p: &[f64]) -> Quality {
+        let (problem, bounds, freedoms) =
+            (self.problem, self.problem.bounds, self.problem.freedoms);
+        mem::swap(&mut self.r, &mut self.r_before);
+        let behind = all(mem::take(&mut self.behind));
+        let (inputs, outputs) = ([p, &self.response, problem.gap], [&mut self.u[..]]);
+        let fit = self.rows.each(inputs, outputs, |row, inputs, [u]| {
             let limit = bounds.row(row.number);
-            let (extremes, sums) = if freedoms.loaded[2] {
-                let inputs = [p, limit, u, h, row.y];
+            freedoms.fit_row(row, limit, inputs, [u], |[p, response, h, ..], [u]| {
+                let u = u + behind * response;
+                ([u], [p, u + h, ZERO])
+            })
+        });
+        self.lambda = match fit.cells() > 0.0 {
+            true => freedoms.fitted(fit),
+            false => problem.until_touching(p, &self.u, self.lambda),
+        };
+        let [approach, tilt_x, tilt_y] = self.lambda;
+        let (inputs, outputs) = ([p, &self.u, problem.gap], [&mut self.r[..]]);
+        let (sums, [free, inside]) = self.rows.each(inputs, outputs, |row, [p, u, h], [r]| {
+            let (motion, slope) = (all(approach + tilt_x * row.x), all(tilt_y));
+            let inputs = [p, bounds.row(row.number), u, h, row.y];
+            let (extremes, [work, mismatch, held, free, inside]) =
                 update_with_largest(inputs, [r], |[p, limit, u, h, y], _| {
-                    step([p, limit, u, h], base + slope * y)
-                })
-            } else {
-                update_with_largest([p, limit, u, h], [r], |fields, _| step(fields, base))
-            };
-            let [work, mismatch, held, free, inside] = sums;
+                    let overlap = motion + slope * y - (h + u);
+                    let residual = residual(p, limit, overlap);
+                    let free = is_free(p, limit) & ONE;
+                    let inside = in_contact(p, limit, residual) & ONE;
+                    let [work, mismatch, held] = works(p, limit, u, overlap);
+                    let sums = [work, mismatch, held, free, inside];
+                    ([residual], depths(p, limit, u, overlap), sums)
+                });
             let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
             (sums, [free, inside])
         });
-        let joined = inside - free;
-        if PRESSED_PER_JOINING * joined > free {
-            self.conjugacy.restart();
-        }
         // A step gives no pressure to cells outside the contact: the difference is the cells that left.
         let left = mem::replace(&mut self.members, inside) - free;
-        Assessment {
-            lambda,
-            quality: problem.quality(sums, &fit),
-            contact_changed: joined > 0.0 || left.abs() > 0.0,
+        self.contact_changed = inside > free || left.abs() > 0.0;
+        problem.quality(sums, &fit)
+    }
+
+    /// Applies M to the loaded degrees of freedom, restricted to the contact.
+    fn invert_freedoms(&mut self, p: &[f64]) {
+        let (inverse, bounds) = (&self.approximation.inverse, self.problem.bounds);
+        for (freedom, image) in self.images.iter_mut().enumerate().filter(|(_, i)| !i.is_empty()) {
+            self.rows.each([p, &self.r], [&mut self.z], |row, [p, r], [z]| {
+                let inputs = [p, bounds.row(row.number), r, row.y];
+                update(inputs, [z], |[p, limit, r, y], _| {
+                    let column = [ONE, all(row.x), y][freedom];
+                    ([in_contact(p, limit, r) & column], [])
+                })
+            });
+            inverse.apply_slices(&self.z, image, &mut self.workspace);
+            self.work += inverse.work();
         }
     }
-}
 
-/// Memory of the arrays of an iteration; it may be larger than needed.
-#[derive(Debug, Default)]
-pub(crate) struct Memory {
-    u: Vec<f64>,
-    r: Vec<f64>,
-    r_before: Vec<f64>,
-    z: Vec<f64>,
-    direction: Vec<f64>,
-    response: Vec<f64>,
-    trial: Vec<f64>,
-    images: [Vec<f64>; 3],
-}
+    /// Moves the pressure `p` along a new direction. False where none descends: the pressure is unchanged then, up to
+    /// rounding.
+    fn step(&mut self, p: &mut Vec<f64>) -> bool {
+        // The projection is symmetric only with the images of the contact: once it stays, they must be.
+        if self.stale && !self.contact_changed {
+            self.invert_freedoms(p);
+            self.conjugacy.restart();
+        }
+        self.stale = self.contact_changed;
+        let slope = self.search_direction(p);
+        let losing = mem::take(&mut self.losing);
+        losing && self.advance(p, slope, true) || self.advance(p, slope, false)
+    }
 
-/// Arrays of an iteration, as long as there are cells.
-struct Arrays<'a> {
-    /// Displacement K p.
-    u: &'a mut [f64],
-    /// Residual −g on contact cells, 0 elsewhere.
-    r: &'a mut [f64],
-    /// Residual of the iteration before.
-    r_before: &'a mut [f64],
-    /// Preconditioned residual M r.
-    z: &'a mut [f64],
-    /// Search direction.
-    direction: &'a mut [f64],
-    /// K applied to the last direction, or to the last change of the pressure.
-    response: &'a mut [f64],
-    /// Trial pressure of a step on which cells leave, and then the change to it.
-    trial: &'a mut [f64],
-    /// M applied to each loaded degree of freedom on a contact; the others are not read.
-    images: [&'a mut [f64]; 3],
-}
+    /// Makes the direction of the next step; returns its product with the residual.
+    fn search_direction(&mut self, p: &[f64]) -> f64 {
+        let ([factors @ .., descent], with_last) = self.deflate(p);
+        let beta = self.conjugacy.beta(descent, with_last);
+        let slope = self.turn(p, factors, beta);
+        if slope > 0.0 {
+            return slope;
+        }
+        // The direction lost too many cells: start again along the gradient.
+        self.turn(p, factors, 0.0)
+    }
 
-impl Memory {
-    /// Makes the arrays long enough for the cells of `rows`. A new array gets room for `most` cells, the
-    /// largest number that a solve may need, which the plan's memory was checked for; most systems hand
-    /// memory out only as it is written.
-    pub(crate) fn reserve(&mut self, rows: &Rows, most: usize, loaded: [bool; 3]) {
-        let Self { u, r, r_before, z, direction, response, trial, images } = self;
-        let arrays = [u, r, r_before, z, direction, response, trial];
-        let images = images.iter_mut().zip(loaded);
-        let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
-        let short = |array: &&mut Vec<f64>| array.len() < rows.cells();
-        let mut short: Vec<_> = arrays.into_iter().chain(images).filter(short).collect();
-        for array in &mut short {
-            if array.capacity() < rows.cells() {
-                **array = Vec::with_capacity(most.max(rows.cells()));
+    /// Preconditions the residual, z = M r, and finds the multiples of the images that must be subtracted
+    /// from z so that, on the contact, it changes neither force nor moments. Returns them and the products of the rest
+    /// with the residual and with that of the iteration before.
+    fn deflate(&mut self, p: &[f64]) -> ([f64; 4], f64) {
+        let (freedoms, bounds) = (self.problem.freedoms, self.problem.bounds);
+        let inverse = &self.approximation.inverse;
+        inverse.apply_slices(&self.r, &mut self.z, &mut self.workspace);
+        self.work += inverse.work();
+        let [i0, i1, i2] = self.loaded_images();
+        let inputs = [p, &self.r, &self.r_before, &self.z, i0, i1, i2];
+        let [of_z, of_images @ ..] = self.rows.each(inputs, [], |row, inputs, []| {
+            let [p, r, before, z, images @ ..] = inputs;
+            let here = [p, bounds.row(row.number), r, before];
+            let mut products: [Products; 4] = Total::ZERO;
+            products[0] = freedoms.products(row, here, z);
+            for (k, image) in images.into_iter().enumerate().filter(|(k, _)| freedoms.loaded[*k]) {
+                products[k + 1] = freedoms.products(row, here, image);
             }
+            products
+        });
+        let matrix = [0, 1, 2].map(|row| of_images.map(|image| image.moments[row]));
+        let factors = freedoms.solve(&matrix, of_z.moments);
+        let remains = |product: fn(&Products) -> f64| {
+            let removed = factors.iter().zip(&of_images).map(|(f, image)| f * product(image));
+            product(&of_z) - removed.sum::<f64>()
+        };
+        let descent = remains(|products| products.with_residual);
+        if descent > 0.0 {
+            let [a, b, c] = factors;
+            return ([a, b, c, descent], remains(|products| products.with_last));
         }
-        rows.zero(&mut short);
+        // The oblique projection failed: steepest descent, projected orthogonally.
+        self.z.copy_from_slice(&self.r);
+        freedoms.project(&mut self.z, p, &self.r, bounds);
+        self.conjugacy.restart();
+        ([0.0, 0.0, 0.0, dot(&self.r, &self.z)], 0.0)
     }
 
-    /// The first `cells` elements of each array.
-    fn arrays(&mut self, cells: usize) -> Arrays<'_> {
-        Arrays {
-            u: &mut self.u[..cells],
-            r: &mut self.r[..cells],
-            r_before: &mut self.r_before[..cells],
-            z: &mut self.z[..cells],
-            direction: &mut self.direction[..cells],
-            response: &mut self.response[..cells],
-            trial: &mut self.trial[..cells],
-            images: self.images.each_mut().map(|image| {
-                let kept = cells.min(image.len());
-                &mut image[..kept]
-            }),
-        }
+    /// Images of the loaded degrees of freedom; r, which has no weight there, in place of the others.
+    fn loaded_images(&self) -> [&[f64]; 3] {
+        let image = |image| if Vec::is_empty(image) { &self.r } else { image };
+        self.images.each_ref().map(|one| &image(one)[..])
     }
 
-    /// Makes the residual that of the iteration before.
-    fn keep_residual(&mut self) {
-        std::mem::swap(&mut self.r, &mut self.r_before);
+    /// d ← z − Σ `factors` images + `beta` d on the contact, 0 elsewhere; returns r · d.
+    fn turn(&mut self, p: &[f64], factors: [f64; 3], beta: f64) -> f64 {
+        let mut direction = mem::take(&mut self.direction);
+        let [i0, i1, i2] = self.loaded_images();
+        let ([f0, f1, f2], beta) = (factors.map(all), all(beta));
+        let bounds = self.problem.bounds;
+        let (inputs, outputs) = ([p, &self.r, &self.z, i0, i1, i2], [&mut direction[..]]);
+        let [slope] = self.rows.each(inputs, outputs, |row, [p, r, z, i0, i1, i2], [direction]| {
+            let inputs = [p, bounds.row(row.number), r, z, i0, i1, i2];
+            update(inputs, [direction], |[p, limit, r, z, a, b, c], [d]| {
+                let z = z - f0 * a - f1 * b - f2 * c;
+                let d = in_contact(p, limit, r) & (z + beta * d);
+                ([d], [r * d])
+            })
+        });
+        self.direction = direction;
+        slope
+    }
+
+    /// p ← [p + d (r·d)/(d·K d)]₊, brought into balance, with the `slope` r·d. Where the curvature d·K d is
+    /// `approximate`, the best length along the change that remains is found afterwards, and much shorter ones count.
+    /// False, with the pressure unchanged up to rounding, where the step would not descend.
+    fn advance(&mut self, p: &mut Vec<f64>, slope: f64, approximate: bool) -> bool {
+        let (problem, bounds, freedoms) =
+            (self.problem, self.problem.bounds, self.problem.freedoms);
+        let (operator, ratio) = match approximate {
+            true => (&self.approximation.periodic, self.curvature_ratio),
+            false => (problem.convolution, 1.0),
+        };
+        operator.apply_slices(&self.direction, &mut self.response, &mut self.workspace);
+        self.work += operator.work();
+        let fields = [&self.direction[..], &self.response];
+        let [curvature] = self.rows.each(fields, [], |_, fields, []| sum(fields, |[d, k]| [d * k]));
+        let Some(length) = best_length(slope, ratio * curvature) else {
+            return false;
+        };
+        let (inputs, outputs) = ([&p[..], &self.direction], [&mut self.change[..]]);
+        let (lost, moments) = self.rows.each(inputs, outputs, |row, [p, d], [next]| {
+            let inputs = [p, d, bounds.row(row.number)];
+            let [lost] = update(inputs, [&mut *next], |[p, d, limit], _| {
+                let next = p + all(length) * d;
+                ([clip(next, limit)], [not_allowed(next, limit)])
+            });
+            (lost, freedoms.moments_of(row, next))
+        });
+        // From here on `change` is the pressure before the step.
+        mem::swap(p, &mut self.change);
+        // A direction that lost cells since it was made is out of balance, too.
+        let whole = lost <= 0.0 && freedoms.on_target(moments);
+        if whole && !approximate {
+            self.behind = length;
+            return true;
+        }
+        let factor = if whole { 1.0 } else { self.balance(p, moments[0]) };
+        self.rows.each([], [&mut p[..], &mut self.change], |_, [], fields| {
+            update([], fields, |[], [p, before]| {
+                let p = all(factor) * p;
+                ([p, p - before], [])
+            })
+        });
+        problem.apply(&self.change, &mut self.response, &mut self.workspace);
+        self.work += problem.convolution.work();
+        (self.behind, self.losing) = (1.0, !whole);
+        if !approximate {
+            return true;
+        }
+        let fields = [&self.change[..], &self.r, &self.response];
+        let [slope, curvature] = self.rows.each(fields, [], |_, fields, []| {
+            sum(fields, |[change, r, response]| [change * r, change * response])
+        });
+        let best = best_length(slope, curvature).unwrap_or(0.0);
+        let of_ratio = best.clamp(CHANGE_OF_RATIO[0], CHANGE_OF_RATIO[1]);
+        self.curvature_ratio = (ratio / of_ratio).clamp(RATIO[0], RATIO[1]);
+        // Where the plan was worth little, an exact step follows.
+        self.losing &= AS_PLANNED.contains(&best);
+        if best < AS_PLANNED.start {
+            self.behind = best;
+            let back = all(1.0 - best);
+            self.rows.each([&self.change], [&mut p[..]], |_, [change], [p]| {
+                update([change], [p], |[change], [p]| ([p - back * change], []))
+            });
+        }
+        best > 0.0
+    }
+
+    /// Brings the pressure of this `force` into balance up to the factor that is returned.
+    fn balance(&self, p: &mut [f64], force: f64) -> f64 {
+        let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        if problem.bounds.is_limited() {
+            problem.rebalance_within(p, &self.u, self.lambda);
+            return 1.0;
+        }
+        let factor = freedoms.to_load(force).filter(|_| freedoms.only_force());
+        factor.unwrap_or_else(|| {
+            problem.rebalance(p);
+            1.0
+        })
     }
 }
 
-/// Iterations within which the error must halve. With fifty, contacts that take 250 to 400 iterations were given
-/// up, and the reference took 500 to 5000; chosen by trial.
-const HALVING: usize = 150;
-
-/// Iterations after which the best pressure is kept: far more than most contacts take.
-const KEEPING: usize = 40;
-
-/// Error of an iteration when it last halved, and the pressure of that moment.
-#[derive(Debug)]
-struct Course {
-    /// The larger of residual and overlap.
-    error: f64,
-    /// Number of the iteration.
-    halved: usize,
-    pressure: Option<Vec<f64>>,
-}
-
-impl Course {
-    /// The course of an iteration that has not begun.
-    fn new() -> Self {
-        Self { error: f64::INFINITY, halved: 0, pressure: None }
-    }
-
-    /// Whether the error has not halved for [`HALVING`] iterations, the last of which led to `p`.
-    fn stagnates(&mut self, iterations: usize, quality: Quality, p: &[f64]) -> bool {
-        let error = quality.residual.max(quality.overlap);
-        if error <= 0.5 * self.error {
-            self.error = error;
-            self.halved = iterations;
-            if iterations >= KEEPING {
-                self.pressure = Some(p.to_vec());
-            }
-        }
-        iterations - self.halved >= HALVING
-    }
-
-    /// Makes `p` the best pressure, where one was kept.
-    fn restore(&self, p: &mut [f64]) {
-        if let Some(pressure) = &self.pressure {
-            p.copy_from_slice(pressure);
-        }
-    }
+/// The length of the step to the least energy; `None` where the energy does not fall.
+fn best_length(slope: f64, curvature: f64) -> Option<f64> {
+    let length = slope / curvature;
+    (slope > 0.0 && curvature > 0.0 && length.is_finite()).then_some(length)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Course, HALVING, KEEPING};
-    use crate::contact::problem::Quality;
+    use ndarray::Array2;
 
-    fn quality(residual: f64, overlap: f64) -> Quality {
-        Quality { residual, overlap, balanced: true, allowed: true, finite: true }
+    use super::Preconditioned;
+    use crate::compliance::convolution::Convolution;
+    use crate::compliance::influence::{Method, influence_coefficients};
+    use crate::compliance::response::Body;
+    use crate::contact::options::Motion;
+    use crate::contact::problem::bounds::{Bounds, Hardness};
+    use crate::contact::problem::freedoms::Freedoms;
+    use crate::contact::problem::{LocalDisplacement, Problem};
+    use crate::error::Result;
+    use crate::model::body::{HalfSpace, Layer};
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
+
+    fn largest(values: impl Iterator<Item = f64>) -> f64 {
+        values.fold(0.0, |a, b| a.max(b.abs()))
     }
 
-    /// An error that goes round in circles stagnates when it has not halved for as many iterations as are
-    /// allowed, and the pressure of the last time that it halved is restored. An error that halves in time
-    /// does not stagnate, however long it takes.
+    /// A gap as a function of x and y.
+    type GapOf<'a> = &'a dyn Fn(f64, f64) -> f64;
+
     #[test]
-    fn circles_stagnate() {
-        let mut course = Course::new();
-        let mut stagnates = |k: usize| {
-            let falling = 0.5_f64.powi(k.min(KEEPING + 3) as i32);
-            let circle = [1.0, 1.7, 0.6][k % 3];
-            let error = if k > KEEPING + 3 { circle * falling } else { falling };
-            course.stagnates(k, quality(0.1 * error, error), &[k as f64])
+    fn each_iteration_keeps_its_invariants() -> Result<()> {
+        let rough = |x: f64, y: f64| {
+            let height = ((127.1 * x + 311.7 * y).sin() * 43758.5).fract();
+            if x.hypot(y) > 1.3 { f64::INFINITY } else { 3e-4 * (x * x + y * y) + 1e-4 * height }
         };
-        let end = (0..).find(|&k| stagnates(k));
-        assert_eq!(end, Some(KEEPING + 3 + HALVING));
-        let mut p = [0.0];
-        course.restore(&mut p);
-        assert_eq!(p.map(f64::to_bits), [((KEEPING + 3) as f64).to_bits()]);
-
-        let mut slow = Course::new();
-        let slowly = |k: usize| 0.5_f64.powf(k as f64 / (HALVING - 2) as f64);
-        assert!((0..5000).all(|k| !slow.stagnates(k, quality(slowly(k), 0.0), &[1.0])));
+        let crowned = |x: f64, y: f64| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2);
+        let coat = Layer::new(Elastic::new(4.0, 0.2)?, 0.4)?;
+        let coated = Body::from(HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?);
+        let bare = Body::from(Elastic::new(1.0, 0.0)?);
+        let turned = Motion { moment: [Some(3e-5), Some(-5e-6)], ..Motion::load(1e-4) };
+        let tilting = Motion { eccentricity: [Some(0.31), Some(-0.02)], ..Motion::load(1e-3) };
+        let tilted = Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) };
+        let gaps: [GapOf; 2] = [&rough, &crowned];
+        for (body, motion, gap, limit) in [
+            (&bare, Motion::load(1e-3), gaps[0], f64::INFINITY),
+            (&coated, turned, gaps[0], f64::INFINITY),
+            (&bare, tilting, gaps[1], f64::INFINITY),
+            (&coated, Motion::load(1e-3), gaps[0], 4e-3),
+            (&bare, tilted, gaps[1], f64::INFINITY),
+        ] {
+            keeps_its_invariants(body, &motion, gap, limit)?;
+        }
+        Ok(())
     }
 
-    /// Where the error halves early alone, no pressure was kept.
-    #[test]
-    fn short_iterations_keep_nothing() {
-        let mut course = Course::new();
-        assert!(!course.stagnates(0, quality(1.0, 0.0), &[3.0]));
-        let mut p = [2.0];
-        course.restore(&mut p);
-        assert_eq!(p.map(f64::to_bits), [2.0_f64.to_bits()]);
+    /// In each iteration, until the quality is 1e-10: u = K p, though it is a sum over the steps; a direction that is
+    /// not conjugate changes neither force nor moments, where the images are those of the contact; r is the overlap on
+    /// the contact; the pressure is within its bounds and in balance. To the rounding of some thousand cells.
+    fn keeps_its_invariants(body: &Body, motion: &Motion, gap: GapOf, limit: f64) -> Result<()> {
+        let grid = Grid::new([60, 55], [3.0, 2.5])?;
+        let [nx, ny] = grid.shape();
+        let coefficients = influence_coefficients(body.clone(), &grid, Method::Exact)?;
+        let convolution = Convolution::plan(&coefficients, Some(1))?;
+        let approximation = convolution.approximation(&coefficients, [false; 2]);
+        let freedoms = Freedoms::new(motion, &grid)?;
+        let (x, y) = (grid.x(), grid.y());
+        let mut h = Array2::from_shape_fn((nx, ny), |(i, j)| gap(x[i], y[j]));
+        freedoms.prescribe(&mut h);
+        let h = h.into_raw_vec_and_offset().0;
+        let hardness = Hardness::Uniform(limit);
+        let bounds = if limit.is_finite() { Bounds::of(&hardness, ny) } else { Bounds::none(ny) };
+        let problem = Problem {
+            convolution: &convolution,
+            freedoms: &freedoms,
+            gap: &h,
+            local: &LocalDisplacement::new(&[body], &grid),
+            bounds: &bounds,
+        };
+        let mut p: Vec<f64> = h.iter().map(|h| f64::from(u8::from(h.is_finite()))).collect();
+        p.iter_mut().for_each(|p| *p *= 1e-4);
+        assert!(freedoms.balance(&mut p, &bounds));
+        let mut solver = Preconditioned::new(&problem, &approximation);
+        solver.start(&p);
+        let mut workspace = convolution.workspace();
+        let (mut u, mut truncated) = (vec![0.0; p.len()], 0);
+        for iteration in 0.. {
+            assert!(iteration < 200, "{motion:?}: not converged");
+            let quality = solver.assess(&p);
+            problem.apply(&p, &mut u, &mut workspace);
+            let scale = largest(u.iter().copied());
+            let apart = largest(u.iter().zip(&solver.u).map(|(a, b)| a - b));
+            assert!(apart <= 1e-12 * scale, "{motion:?} {iteration}: {apart:e}");
+            freedoms.for_each(solver.lambda, |k, b| {
+                let overlap = b - h[k] - u[k];
+                if bounds.is_free(k, p[k]) {
+                    assert!((solver.r[k] - overlap).abs() <= 1e-12 * scale);
+                } else if p[k] <= 0.0 {
+                    assert!((solver.r[k] - overlap.max(0.0)).abs() <= 1e-12 * scale);
+                }
+            });
+            if quality.meets(1e-10) {
+                break;
+            }
+            // A conjugate direction loses the balance of the cells that left since the last one.
+            let fresh = iteration % 2 == 0;
+            if fresh {
+                solver.conjugacy.restart();
+            }
+            assert!(solver.step(&mut p), "{motion:?} {iteration}");
+            let size: f64 = solver.direction.iter().map(|d| d.abs()).sum();
+            let changed = freedoms.moments(&solver.direction);
+            for k in (0..3).filter(|&k| fresh && !solver.stale && freedoms.loaded[k]) {
+                assert!(
+                    changed[k].abs() <= 1e-13 * size,
+                    "{motion:?} {iteration}: {k} {:e}",
+                    changed[k] / size
+                );
+            }
+            assert!((0..p.len()).all(|k| (0.0..=bounds.limit(k)).contains(&p[k])));
+            assert!(freedoms.on_target(freedoms.moments(&p)), "{motion:?} {iteration}");
+            truncated += usize::from(solver.losing);
+        }
+        assert!(truncated > 0, "{motion:?}: no step on which cells leave");
+        Ok(())
     }
 }

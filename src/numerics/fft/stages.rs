@@ -42,20 +42,20 @@ fn each_group(
 }
 
 impl PaddedTransform {
-    /// Computes `output` = kernel ∗ `input`, both (nx, ny) in C order, without allocating memory.
+    /// Computes `output` = kernel ∗ `input`, both (nx, ny) in C order, without allocating memory. Only the `occupied`
+    /// rows of the input are read; the others are zero.
     pub(crate) fn convolve_into(
         &self,
         spectrum: &EvenSpectrum,
-        input: &[f64],
+        (input, occupied): (&[f64], Range<usize>),
         output: &mut [f64],
         workspace: &mut TransformMemory,
         threads: &Threads,
     ) {
-        let rows = || 0..self.shape[0];
         // All three stages run in one call of the threads, which takes less time than three calls.
         self.divided(threads, || {
-            self.rows_in((input, rows()), workspace, threads);
-            self.columns_through(spectrum, rows(), workspace, threads);
+            self.rows_in((input, occupied.clone()), workspace, threads);
+            self.columns_through(spectrum, occupied, workspace, threads);
             let ny = self.shape[1];
             let per_task = self.shape[0].div_ceil(self.tasks);
             let workspace = &*workspace;

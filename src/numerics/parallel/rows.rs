@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::{LEAF, Threads, each_chunk};
+use super::{LEAF, Threads};
 
 /// Result of a pass: its parts are joined in a fixed order.
 pub(crate) trait Total: Send {
@@ -85,60 +85,6 @@ pub(crate) struct Rows<'a> {
     divided: bool,
 }
 
-/// Successive rows that one thread goes over.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RowBlock<'a> {
-    /// Number of the first row in the grid.
-    pub(crate) first: usize,
-    x: &'a [f64],
-    y: &'a [f64],
-}
-
-impl RowBlock<'_> {
-    /// Local range of this block's rows that lies in `rows`.
-    pub(crate) fn local(&self, rows: &Range<usize>) -> Range<usize> {
-        let [start, end] =
-            [rows.start, rows.end].map(|row| row.saturating_sub(self.first).min(self.x.len()));
-        start..end
-    }
-
-    /// Calls `row` with each row of all arrays, and joins what it returns.
-    pub(crate) fn each<const M: usize, const N: usize, T: Total>(
-        &self,
-        inputs: [&[f64]; M],
-        mut outputs: [&mut [f64]; N],
-        row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> T,
-    ) -> T {
-        let ny = self.y.len();
-        let mut total = T::ZERO;
-        for (k, &x) in self.x.iter().enumerate() {
-            let cells = k * ny..(k + 1) * ny;
-            let here = Row { number: self.first + k, x, y: self.y };
-            let from = inputs.map(|input| &input[cells.clone()]);
-            let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
-            total = total.joined(row(here, from, to));
-        }
-        total
-    }
-}
-
-/// Arrays that a pass writes, divided by rows.
-pub(crate) trait Written: Send + Sized {
-    /// The first `rows` rows of `ny` cells, and the others.
-    fn split(self, rows: usize, ny: usize) -> (Self, Self);
-}
-
-impl<const N: usize> Written for [&mut [f64]; N] {
-    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
-        let mut halves = self.map(|field| {
-            let (near, far) = field.split_at_mut(rows * ny);
-            [near, far]
-        });
-        let near = halves.each_mut().map(|[near, _]| std::mem::take(near));
-        (near, halves.map(|[_, far]| far))
-    }
-}
-
 impl<'a> Rows<'a> {
     /// The rows of a grid whose lines of cells have these `coordinates`, along x and along y.
     pub(crate) fn new(coordinates: &'a [Vec<f64>; 2], threads: &'a Threads) -> Self {
@@ -148,26 +94,6 @@ impl<'a> Rows<'a> {
             threads,
             leaf: (LEAF / ny.max(1)).max(1),
             divided: threads.divide(nx * ny),
-        }
-    }
-
-    /// Number of cells.
-    pub(crate) fn cells(&self) -> usize {
-        self.coordinates[0].len() * self.coordinates[1].len()
-    }
-
-    /// Makes each array zero, as long as there are cells; several at once, because the system takes
-    /// longer to hand out memory than a thread takes to write it.
-    pub(crate) fn zero(&self, arrays: &mut [&mut Vec<f64>]) {
-        let zero = |array: &mut &mut Vec<f64>| {
-            array.clear();
-            array.resize(self.cells(), 0.0);
-        };
-        if self.divided {
-            self.threads
-                .run(|| each_chunk(arrays, 1, 0, &|_, arrays| arrays.iter_mut().for_each(zero)));
-        } else {
-            arrays.iter_mut().for_each(zero);
         }
     }
 
@@ -187,45 +113,45 @@ impl<'a> Rows<'a> {
         outputs: [&mut [f64]; N],
         row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> T + Sync,
     ) -> T {
-        self.blocks(inputs, outputs, |block, inputs, outputs| block.each(inputs, outputs, &row))
-    }
-
-    /// Calls `block` with each block of rows of all arrays, and joins what it returns. Several operations
-    /// on one block find its rows in the caches.
-    pub(crate) fn blocks<const M: usize, W: Written, T: Total>(
-        &self,
-        inputs: [&[f64]; M],
-        outputs: W,
-        block: impl Fn(RowBlock, [&[f64]; M], W) -> T + Sync,
-    ) -> T {
         let rows = 0..self.coordinates[0].len();
         if self.divided {
-            self.threads.run(|| self.divide(rows, inputs, outputs, &block))
+            self.threads.run(|| self.divide(rows, inputs, outputs, &row))
         } else {
-            self.divide(rows, inputs, outputs, &block)
+            self.divide(rows, inputs, outputs, &row)
         }
     }
 
-    fn divide<const M: usize, W: Written, T: Total>(
+    fn divide<const M: usize, const N: usize, T: Total>(
         &self,
         rows: Range<usize>,
         inputs: [&[f64]; M],
-        outputs: W,
-        block: &(impl Fn(RowBlock, [&[f64]; M], W) -> T + Sync),
+        mut outputs: [&mut [f64]; N],
+        row: &(impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> T + Sync),
     ) -> T {
         let [x, y] = self.coordinates;
+        let ny = y.len();
         if rows.len() <= self.leaf {
-            let here = RowBlock { first: rows.start, x: &x[rows], y };
-            return block(here, inputs, outputs);
+            let mut total = T::ZERO;
+            for (k, number) in rows.enumerate() {
+                let cells = k * ny..(k + 1) * ny;
+                let from = inputs.map(|input| &input[cells.clone()]);
+                let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
+                total = total.joined(row(Row { number, x: x[number], y }, from, to));
+            }
+            return total;
         }
         let first = rows.len().div_ceil(2).next_multiple_of(self.leaf);
         let middle = rows.start + first;
-        let near = inputs.map(|input| &input[..first * y.len()]);
-        let far = inputs.map(|input| &input[first * y.len()..]);
-        let (here, there) = outputs.split(first, y.len());
+        let [near, far] = [inputs.map(|i| &i[..first * ny]), inputs.map(|i| &i[first * ny..])];
+        let mut halves = outputs.map(|output| {
+            let (here, there) = output.split_at_mut(first * ny);
+            [here, there]
+        });
+        let here = halves.each_mut().map(|[here, _]| std::mem::take(here));
+        let there = halves.map(|[_, there]| there);
         let (a, b) = self.both(
-            || self.divide(rows.start..middle, near, here, block),
-            || self.divide(middle..rows.end, far, there, block),
+            || self.divide(rows.start..middle, near, here, row),
+            || self.divide(middle..rows.end, far, there, row),
         );
         a.joined(b)
     }

@@ -37,9 +37,32 @@ pub(crate) fn worth_dividing(cells: usize) -> bool {
     }
 }
 
-/// Number of threads that the machine offers this process.
-fn available() -> usize {
-    thread::available_parallelism().map_or(1, usize::from)
+/// Environment variable that limits the number of threads of plans.
+const OWN_VARIABLE: &str = "NACRE_NUM_THREADS";
+
+/// Variables that take its place where it is not set: batch scripts and pools of processes set them, so that
+/// processes on one machine do not start cores × cores threads. Values that are no number of threads are
+/// ignored, since they are meant for others.
+const SHARED_VARIABLES: [&str; 2] = ["RAYON_NUM_THREADS", "OMP_NUM_THREADS"];
+
+/// Number of threads where none is given: as many as the machine offers this process, and not more than the
+/// first of the environment variables says. `variable` returns the value of one.
+///
+/// # Errors
+/// Where the value of [`OWN_VARIABLE`] is no number of threads.
+fn default_count(variable: impl Fn(&str) -> Option<String>) -> Result<usize> {
+    let offered = thread::available_parallelism().map_or(1, usize::from).min(THREAD_LIMIT);
+    let set = |name: &str| variable(name).filter(|value| !value.trim().is_empty());
+    let number = |value: &str| value.trim().parse().ok().filter(|&count: &usize| count > 0);
+    if let Some(value) = set(OWN_VARIABLE) {
+        let requirement = "a whole number of at least 1";
+        let limit = number(&value).ok_or(Error::Choice { name: OWN_VARIABLE, requirement, value });
+        return Ok(offered.min(limit?));
+    }
+    // OpenMP permits a list: the numbers of nested levels.
+    let first = |value: String| number(value.split(',').next()?);
+    let limit = SHARED_VARIABLES.into_iter().find_map(|name| set(name).and_then(first));
+    Ok(limit.map_or(offered, |limit| offered.min(limit)))
 }
 
 /// A number of threads, and the pool of these threads, which is created at first use.
@@ -66,9 +89,14 @@ impl fmt::Debug for Threads {
 }
 
 impl Threads {
-    /// `count` threads, or as many as the machine offers this process where it is `None`.
+    /// `count` threads; where it is `None`, as many as the machine offers this process, or fewer where environment
+    /// variables say so.
+    ///
+    /// # Errors
+    /// Unless there are 1 to 256; a wrong value of the variable.
     pub(crate) fn new(count: Option<usize>) -> Result<Self> {
-        match count.unwrap_or_else(available) {
+        let default = || default_count(|name| std::env::var(name).ok());
+        match count.map_or_else(default, Ok)? {
             0 => Err(Error::Parameter { name: "threads", requirement: "at least 1", value: 0.0 }),
             count if count > THREAD_LIMIT => Err(Error::Parameter {
                 name: "threads",
@@ -95,7 +123,10 @@ impl Threads {
                 pool.calls.fetch_add(1, Ordering::AcqRel);
                 pool.install(work)
             }
-            None => work(),
+            None => {
+                stay_here();
+                work()
+            }
         }
     }
 
@@ -147,6 +178,16 @@ impl Threads {
                 Some(new)
             }
         }
+    }
+}
+
+/// Makes a pool of the calling thread alone where it belongs to none, as where the system starts no more threads.
+/// Parallel iterators would start rayon's global pool otherwise, and panic. The pool lasts as long as the thread.
+fn stay_here() {
+    if rayon::current_thread_index().is_none()
+        && let Ok(pool) = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()
+    {
+        std::mem::forget(pool);
     }
 }
 
@@ -279,12 +320,42 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use super::{DIVIDED_CELLS, LEAF, Threads, each_chunk, each_row, join, number};
+    use super::{
+        DIVIDED_CELLS, LEAF, Threads, default_count, each_chunk, each_row, join, number, stay_here,
+    };
     use crate::error::Result;
 
     /// Whether the caller is a thread of a pool.
     fn in_pool() -> bool {
         rayon::current_thread_index().is_some()
+    }
+
+    #[test]
+    fn the_first_variable_that_is_set_limits_the_threads() -> Result<()> {
+        let [nacre, rayon, openmp] = ["NACRE_NUM_THREADS", "RAYON_NUM_THREADS", "OMP_NUM_THREADS"];
+        let count = |set: &[(&str, &str)]| {
+            default_count(|name| Some(set.iter().find(|(n, _)| *n == name)?.1.to_owned()))
+        };
+        let all = count(&[])?;
+        assert!((1..=256).contains(&all));
+        for name in [nacre, rayon, openmp] {
+            assert_eq!(count(&[(name, "1")])?, 1);
+            assert_eq!(count(&[(name, " 1 ")])?, 1);
+            assert_eq!(count(&[(name, "4000")])?, all);
+            assert_eq!(count(&[(name, "")])?, all);
+        }
+        assert_eq!(count(&[(nacre, "4000"), (rayon, "1"), (openmp, "1")])?, all);
+        assert_eq!(count(&[(rayon, "4000"), (openmp, "1")])?, all);
+        assert_eq!(count(&[(openmp, "1,4")])?, 1);
+        // In RAYON_NUM_THREADS, 0 stands for all.
+        for ignored in ["0", "-1", "many", "1.5"] {
+            assert_eq!(count(&[(rayon, ignored), (openmp, "1")])?, 1);
+            assert_eq!(count(&[(openmp, ignored)])?, all);
+            let said = count(&[(nacre, ignored)]).expect_err("no number of threads").to_string();
+            let wanted = "NACRE_NUM_THREADS must be a whole number of at least 1, got";
+            assert_eq!(said, format!("{wanted} {ignored:?}"));
+        }
+        Ok(())
     }
 
     #[test]
@@ -333,6 +404,20 @@ mod tests {
         assert_eq!(threads.both(in_pool, in_pool), (false, false));
         let within = threads.run(|| threads.both(in_pool, in_pool));
         assert_eq!(within, (true, true));
+        Ok(())
+    }
+
+    #[test]
+    fn a_thread_that_stays_alone_does_all_work() -> Result<()> {
+        let threads = Threads::new(Some(2))?;
+        let alone = thread::spawn(|| {
+            stay_here();
+            stay_here();
+            let (here, there) = join(|| thread::current().id(), || thread::current().id());
+            here == there && rayon::current_num_threads() == 1
+        });
+        assert!(alone.join().is_ok_and(|alone| alone));
+        assert_eq!(threads.run(rayon::current_num_threads), 2);
         Ok(())
     }
 

@@ -8,14 +8,16 @@ use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::model::surface::{self, Profile, Shifted, Superposition, Surface};
 use crate::python::arguments::{Real, Repr, hash};
 use crate::python::grid::PyGrid;
 use crate::python::value::{Arguments, Reduced, call_text};
 
-/// A kind of shape with a Python class of the same name. `repr` and pickles are made of its arguments.
-pub(super) trait Kind: Surface {
+/// A kind of shape with a Python class of the same name, which is also data. `repr` and pickles are made of its arguments.
+pub(super) trait Kind: Surface + Serialize + DeserializeOwned {
     /// Class of the objects.
     type Class: PyClass<BaseType = PyShape>;
     /// What an object of the class holds beside its shape: nothing.
