@@ -250,7 +250,7 @@ class Solution(Result, Stressed):
 
     @cached_property
     def _numbers(self) -> Numbers:
-        numbers: Numbers = tuples(json.loads(self._solved.numbers()))
+        numbers: Numbers = tuples(self._solved.numbers())
         return numbers
 
     @cached_property

@@ -140,8 +140,8 @@ struct Position {
     tilt: [f64; 2],
 }
 
-/// Numbers of a solution.
-#[derive(Serialize)]
+/// Numbers of a solution, a dict for Python.
+#[derive(IntoPyObject)]
 struct Numbers {
     load: f64,
     eccentricity: [f64; 2],
@@ -198,10 +198,9 @@ impl PySolved {
         Ok(solution.yielding(hardness, field("indentation")?)?.into())
     }
 
-    /// JSON text of all numbers.
-    fn numbers(&self) -> PyResult<String> {
+    fn numbers(&self) -> Numbers {
         let of = &self.0;
-        text(&Numbers {
+        Numbers {
             load: of.load(),
             eccentricity: of.eccentricity(),
             moment: of.moment(),
@@ -213,7 +212,7 @@ impl PySolved {
             peak_position: of.peak_position(),
             central_pressure: of.central_pressure(),
             plastic_work: of.plastic_work(),
-        })
+        }
     }
 
     /// Array of that name, or `None`; the hardness may be a number.
