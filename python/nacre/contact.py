@@ -451,48 +451,12 @@ class Contact:
         ----------
         shape : Shape
             Shape that is pressed in.
-        load : float, optional
-            Force W that presses the bodies together [N], above 0; a force per length [N/m] on a
-            `Grid.line`. Either `load` or `approach` is given.
-        approach : float, optional
-            Distance by which the shape moves towards the body at x = y = 0 [m], from the position
-            in which the plane h = 0 of the shape lies on the surface of the body. Below 0 the
-            bodies are apart.
-        eccentricity : tuple of float or None, optional
-            Point ``(e_x, e_y)`` at which the load acts [m]. Along a direction with a number the
-            shape is free to tilt, and the tilt that balances the moment is found; along a direction
-            with None it is not, and the tilt is 0 or what `tilt` says. It needs `load`, and the
-            point must lie inside the region that can touch.
-        moment : tuple of float or None, optional
-            First moments of the pressure about x = y = 0, ``(∬ p x dA, ∬ p y dA)`` [N m]: load
-            times eccentricity, for contacts under a given approach too. None means the same as in
-            `eccentricity`.
-        tilt : tuple of float or None, optional
-            Slopes ``(s_x, s_y)`` by which the shape is turned [rad]: at positive x, a positive s_x
-            brings it nearer to the body. None stands for 0 along a direction without eccentricity
-            or moment.
-        hardness : float or array_like, optional
-            Largest pressure H that the surfaces can carry [Pa], above 0, of all cells or of each,
-            ``(nx, ny)``: cells that would carry more yield, and keep a permanent indentation
-            (`Solution.indentation`). By default they do not yield.
-        tolerance : float, optional
-            Largest `Report.residual` and `Report.overlap` of a converged solution, both relative,
-            above 0 and below 1.
-        max_iterations : int, optional
-            Iterations of one solve before it gives up; 10 000 by default.
-        algorithm : {"cascade", "polonsky-keer"}, optional
-            Preconditioned conjugate gradients on nested grids, in a window around the contact; or
-            the method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference.
-        initial : Solution or array_like, optional
-            Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution close to the one
-            sought, on the same grid, such as the previous one of a series. The result does not
-            depend on it, except that the surfaces keep the permanent indentation of a solution: a
-            history of loads goes from one to the next.
-        progress : callable, optional
-            Function that is called with a `Report` at each iteration; returning False stops, and
-            gives the unfinished solution.
-        check : bool, optional
-            Whether to raise an error if the tolerance was not met.
+        load, approach, eccentricity, moment, tilt : optional
+            Rigid motion, as `nacre.solve` explains.
+        hardness, tolerance, max_iterations, algorithm : optional
+            How the solution is found, as `nacre.solve` explains.
+        initial, progress, check : optional
+            Where it starts, who is told, and whether it must converge, as `nacre.solve` explains.
 
         Returns
         -------
@@ -533,18 +497,8 @@ class Contact:
         cases : iterable of mapping
             Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
             `approach`, `eccentricity`, `moment`, `tilt`.
-        hardness : float or array_like, optional
-            Largest pressure H that the surfaces can carry [Pa], above 0, of all cells or of each,
-            ``(nx, ny)``: cells that would carry more yield, and keep a permanent indentation
-            (`Solution.indentation`). By default they do not yield.
-        tolerance : float, optional
-            Largest `Report.residual` and `Report.overlap` of a converged solution, both relative,
-            above 0 and below 1.
-        max_iterations : int, optional
-            Iterations of one solve before it gives up; 10 000 by default.
-        algorithm : {"cascade", "polonsky-keer"}, optional
-            Preconditioned conjugate gradients on nested grids, in a window around the contact; or
-            the method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference.
+        hardness, tolerance, max_iterations, algorithm : optional
+            How the solutions are found, as `nacre.solve` explains.
         progress : callable, optional
             Function that is called with the number of finished cases and of all cases, at most 50
             times a second, and at the end. Its result is ignored.

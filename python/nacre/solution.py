@@ -43,8 +43,6 @@ OPTIONAL = ("hardness", "indentation", "coefficients")
 """Fields in the state of a solution that has them."""
 ENDLESS = ("residual", "overlap")
 """Numbers of a report that may be infinite, of which JSON has none."""
-TOLD = ("free_ends", "warning_kinds", "_told")
-"""Fields of a report that follow from its state."""
 
 
 class Numbers(TypedDict):
@@ -75,6 +73,7 @@ class Report(Result):
     ('converged', True, [])
     """
 
+    _TOLD = ("free_ends", "warning_kinds", "_told")
     _LATER = ("rolling_direction",)
 
     termination: Ending
@@ -178,10 +177,6 @@ class Report(Result):
         """Return the state, but for grid and bodies, in what the compiled module tells."""
         data: dict[str, Any] = told["data"]
         return data | {name: math.inf for name in ENDLESS if data[name] is None}
-
-    @classmethod
-    def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name not in TOLD]
 
     def _state(self) -> dict[str, Any]:
         bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
