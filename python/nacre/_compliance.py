@@ -231,7 +231,7 @@ class Convolution:
     coefficients : array_like
         Influence coefficients C ``(nx, ny)`` [m/Pa] of the offsets ``(i dx, j dy)``, ``i, j >= 0``.
     threads : int, optional
-        Number of threads; all of the machine's by default.
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
 
     Raises
     ------
@@ -281,7 +281,7 @@ class Convolution:
         counterbody : HalfSpace or Elastic, optional
             Second body under the same pressure; rigid where there is none.
         threads : int, optional
-            Number of threads; all of the machine's by default.
+            Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
 
         Returns
         -------

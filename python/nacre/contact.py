@@ -66,7 +66,7 @@ def solve(
         Cells of the pressure; by default those of an `initial` solution whose surfaces have a
         permanent indentation. An endless shape, such as a cylinder, needs a grid.
     threads : int, optional
-        Number of threads; all of the machine's by default.
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     load : float, optional
         Force W that presses the bodies together [N], above 0; a force per length [N/m] on a
         `Grid.line`. Either `load` or `approach` is given.
@@ -181,7 +181,7 @@ def slide(
     grid : Grid, optional
         Cells of pressure and traction; by default that of `solve` for the largest load.
     threads : int, optional
-        Number of threads; all of the machine's by default.
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     steps : iterable of mapping, optional
         Steps of a history, each a mapping of the keywords from `load` to `torque`. Motion along z
         and friction that a step does not give stay as in the step before; at first, they are
@@ -292,7 +292,7 @@ def roll(
     grid : Grid, optional
         Cells of pressure and traction; by default that of `solve`.
     threads : int, optional
-        Number of threads; all of the machine's by default.
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     load, approach, eccentricity, moment, tilt : optional
         Motion along z, as `Contact.solve` explains.
     friction : float or array_like
@@ -359,7 +359,7 @@ class Contact:
         Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another
         method of `influence_coefficients`; by default the exact ones of the bodies.
     threads : int, optional
-        Number of threads; all of the machine's by default.
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
 
     Raises
     ------

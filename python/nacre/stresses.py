@@ -591,7 +591,7 @@ class Stressed:
             to it, by number (0 at the surface) or name, and ``"substrate"``; a sequence holds it
             from the surface down.
         threads : int, optional
-            Number of threads; all of the machine's by default.
+            Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
         progress : callable, optional
             Function that is called with the part of the work that is done, from 0 to 1; returning
             False stops, and gives the depths that are done.
@@ -697,7 +697,7 @@ class Stressed:
         body : {"body", "counterbody"}, optional
             Body in which stress is evaluated.
         threads : int, optional
-            Number of threads of the plan; all of the machine's by default.
+            Number of threads of the plan; by default as for `Contact`.
 
         Returns
         -------

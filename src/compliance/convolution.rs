@@ -76,7 +76,7 @@ struct ConvolutionMemory {
 
 impl Convolution {
     /// Plans the convolution with `coefficients` (nx, ny), given at offsets ≥ 0, on `threads`
-    /// threads; `None` stands for all threads of the machine.
+    /// threads; `None` stands for all threads of the machine, or fewer where `NACRE_NUM_THREADS` is set.
     ///
     /// # Errors
     /// Where a coefficient is not finite, the shape is empty, `threads` is 0, or there is too little memory.
