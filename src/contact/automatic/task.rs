@@ -33,6 +33,8 @@ pub(super) struct Task<'a> {
     pub(super) motion: &'a Motion,
     /// Range of x in which both bodies go on.
     pub(super) ends: [f64; 2],
+    /// Largest number of cells.
+    pub(super) most: usize,
 }
 
 impl Task<'_> {
@@ -43,6 +45,13 @@ impl Task<'_> {
         let frame = [[frame[0][0].max(low), frame[0][1].min(high)], frame[1]];
         Grid::new(shape, frame.map(|[low, high]| high - low))?
             .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
+    }
+
+    /// Numbers of `cells` along both axes, or fewer in the same ratio where they are too many.
+    pub(super) fn at_most(&self, cells: [usize; 2]) -> [usize; 2] {
+        let product = cells[0].saturating_mul(cells[1]);
+        let larger = (product as f64 / self.most as f64).sqrt().max(1.0);
+        cells.map(|n| ((n as f64 / larger) as usize).max(1))
     }
 
     /// Plans one grid, and solves on it.
