@@ -410,7 +410,7 @@ impl<'a> Session<'a> {
 }
 
 /// Earlier changes of the pressure that are looked at.
-const DEPTH: usize = 5;
+const DEPTH: usize = 20;
 
 /// The pressure of the next sweep, from those of the last ones and what became of them: Anderson, J. ACM 12 (1965) 547,
 /// doi:10.1145/321296.321305, as Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715, eq. (2.1), doi:10.1137/10078356X, have
