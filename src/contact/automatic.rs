@@ -278,12 +278,7 @@ impl Refinement {
 
 /// The grid whose cells are divided along `axes`, into the first of these numbers of `parts` with which there are
 /// not too many; `None` where there always are.
-fn divided(
-    task: &Task,
-    grid: &Grid,
-    axes: [bool; 2],
-    parts: &[usize],
-) -> Result<Option<Grid>> {
+fn divided(task: &Task, grid: &Grid, axes: [bool; 2], parts: &[usize]) -> Result<Option<Grid>> {
     for parts in parts {
         let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { *parts } else { 1 });
         if shape[0].saturating_mul(shape[1]) <= task.most {

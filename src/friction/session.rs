@@ -226,8 +226,7 @@ impl<'a> Session<'a> {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
                 false => vec![traction.clone()],
             };
-            let pressed =
-                PressedCells { grid, bound: &bound, spreading: &self.spreading(&acting) };
+            let pressed = PressedCells { grid, bound: &bound, spreading: &self.spreading(&acting) };
             let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());

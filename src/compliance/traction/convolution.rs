@@ -87,7 +87,8 @@ impl Tangential {
         let [inverted, [along, cross, across]] = [&periodic, &transform].map(&mut both);
         let inverse = periodic.inverse_spectra(inverted, self.inverse(&periodic, shape));
         let coupling = self.is_coupled().then(|| {
-            [(zx, [true, false]), (zy, [false, true])].map(|(all, odd)| spectrum(&transform, all, odd))
+            [(zx, [true, false]), (zy, [false, true])]
+                .map(|(all, odd)| spectrum(&transform, all, odd))
         });
         TangentialWindow {
             shape,
