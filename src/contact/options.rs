@@ -49,8 +49,8 @@ pub struct Options {
     /// Permanent indentation (nx, ny) \[m\] that the surfaces have already: that of the solution before, in a
     /// history of loads. Default: none.
     pub indentation: Option<Array2<f64>>,
-    /// Largest number of cells of a grid that is chosen, at least 2304. Where the contact needs more, the solution has a
-    /// warning. Default: 2²², which take 0.7 GB.
+    /// Largest number of cells of a grid that is chosen, at least 4096. Where the peak pressure needs more, the solution
+    /// has a warning. Default: 2²², which take 0.7 GB.
     pub cells: Option<usize>,
 }
 
@@ -71,8 +71,8 @@ impl Default for Options {
 /// Default of [`Options::cells`].
 const LARGEST_GRID: usize = 1 << 22;
 
-/// Least of [`Options::cells`]: the cells of the grid on which the contact is searched.
-const SMALLEST_GRID: usize = 48 * 48;
+/// Least of [`Options::cells`]: with fewer along an axis there is no coarser grid, and no estimate of the error.
+const SMALLEST_GRID: usize = 64 * 64;
 
 /// Default of [`Options::max_iterations`]: far above the 10 … 300 that solvable problems take.
 const MAX_ITERATIONS: usize = 10_000;
@@ -89,7 +89,7 @@ impl Options {
     /// The largest number of cells of a grid that is chosen, checked.
     pub(super) fn largest_grid(&self) -> Result<usize> {
         let most = self.cells.unwrap_or(LARGEST_GRID);
-        require("cells", most as f64, most >= SMALLEST_GRID, "at least 2304")?;
+        require("cells", most as f64, most >= SMALLEST_GRID, "at least 4096")?;
         Ok(most)
     }
 }

@@ -265,7 +265,7 @@ fn a_cap_on_the_cells_is_kept() -> Result<()> {
         solve_with(&roller, &body, &Setup::default(), &motion, &options)
     };
     let own = solve(None)?;
-    for most in [40_000, 10_000, 2304] {
+    for most in [40_000, 10_000, 4096] {
         let found = solve(Some(most))?;
         let [nx, ny] = found.grid().shape();
         assert!(nx * ny <= most, "{nx} {ny}");
@@ -276,7 +276,7 @@ fn a_cap_on_the_cells_is_kept() -> Result<()> {
         let warned = found.report.warnings.iter().any(|w| matches!(w, Warning::PeakError { .. }));
         assert!(warned || peak.is_some_and(|error| error <= 0.01), "{most}: {peak:?}");
     }
-    assert!(solve(Some(2303)).is_err());
+    assert!(solve(Some(4095)).is_err());
     Ok(())
 }
 

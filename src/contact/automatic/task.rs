@@ -47,11 +47,14 @@ impl Task<'_> {
             .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
     }
 
-    /// Numbers of `cells` along both axes, or fewer in the same ratio where they are too many.
+    /// Numbers of `cells` along both axes; fewer along the longer one where they are too many, and along both where that is
+    /// not enough.
     pub(super) fn at_most(&self, cells: [usize; 2]) -> [usize; 2] {
-        let product = cells[0].saturating_mul(cells[1]);
-        let larger = (product as f64 / self.most as f64).sqrt().max(1.0);
-        cells.map(|n| ((n as f64 / larger) as usize).max(1))
+        let axis = usize::from(cells[1] < cells[0]);
+        let mut fewer = cells;
+        fewer[axis] = cells[axis].clamp(1, self.most.isqrt());
+        fewer[1 - axis] = cells[1 - axis].min(self.most / fewer[axis]);
+        fewer
     }
 
     /// Plans one grid, and solves on it.
