@@ -25,7 +25,7 @@ use crate::numerics::parallel::dot;
 pub type FrictionProgress<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// Sweeps between pressure and tractions.
-const MOST_SWEEPS: usize = 60;
+const MOST_SWEEPS: usize = 200;
 
 /// Change of the pressure to which tractions are found while it changes.
 const LOOSE: f64 = 0.01;
