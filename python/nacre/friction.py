@@ -14,6 +14,7 @@ from nacre._tools.extras import extra
 from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
+from nacre.results import display
 from nacre.results.base import Result, checked
 
 if TYPE_CHECKING:
@@ -49,12 +50,17 @@ class CreepCoefficients(Result):
     semi_axes: tuple[float, float]
     """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
 
-    def __repr__(self) -> str:
-        """Return the coefficients with their errors."""
+    def _rows(self) -> list[tuple[str, str]]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
-        shown = ", ".join(f"{name} {c:.4f} ± {error:.4f}" for name, c, error in numbers)
-        return f"<CreepCoefficients: {shown}>"
+        return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
+
+    def __repr__(self) -> str:
+        """Return the coefficients with their errors."""
+        return f"<CreepCoefficients: {', '.join(' '.join(row) for row in self._rows())}>"
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows())
 
 
 def creep_coefficients(

@@ -447,6 +447,17 @@ class StressSummary(Result):
         ------
         ValueError
             If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+        >>> summary = solution.stress_summary()
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
+        True
         """
         return files.save(path, files.tabular(self, self._rows()))
 
