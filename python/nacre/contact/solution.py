@@ -361,6 +361,11 @@ class Solution(Result, Stressed):
         return self._numbers["contact_area"]
 
     @property
+    def contact_share(self) -> float:
+        """Share of the grid that is in contact; of a periodic surface, that of its area."""
+        return int(self.in_contact.sum()) / self.in_contact.size
+
+    @property
     def contact_extent(self) -> tuple[Pair, Pair]:
         """Ends of the contact ``((x0, x1), (y0, y1))`` [m], accurate to a fraction of a cell."""
         return self._numbers["contact_extent"]

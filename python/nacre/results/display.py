@@ -117,6 +117,13 @@ def _extent(solution: Solution) -> str:
     return sides[1] if solution.report.grid.is_line else " × ".join(sides)
 
 
+def _contact_share(solution: Solution) -> str | None:
+    """Return the share of the area; beside one contact, the area of the grid means nothing."""
+    return (
+        f"{100 * solution.contact_share:.3g} % of the area" if all(solution.grid.periodic) else None
+    )
+
+
 def _hardness(solution: Solution) -> str | None:
     if (hardness := solution.hardness) is None:
         return None
@@ -156,6 +163,7 @@ NORMAL_TEXTS: Texts = {
     "peak_pressure": lambda s: _estimated(s, "peak_pressure", "Pa"),
     "peak_position": lambda s: _centred(s, "peak_position", "m"),
     "contact_extent": _extent,
+    "contact_share": _contact_share,
     "hardness": _hardness,
     "indentation": _indentation,
 }

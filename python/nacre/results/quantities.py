@@ -82,6 +82,7 @@ CONTACT = (
     Quantity("peak_position", "centre of that cell", "m", dims=AXIS, label="at"),
     Quantity("contact_extent", "ends of the contact", "m", dims=("axis", "end"), label="contact"),
     Quantity("contact_area", "area in contact", "m²", "m", label="area"),
+    Quantity("contact_share", "share of the grid in contact", label="share"),
     Quantity("central_pressure", "pressure at the origin", "Pa"),
     Quantity("plastic_work", "energy that the permanent indentation has taken", "J", "J/m"),
     Quantity("pressure", "pressure", "Pa", dims=CELLS),

@@ -720,6 +720,7 @@ def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
             TypeError,
             "stress must",
         ),
+        ((lambda load: BALL, {"load": [1.0]}), {}, TypeError, "case must return the arguments"),
         (({"body": STEEL}, {"force": [1.0]}), {}, TypeError, "case must give arguments .*force"),
         (({"progress": print}, {"load": [1.0]}), {}, TypeError, "is not a value that can be kept"),
     ],
