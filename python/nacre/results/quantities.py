@@ -84,6 +84,7 @@ CONTACT = (
     Quantity("contact_area", "area in contact", "m²", "m", label="area"),
     Quantity("contact_share", "share of the grid in contact", label="share"),
     Quantity("central_pressure", "pressure at the origin", "Pa"),
+    Quantity("elastic_energy", "elastic energy of the bodies", "J", "J/m"),
     Quantity("plastic_work", "energy that the permanent indentation has taken", "J", "J/m"),
     Quantity("pressure", "pressure", "Pa", dims=CELLS),
     Quantity("gap", "gap; infinite where the shape cannot touch", "m", dims=CELLS),
