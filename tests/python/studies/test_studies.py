@@ -744,9 +744,8 @@ def test_a_force_table_is_the_solves_and_its_stiffness_the_slope() -> None:
     assert table.stiffness[here].values.tolist() == solution.stiffness().tolist()
     # Central differences are exact to the square of the step, and to the cells that join or leave.
     along = table["load"].differentiate("approach")[here].item()
-    assert along == pytest.approx(
-        table.stiffness.sel(row="load", column="approach")[here], rel=1e-3
-    )
+    expected = table.stiffness.sel(row="load", column="approach")[here].item()
+    assert along == pytest.approx(expected, rel=1e-3)
     turned = table.moment.sel(axis="x").differentiate("tilt_x")[here].item()
     expected = table.stiffness.sel(row="moment x", column="tilt x")[here].item()
     assert turned == pytest.approx(expected, rel=1e-2)
