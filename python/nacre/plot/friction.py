@@ -138,7 +138,7 @@ def _rolling(axes: Axes, direction: str) -> None:
     sign, axis = (-1 if direction[0] == "-" else 1), "xy".index(direction[1])
     ends = np.full((2, 2), 0.0)
     ends[:, axis] = 0.05 * sign * np.array([-1, 1])
-    start, end = [*ends, 1.08, 0.58]
+    start, end = ends + np.array([1.08, 0.58])
     style = {"arrowstyle": "-|>", "color": "0.25", "linewidth": 1.8, "mutation_scale": 14}
     place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
     axes.annotate("", end, start, arrowprops=style, annotation_clip=False, **place)
