@@ -28,7 +28,7 @@ mod core {
     use super::arguments::plain;
     use super::bodies::{self, PyRigid};
     #[pymodule_export]
-    use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
+    use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse};
     #[pymodule_export]
     use super::coefficients::{
         PyConvolution, frequency_response, graded_layers, influence_coefficients,
