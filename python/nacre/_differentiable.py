@@ -211,7 +211,7 @@ class Differentiable:
                 if "approach" in made:
                     made["approach"] -= lowest
             planned = {name: made.pop(name) for name in PLANNED if name in made}
-            plan = self.plans.at(repr(planned), lambda: Contact(**planned))
+            plan = self.plans.at(tuple(planned.items()), lambda: Contact(**planned))
             return Point(names, given, plan.solve(shape, **made), lowest)
         except Exception as error:
             at = ", ".join(f"{k} = {v:.6g}" for k, v in zip(names, x[:n], strict=True))

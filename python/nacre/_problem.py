@@ -59,7 +59,7 @@ class Problem:
     solves: int = 0
     grids: list[core.Grid] = field(default_factory=list)
     known: dict[bytes, Point] = field(default_factory=dict)
-    plans: dict[int, tuple[Contact, str]] = field(default_factory=dict)
+    plans: dict[int, tuple[Contact, dict[str, Any]]] = field(default_factory=dict)
 
     def named(self, x: Array) -> dict[str, float]:
         pairs = zip(self.scales, x, strict=True)
@@ -153,10 +153,9 @@ class Problem:
         made = {"tolerance": ACCURATE, **made, "grid": self.grids[k]}
         names = ("body", "counterbody", "grid", "threads")
         planned = {name: made.pop(name) for name in names if name in made}
-        told = repr(planned)
-        plan = next((p for p, text in self.plans.values() if text == told), None)
+        plan = next((p for p, given in self.plans.values() if given == planned), None)
         plan = plan or Contact(**planned)
-        self.plans[k] = plan, told
+        self.plans[k] = plan, planned
         return plan.solve(made.pop("shape"), **({"initial": last} | made))
 
     def changes(

@@ -15,6 +15,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._extras import extra
 from nacre._patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre._typing import Body
 from nacre.contact import Contact
 from nacre.solution import Solution
 from nacre.units import symbol
@@ -135,9 +136,9 @@ def spectral_slope(surface: core.HeightMap) -> float:
 
 def load_curve(
     shape: core.HeightMap | Any,
-    body: core.HalfSpace | core.Elastic,
+    body: Body,
     pressures: Sequence[float],
-    counterbody: core.HalfSpace | core.Elastic | None = None,
+    counterbody: Body | None = None,
     *,
     grid: core.Grid | None = None,
     **keywords: Any,

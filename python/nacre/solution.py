@@ -17,7 +17,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre import _display, values
 from nacre._result import Result, as_text, tuples
-from nacre._typing import Ending, Field, Matrix, Pair, Vector
+from nacre._typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre.gradient import Direction, Gradient, Made, Output, described, gradients, linearised
 from nacre.stresses import Stressed
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Parts = tuple[str, core.Grid, core.HalfSpace, core.HalfSpace | None]
+Parts = tuple[str, core.Grid, Planned, Planned | None]
 """JSON text of a report, its grid and its bodies."""
 
 BODIES: dict[str, Any] = {
     "grid": core.Grid,
-    "body": core.HalfSpace,
-    "counterbody": core.HalfSpace | None,
+    "body": Planned,
+    "counterbody": Planned | None,
 }
 """Classes of what stands beside the numbers of a report."""
 NESTED = {
@@ -129,9 +129,9 @@ class Report(Result):
     """
     grid: core.Grid
     """Grid of the solve."""
-    body: core.HalfSpace
+    body: Planned
     """Body that the shape was pressed into."""
-    counterbody: core.HalfSpace | None
+    counterbody: Planned | None
     """Body that carries the shape; rigid where `None`."""
     motion: dict[str, Any]
     """Motion that was asked for, as keywords of `Contact.solve`: load or approach, and the tilts.

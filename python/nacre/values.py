@@ -37,8 +37,8 @@ FIELDS: dict[type, tuple[str, ...]] = {
         | core.SampledProfile
         | core.Shape,
     )
-}
-"""Arguments of each class's constructor, which are attributes of the same names."""
+} | {core.Response: ("values", "local")}
+"""Arguments that make each class, which are attributes of the same names."""
 MADE: dict[str, Any] = {
     f"{kind.__name__}.{name}": getattr(kind, name)
     for kind in (core.Tip, core.Adhesion)
@@ -57,6 +57,7 @@ def _positional(make: Any) -> tuple[str, ...]:
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
     **{name: (make, _positional(make)) for name, make in MADE.items()},
+    "Response": (core.Response._of, FIELDS[core.Response]),
     "Grid.line": (core.Grid.line, ("cells", "width", "center")),
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
 }

@@ -360,13 +360,16 @@ impl PyResponse {
         Ok(self.sampled()?.beside())
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let sampled = self.sampled()?;
-        let lengths = sampled.lengths().map(|[shortest, longest]| {
-            format!("lengths {shortest:.1e} to {longest:.1e} m")
-        });
-        let lengths = lengths.unwrap_or("no lengths".to_owned());
-        Ok(format!("<Response: {lengths}, local compliance {:.6e} m/Pa>", sampled.local()))
+    /// Limits of ``alpha u_z/p`` [1/Pa] at long and at short waves, found from the values, without the springs.
+    #[getter]
+    fn limits(&self) -> (f64, f64) {
+        let limits = self.0.asymptotes();
+        (limits.long, limits.short)
+    }
+
+    fn __repr__(&self) -> String {
+        let ((long, short), local) = (self.limits(), self.0.local());
+        format!("<Response: limits ({long:.4e}, {short:.4e}) 1/Pa, springs {local:.4e} m/Pa>")
     }
 
     fn __hash__(&self) -> PyResult<u64> {

@@ -18,7 +18,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._display import aligned, table
 from nacre._result import Result
-from nacre._typing import Body, Field, Matrix, Vector
+from nacre._typing import Field, Layers, Matrix, Vector
 from nacre.units import INDENT_UNITS, printable, written
 from nacre.values import decode, encode, refusing
 
@@ -487,9 +487,9 @@ class Indentation:
 
     def __new__(
         cls,
-        body: Body,
+        body: Layers,
         tip: core.Tip,
-        counterbody: Body | None = None,
+        counterbody: Layers | None = None,
         *,
         adhesion: core.Adhesion | None = None,
     ) -> Self:
@@ -661,9 +661,9 @@ def said(value: float, name: str) -> str:
 
 
 def solve(
-    body: Body,
+    body: Layers,
     tip: core.Tip,
-    counterbody: Body | None = None,
+    counterbody: Layers | None = None,
     *,
     adhesion: core.Adhesion | None = None,
     load: npt.ArrayLike | None = None,
