@@ -2,12 +2,15 @@
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use super::arguments::{array_repr, hash};
 
 /// Arguments of a call by name, in their order.
 pub(super) type Arguments<'py> = Vec<(&'static str, Bound<'py, PyAny>)>;
+
+/// Name of an argument that paths do not name, but the arguments of which.
+pub(super) const INNER: &str = ".";
 
 /// A value that a call of its class makes.
 pub(super) trait Value {
@@ -23,6 +26,14 @@ pub(super) trait Value {
 
     /// Arguments of the call that makes the value.
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>>;
+}
+
+/// Arguments by name, as a dict.
+pub(super) type ByName<'py> = Bound<'py, PyDict>;
+
+/// Arguments of the call that makes a value, by name.
+pub(super) fn by_name<'py>(value: &impl Value, py: Python<'py>) -> PyResult<ByName<'py>> {
+    value.arguments(py)?.into_py_dict(py)
 }
 
 /// Text of the call that makes a value.
@@ -136,6 +147,11 @@ macro_rules! class {
 
             fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
                 value::hashed(self, py)
+            }
+
+            /// Arguments of the call that makes the value, by name: for paths.
+            fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<value::ByName<'py>> {
+                value::by_name(self, py)
             }
 
             /// Callable and arguments that make the value again.

@@ -94,6 +94,10 @@ impl PySampledProfile {
         value::repr(self, py)
     }
 
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<value::ByName<'py>> {
+        value::by_name(self, py)
+    }
+
     /// Callable and arguments that make the profile again.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<value::Reduced<'py>> {
         value::reduced(slf.get(), slf.get_type().as_any())
