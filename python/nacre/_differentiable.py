@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._parameters import MOTIONS, number, put
+from nacre._paths import DIFFERENTIABLE, number, put
 from nacre.contact import Contact
 from nacre.gradient import Gradient
 from nacre.solution import Solution
@@ -27,7 +27,7 @@ ACCURATE = 1e-10
 """Tolerance of solves: errors of a solution enter its derivatives linearly."""
 PLANS = 4
 """Plans that are kept; a plan holds the influence coefficients of its bodies."""
-ROOTS = ("body", "counterbody", "shape", "load", "approach", *MOTIONS)
+ROOTS = (*DIFFERENTIABLE, "shape")
 """Arguments of a solve that have derivatives."""
 ABSENT = {"initial", "progress", "check"}
 """Arguments of a solve that a function cannot have: its results depend on its numbers alone."""

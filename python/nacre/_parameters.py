@@ -1,15 +1,10 @@
-"""Parameters of an optimisation: what SciPy varies, and the numbers that paths name."""
+"""Parameters of an optimisation: what SciPy varies."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
-
-import nacre._core as core
-from nacre import values as plain
 
 Bounds = Mapping[str, tuple[float | None, float | None]]
 
@@ -17,10 +12,6 @@ REACH = 0.25
 """Change of a logarithm, or share of a width, that counts as a step of one."""
 FARTHEST = math.log(100.0)
 """Largest change of a logarithm without a bound: a line search that is lost stays near numbers."""
-MOTIONS = ("eccentricity", "moment", "tilt")
-SHIFTS = ("shift[0]", "shift[1]")
-KEY = re.compile(r"shift\[[01]\]|\w+")
-PATH = re.compile(r"\w+(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)*")
 
 
 @dataclass(frozen=True)
@@ -73,83 +64,3 @@ def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
             ends = [x + s * far if e is None else e for s, e in zip((-1, 1), ends, strict=True)]
         scales.append(replace(scale, low=ends[0], high=ends[1]))
     return scales
-
-
-def numbers(made: Mapping[str, Any]) -> dict[str, float]:
-    """Return the numbers of a solve by path, but for those of the shape."""
-    found: dict[str, float] = {}
-    for side in ("body", "counterbody"):
-        body = made.get(side)
-        layers = body.layers if isinstance(body, core.HalfSpace) else ()
-        base = body.substrate if isinstance(body, core.HalfSpace) else body
-        materials = {f"{side}.substrate": base}
-        for k, layer in enumerate(layers):
-            found[f"{side}.layers[{k}].thickness"] = layer.thickness
-            materials[f"{side}.layers[{k}].material"] = layer.material
-        for path, material in materials.items():
-            if isinstance(material, core.Elastic):
-                found |= {f"{path}.young": material.young, f"{path}.poisson": material.poisson}
-    found |= {name: made[name] for name in ("load", "approach") if made.get(name) is not None}
-    for name in MOTIONS:
-        for k, value in enumerate(made.get(name) or ()):
-            if value is not None:
-                found[f"{name}[{k}]"] = value
-    return found
-
-
-def put(
-    made: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
-) -> None:
-    """Replace the number at a path of the arguments of a solve.
-
-    Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
-    """
-    data, holder, index = _sought(made, path, names, of)
-    holder[index] = value
-    made |= {root: plain.decode(one) for root, one in data.items()}
-
-
-def number(made: Mapping[str, Any], path: str, *, names: str, of: str) -> float:
-    """Return the number at a path of the arguments of a solve, with the errors of `put`."""
-    _, holder, index = _sought(made, path, names, of)
-    return float(holder[index])
-
-
-def _sought(made: Mapping[str, Any], path: str, names: str, of: str) -> tuple[Any, Any, Any]:
-    """Return an argument as plain data, what holds the number at a path, and its index there."""
-    keys = KEY.findall(path)
-    if not PATH.fullmatch(path) or keys[0] not in made:
-        raise ValueError(f"{names} must name parameters of {of} by path, got {path!r}")
-    root = made[keys[0]]
-    if keys[0] in ("body", "counterbody") and isinstance(root, core.Elastic):
-        root = core.HalfSpace(root)
-    data: Any = {keys[0]: plain.encode(root)}
-    holder, index = data, keys[0]
-    for key in keys[1:]:
-        slot = _slot(holder[index], key)
-        if slot is None:
-            raise ValueError(
-                f"{names} must name parameters of {of} by path, got {path!r}: no {key}"
-            )
-        holder, index = slot
-    if not isinstance(holder[index], int | float):
-        raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
-    return data, holder, index
-
-
-def _slot(place: Any, key: str) -> tuple[Any, Any] | None:
-    """Return what holds the value at a key of plain data, and its index there."""
-    if isinstance(place, dict) and len(place) == 1:
-        ((kind, content),) = place.items()
-        if kind == "shifted":
-            shift = key in SHIFTS
-            return (content, 1 + SHIFTS.index(key)) if shift else _slot(content[0], key)
-        if kind == "sum" and key == "parts":
-            return place, kind
-        if kind in plain.CALLS:
-            place = content
-    if isinstance(place, dict) and key in place:
-        return place, key
-    if isinstance(place, list) and key.isdecimal() and int(key) < len(place):
-        return place, int(key)
-    return None

@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._parameters import Scale, numbers, put
+from nacre._parameters import Scale
+from nacre._paths import DIFFERENTIABLE, numbers, put
 from nacre.contact import Contact, solve
 from nacre.solution import Solution
 from nacre.studies import ARGUMENTS
@@ -175,7 +176,8 @@ class Problem:
             edges = set()
             for step, weight in zip(points, weights[len(points)], strict=True):
                 made = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
-                for path, value in numbers(made).items():
+                moved = {name: made[name] for name in DIFFERENTIABLE if name in made}
+                for path, value in numbers(moved).items():
                     rates[path] = rates.get(path, 0.0) + sign * weight / STEP * value
                 with np.errstate(invalid="ignore"):
                     gap += sign * weight / STEP * made["shape"].gaps(grid)

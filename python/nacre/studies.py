@@ -30,7 +30,7 @@ from nacre._outputs import (
     named,
     rolls,
 )
-from nacre._parameters import put
+from nacre._paths import put
 from nacre._progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.solution import Solution

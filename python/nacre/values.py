@@ -127,14 +127,11 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             name = f"{type(value).__name__}.{make.__name__}"
             return {name: of(dict(zip(CALLS[name][1], arguments, strict=True)))}
         if isinstance(value, core.Shape):
-            parts = value._parts()
-            if len(parts) == 1:
-                return shifted(*parts[0])
-            return {"sum": [shifted(*part) if any(part[1]) else of(part[0]) for part in parts]}
+            made = value._arguments()
+            if "parts" in made:
+                return {"sum": of(made["parts"])}
+            return {"shifted": [of(made["."]), *made["shift"]]}
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
-
-    def shifted(shape: core.Shape, by: tuple[float, float]) -> dict[str, Any]:
-        return {"shifted": [of(shape), *by]}
 
     return of(value)
 

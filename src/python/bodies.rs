@@ -322,10 +322,7 @@ impl PyResponse {
 impl PyResponse {
     #[new]
     #[pyo3(signature = (function, *, local=0.0))]
-    fn new(
-        function: &Bound<'_, PyAny>,
-        #[pyo3(from_py_with = real)] local: f64,
-    ) -> PyResult<Self> {
+    fn new(function: &Bound<'_, PyAny>, #[pyo3(from_py_with = real)] local: f64) -> PyResult<Self> {
         if !function.is_callable() {
             return Err(PyTypeError::new_err(format!(
                 "function must be a function of an array of wavenumbers, got {}",

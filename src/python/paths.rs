@@ -60,7 +60,8 @@ fn step<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Step<'py>> {
     let parts = parts(object)?.ok_or_else(missing)?;
     let is_number = name.bytes().all(|byte| byte.is_ascii_digit());
     let number = name.parse::<usize>().ok().filter(|_| is_number);
-    let keys = [Some(name.into_bound_py_any(py)?), number.map(|n| n.into_bound_py_any(py)).transpose()?];
+    let keys =
+        [Some(name.into_bound_py_any(py)?), number.map(|n| n.into_bound_py_any(py)).transpose()?];
     for key in keys.into_iter().flatten() {
         if parts.contains(&key)? {
             return Ok(Step { parts, key, inner: false });

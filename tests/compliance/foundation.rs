@@ -204,8 +204,8 @@ fn samples_have_the_coefficients_of_their_body() -> Result<()> {
         let sampled = nacre::Body::from(Sampled::new(samples(&*body), 0.0)?);
         assert_eq!(sampled, Sampled::new(samples(&*body), 0.0)?.into());
         for grid in [Grid::new([24, 20], [24.0, 30.0])?, Grid::line(24, 30.0)?] {
-            let [found, exact] = [&sampled, &body]
-                .map(|body| influence_coefficients(body, &grid, Method::Exact));
+            let [found, exact] =
+                [&sampled, &body].map(|body| influence_coefficients(body, &grid, Method::Exact));
             let (found, exact) = (found?, exact?);
             let largest = exact[[0, 0]];
             for (index, c) in found.indexed_iter() {
@@ -227,7 +227,10 @@ fn values_that_are_no_response_are_refused() {
     assert!(told(of(|alpha| 1.0 / alpha.sqrt())).contains("must settle before 1.546e25"));
     assert!(told(of(|alpha| 1.0 / alpha.powi(2))).contains("must settle before 6.470e-26"));
     assert!(told(of(|alpha| 1.0 + 1.0 / alpha)).contains("give the constant as local"));
-    assert_eq!(message(Sampled::new(of(|_| 1.0), -1.0)), "local must be finite and at least 0, got -1");
+    assert_eq!(
+        message(Sampled::new(of(|_| 1.0), -1.0)),
+        "local must be finite and at least 0, got -1"
+    );
 }
 
 /// A response that says of itself whatever it is told to.

@@ -85,7 +85,9 @@ BODIES = {
     "hard coating": COATED,
     "soft coating": nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(3e9, 0.4), 5e-6)]),
     "on a rigid base": nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, 30e-6)]),
-    "two layers": nacre.HalfSpace(STEEL, [*COATED.layers, nacre.Layer(nacre.Elastic(70e9, 0.3), 1e-3)]),
+    "two layers": nacre.HalfSpace(
+        STEEL, [*COATED.layers, nacre.Layer(nacre.Elastic(70e9, 0.3), 1e-3)]
+    ),
 }
 
 
@@ -120,7 +122,9 @@ def test_springs_add_to_a_half_space() -> None:
     rise = nacre.influence_coefficients(body, GRID) - nacre.influence_coefficients(of(COATED), GRID)
     expected = np.zeros(GRID.shape)
     expected[0, 0] = springs
-    np.testing.assert_allclose(rise, expected, atol=1e-15 * nacre.influence_coefficients(body, GRID).max())
+    np.testing.assert_allclose(
+        rise, expected, atol=1e-15 * nacre.influence_coefficients(body, GRID).max()
+    )
     with pytest.raises(ValueError, match="give the constant as local"):
         nacre.Response(lambda alpha: nacre.frequency_response(COATED, alpha) + springs)
 
@@ -194,8 +198,10 @@ def test_derivatives_are_those_of_other_numbers() -> None:
 
 
 def test_a_study_tells_responses_apart(tmp_path: Path) -> None:
-    beds = {name: nacre.Response(lambda a, k=k: np.full_like(a, 1 / k)) for name, k in
-            {"soft": 1e12, "hard": 4e12}.items()}
+    beds = {
+        name: nacre.Response(lambda a, k=k: np.full_like(a, 1 / k))
+        for name, k in {"soft": 1e12, "hard": 4e12}.items()
+    }
     case = {"shape": BOWL, "grid": GRID, "approach": 2e-6}
     study = nacre.sweep(case, {"body": beds}, outputs=["load"], store=tmp_path / "beds.nc")
     assert abs(float(study.load[1] / study.load[0]) - 4) < 1e-6

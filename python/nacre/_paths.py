@@ -1,0 +1,55 @@
+"""Numbers in the arguments of a call, by path: ``body.layers[0].material.young``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import nacre._core as core
+
+BODIES = ("body", "counterbody")
+DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
+"""Arguments of a solve, beside the shape, that have derivatives."""
+
+
+def numbers(made: Mapping[str, Any]) -> dict[str, float]:
+    """Return all numbers of arguments by path."""
+    return dict(core.numbers({name: _described(name, made[name]) for name in made}))
+
+
+def number(made: Mapping[str, Any], path: str, *, names: str, of: str) -> float:
+    """Return the number at a path of arguments.
+
+    Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
+    """
+    found = core.at(_root(made, path, names, of), path)
+    return float(found)
+
+
+def put(
+    made: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
+) -> None:
+    """Replace the number at a path of arguments, with the errors of `number`."""
+    made |= core.with_value(_root(made, path, names, of), path, value)
+
+
+def _root(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
+    """Return the argument that holds the number at a path, by name."""
+    name = re.split(r"[.\[]", path)[0]
+    said = f"{names} must name parameters of {of} by path, got {path!r}"
+    if name not in made:
+        raise ValueError(said)
+    root = {name: _described(name, made[name])}
+    try:
+        found = core.at(root, path)
+    except LookupError as missing:
+        raise ValueError(f"{said}: no {missing}") from None
+    if not isinstance(found, int | float):
+        raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
+    return root
+
+
+def _described(name: str, value: Any) -> Any:
+    """Return an argument as paths describe it: the material of a body is its substrate."""
+    return core.HalfSpace(value) if name in BODIES and isinstance(value, core.Elastic) else value
