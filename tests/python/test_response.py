@@ -1,4 +1,4 @@
-"""Bodies that are functions of the wavenumber: closed forms, the contacts of half-spaces, and refusals."""
+"""Bodies that are functions of the wavenumber have the contacts of closed forms and half-spaces."""
 
 import copy
 import pickle
