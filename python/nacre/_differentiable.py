@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._paths import DIFFERENTIABLE, number, put
+from nacre._paths import DIFFERENTIABLE, holder, put
 from nacre.contact import Contact
 from nacre.gradient import Gradient
 from nacre.solution import Solution
@@ -125,7 +125,7 @@ class Differentiable:
                     f"parameters must be paths that begin with one of {', '.join(ROOTS)}, "
                     f"got {path!r}"
                 )
-            number(self._given(), path, names="parameters", of="the arguments")
+            holder(self._given(), path, "parameters", "the arguments")
 
     def point(self, names: tuple[str, ...], x: Array) -> Point:
         """Return the solved contact at a vector."""

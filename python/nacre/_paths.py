@@ -18,36 +18,30 @@ def numbers(made: Mapping[str, Any]) -> dict[str, float]:
     return dict(core.numbers({name: _described(name, made[name]) for name in made}))
 
 
-def number(made: Mapping[str, Any], path: str, *, names: str, of: str) -> float:
-    """Return the number at a path of arguments.
-
-    Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
-    """
-    found = core.at(_root(made, path, names, of), path)
-    return float(found)
-
-
 def put(
     made: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
 ) -> None:
-    """Replace the number at a path of arguments, with the errors of `number`."""
-    made |= core.with_value(_root(made, path, names, of), path, value)
+    """Replace the number at a path of arguments, with the errors of `holder`."""
+    made |= core.with_value(holder(made, path, names, of), path, value)
 
 
-def _root(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
-    """Return the argument that holds the number at a path, by name."""
+def holder(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
+    """Return the argument that holds the number at a path, by name.
+
+    Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
+    """
     name = re.split(r"[.\[]", path)[0]
     said = f"{names} must name parameters of {of} by path, got {path!r}"
     if name not in made:
         raise ValueError(said)
-    root = {name: _described(name, made[name])}
+    held = {name: _described(name, made[name])}
     try:
-        found = core.at(root, path)
+        found = core.at(held, path)
     except LookupError as missing:
         raise ValueError(f"{said}: no {missing}") from None
     if not isinstance(found, int | float):
         raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
-    return root
+    return held
 
 
 def _described(name: str, value: Any) -> Any:

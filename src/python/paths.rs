@@ -27,48 +27,14 @@ fn parts<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyDict>>
     Ok(Some(items))
 }
 
-/// An object as `object` is, of these parts.
-fn made<'py>(object: &Bound<'py, PyAny>, parts: Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    let all = parts.values();
-    if object.cast::<PyDict>().is_ok() {
-        Ok(parts.into_any())
-    } else if object.hasattr("_arguments")? {
-        let (make, _): Reduced = object.call_method0("__reduce__")?.extract()?;
-        make.call1(all.to_tuple())
-    } else if object.cast::<PyTuple>().is_ok() {
-        Ok(all.to_tuple().into_any())
-    } else {
-        Ok(all.into_any())
-    }
-}
-
-/// The next part on the way from an object.
-struct Step<'py> {
-    /// All parts of the object.
-    parts: Bound<'py, PyDict>,
-    key: Bound<'py, PyAny>,
-    /// Whether paths do not name the part, but its own parts.
-    inner: bool,
-}
-
-/// The step to the part of that name.
-///
-/// # Errors
-/// A `LookupError` with the name where there is no such part.
-fn step<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Step<'py>> {
-    let (py, missing) = (object.py(), || PyLookupError::new_err(name.to_owned()));
-    let parts = parts(object)?.ok_or_else(missing)?;
-    let is_number = name.bytes().all(|byte| byte.is_ascii_digit());
-    let number = name.parse::<usize>().ok().filter(|_| is_number);
-    let keys =
-        [Some(name.into_bound_py_any(py)?), number.map(|n| n.into_bound_py_any(py)).transpose()?];
-    for key in keys.into_iter().flatten() {
+/// Key of the part with that name, or of one whose own parts are meant.
+fn key<'py>(parts: &Bound<'py, PyDict>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let number = name.parse::<usize>().ok().filter(|number| number.to_string() == name);
+    let number = number.into_bound_py_any(parts.py())?;
+    for key in [name.into_bound_py_any(parts.py())?, number, INNER.into_bound_py_any(parts.py())?] {
         if parts.contains(&key)? {
-            return Ok(Step { parts, key, inner: false });
+            return Ok(Some(key));
         }
-    }
-    if parts.contains(INNER)? {
-        return Ok(Step { parts, key: INNER.into_bound_py_any(py)?, inner: true });
     }
     let mut named = Vec::new();
     for (key, item) in parts.iter().filter(|(key, _)| key.cast::<PyInt>().is_ok()) {
@@ -80,57 +46,56 @@ fn step<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Step<'py>> {
             named.push(key);
         }
     }
-    match (named.pop(), named.is_empty()) {
-        (Some(key), true) => Ok(Step { parts, key, inner: false }),
-        _ => Err(missing()),
+    Ok(named.pop().filter(|_| named.is_empty()))
+}
+
+/// Objects on the way along a path, each with its parts and the key of the next one; and what is at the end.
+type Way<'py> = Vec<(Bound<'py, PyAny>, Bound<'py, PyDict>, Bound<'py, PyAny>)>;
+
+fn way<'py>(mut here: Bound<'py, PyAny>, path: &str) -> PyResult<(Way<'py>, Bound<'py, PyAny>)> {
+    let mut way = Vec::new();
+    for name in path.replace('[', ".").replace(']', "").split('.') {
+        let missing = || PyLookupError::new_err(name.to_owned());
+        let mut is_inner = true;
+        while is_inner {
+            let parts = parts(&here)?.ok_or_else(missing)?;
+            let key = key(&parts, name)?.ok_or_else(missing)?;
+            is_inner = key.eq(INNER)?;
+            let next = parts.as_any().get_item(&key)?;
+            way.push((here, parts, key));
+            here = next;
+        }
     }
+    Ok((way, here))
 }
 
-fn names(path: &str) -> Vec<String> {
-    path.replace('[', ".").replace(']', "").split('.').map(str::to_owned).collect()
-}
-
-/// The number, or whatever else is at a path.
-///
-/// # Errors
-/// A `LookupError` with the first part of the path that is not there.
+/// The number, or whatever else is at a path. A `LookupError` names the first part of the path that is not there.
 #[pyfunction]
 pub(super) fn at<'py>(object: Bound<'py, PyAny>, path: &str) -> PyResult<Bound<'py, PyAny>> {
-    let (names, mut here) = (names(path), object);
-    let mut left = &names[..];
-    while let Some((name, rest)) = left.split_first() {
-        let Step { parts, key, inner } = step(&here, name)?;
-        here = parts.as_any().get_item(key)?;
-        left = if inner { left } else { rest };
-    }
-    Ok(here)
+    Ok(way(object, path)?.1)
 }
 
-/// The object with another value at a path; the object itself is left as it is.
-///
-/// # Errors
-/// As [`at`], and those of the constructors of values with the new part.
+/// A new object with another value at a path, with the errors of [`at`] and of the constructors of what holds it.
 #[pyfunction]
 pub(super) fn with_value<'py>(
-    object: &Bound<'py, PyAny>,
+    object: Bound<'py, PyAny>,
     path: &str,
     value: Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    changed(object, &names(path), value)
-}
-
-fn changed<'py>(
-    object: &Bound<'py, PyAny>,
-    path: &[String],
-    value: Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let Some((name, rest)) = path.split_first() else {
-        return Ok(value);
-    };
-    let Step { parts, key, inner } = step(object, name)?;
-    let part = parts.as_any().get_item(&key)?;
-    parts.set_item(key, changed(&part, if inner { path } else { rest }, value)?)?;
-    made(object, parts)
+    way(object, path)?.0.into_iter().rev().try_fold(value, |part, (object, parts, key)| {
+        parts.set_item(key, part)?;
+        let all = parts.values();
+        Ok(if object.hasattr("_arguments")? {
+            let (make, _): Reduced = object.call_method0("__reduce__")?.extract()?;
+            make.call1(all.to_tuple())?
+        } else if object.cast::<PyDict>().is_ok() {
+            parts.into_any()
+        } else if object.cast::<PyTuple>().is_ok() {
+            all.to_tuple().into_any()
+        } else {
+            all.into_any()
+        })
+    })
 }
 
 /// All numbers in an object by path, in their order.
