@@ -6,6 +6,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 import nacre._core as core
 
 BODIES = ("body", "counterbody")
@@ -39,7 +41,7 @@ def holder(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str,
         found = core.at(held, path)
     except LookupError as missing:
         raise ValueError(f"{said}: no {missing}") from None
-    if not isinstance(found, int | float):
+    if not isinstance(found, int | float | np.number):
         raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
     return held
 

@@ -4,7 +4,7 @@
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyLookupError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyInt, PyList, PyTuple};
 
 use super::value::{INNER, Reduced};
 
@@ -111,10 +111,7 @@ fn collect(
     path: String,
     found: &mut Vec<(String, f64)>,
 ) -> PyResult<()> {
-    let is_number = object.cast::<PyFloat>().is_ok() || object.cast::<PyInt>().is_ok();
-    if is_number && object.cast::<PyBool>().is_err() {
-        found.push((path, object.extract()?));
-    } else if let Some(parts) = parts(object)? {
+    if let Some(parts) = parts(object)? {
         for (key, part) in parts {
             let inside = match key.extract::<&str>() {
                 Ok(INNER) => path.clone(),
@@ -124,6 +121,10 @@ fn collect(
             };
             collect(&part, inside, found)?;
         }
+    } else if let Ok(number) = object.extract()
+        && object.cast::<PyBool>().is_err()
+    {
+        found.push((path, number));
     }
     Ok(())
 }
