@@ -11,7 +11,7 @@ use pyo3::types::PyTuple;
 
 use super::arguments::{Real, Repr, ends, items, read_only, real, real_array, word, word_of};
 use super::value::{self, Arguments, Value, class};
-use crate::compliance::response::{Body, Response, Sampled};
+use crate::compliance::response::{Body, Sampled};
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
 
