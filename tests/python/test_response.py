@@ -227,14 +227,14 @@ def test_what_a_response_does_not_tell_is_refused(words: str) -> None:
         REFUSED[words]()
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda body: nacre.surface_compliance(body, 1.0),
-        lambda body: indent.Indentation(body, indent.Tip.paraboloid(1e-6)),
-        lambda body: nacre.stress(body, GRID, np.ones(GRID.shape), 1e-6),
-    ],
-)
+LAYERED: dict[str, Callable[[Any], object]] = {
+    "compliance": lambda body: nacre.surface_compliance(body, 1.0),
+    "indentation": lambda body: indent.Indentation(body, indent.Tip.paraboloid(1e-6)),
+    "stress": lambda body: nacre.stress(body, GRID, np.ones(GRID.shape), 1e-6),
+}
+
+
+@pytest.mark.parametrize("call", LAYERED.values(), ids=LAYERED)
 def test_layers_are_asked_for(call: Callable[[Any], object]) -> None:
     with pytest.raises(TypeError, match=r"must be a HalfSpace or an Elastic, got <Response"):
         call(nacre.Response(bed))

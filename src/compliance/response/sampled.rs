@@ -81,8 +81,8 @@ impl Sampled {
         let normal = without(&values, springs);
         let size = largest_distance(&normal, 0.0);
         // Where the rest is lost in the rounding of the springs, it must have vanished.
-        let end = normal.iter().rposition(|value| value.abs() > 0.0).unwrap_or(0);
-        if wavenumber(end) * rounding(springs) > 1e-7 * size {
+        let last = normal.iter().rposition(|value| value.abs() > 0.0);
+        if last.is_some_and(|n| wavenumber(n) * rounding(springs) > 1e-7 * size) {
             return Err(Error::HiddenBySprings);
         }
         let (limits, lengths) = limits(&normal, size)?;
