@@ -18,14 +18,14 @@ from nacre import indent
 
 Array = npt.NDArray[np.float64]
 
-STIFFNESS = 2e12
+STIFFNESS = 2e14
 """Stiffness of beds [Pa/m]."""
 GRID = nacre.Grid(shape=(48, 40), size=(3.2e-4, 3e-4))
 BOWL = nacre.Paraboloid(5e-3, 5e-3)
 ROUNDING = 1e-13
 """Coefficients of the same response: sums of a few hundred terms in another order."""
-TABLES = 1e-10
-"""Coefficients of the same response with other lengths: both are within 1e-9 of the exact ones."""
+TABLES = 1e-11
+"""Coefficients of the same response with other lengths, over the largest: 3e-12 at most here."""
 
 
 def bed(alpha: Array) -> Array:
@@ -131,11 +131,11 @@ def test_springs_add_to_a_half_space() -> None:
 
 def test_a_measured_compliance_is_a_table() -> None:
     alpha = np.geomspace(1e2, 1e6, 30)
-    measured = 1 / (1e12 + 1e4 * alpha)
+    measured = 1 / (1e14 + 1e9 * alpha)
     body = nacre.Response(lambda given: np.interp(np.log(given), np.log(alpha), measured))
-    solution = nacre.solve(BALL, body, grid=GRID, load=10.0)
-    whole = nacre.Response(lambda given: 1 / (1e12 + 1e4 * given))
-    expected = nacre.solve(BALL, whole, grid=GRID, load=10.0)
+    solution = nacre.solve(BALL, body, grid=GRID, load=5.0)
+    whole = nacre.Response(lambda given: 1 / (1e14 + 1e9 * given))
+    expected = nacre.solve(BALL, whole, grid=GRID, load=5.0)
     # The chords of the table.
     assert abs(solution.approach / expected.approach - 1) < 0.02
 
@@ -162,7 +162,7 @@ def test_values_are_kept_without_the_function(tmp_path: Path) -> None:
     for again in (pickle.loads(pickle.dumps(body)), copy.deepcopy(body)):
         assert again == body
         assert hash(again) == hash(body)
-    assert body != of(STEEL) != nacre.Response(bed) != nacre.Response(bed, local=1e-13)
+    assert body != of(STEEL) != nacre.Response(bed) != nacre.Response(bed, local=1e-15)
     contact = nacre.Contact(body, GRID, nacre.Response(bed))
     assert pickle.loads(pickle.dumps(contact)) == contact
     solution = contact.solve(BALL, load=10.0)
@@ -177,12 +177,12 @@ def test_values_are_kept_without_the_function(tmp_path: Path) -> None:
 def test_results_say_that_a_body_is_a_response() -> None:
     solution = nacre.solve(BOWL, nacre.Response(bed), STEEL, grid=GRID, load=10.0)
     assert re.search(r"body +a response\n", str(solution))
-    assert "<td>a response</td>" in solution._repr_html_()
+    assert "a response" in solution._repr_html_()
     assert "E*" not in str(solution)
     line = nacre.solve(nacre.Cylinder(5e-3), of(STEEL), grid=nacre.Grid.line(64, 2e-4), load=1e4)
     assert "from the surface" in str(line)
     assert repr(nacre.Response(bed)) == (
-        "<Response: limits (0.0000e0, 0.0000e0) 1/Pa, springs 5.0000e-13 m/Pa>"
+        "<Response: limits (0.0000e0, 0.0000e0) 1/Pa, springs 5.0000e-15 m/Pa>"
     )
     assert "<Response: limits" in repr(nacre.Contact(nacre.Response(bed), GRID))
 
@@ -200,11 +200,11 @@ def test_derivatives_are_those_of_other_numbers() -> None:
 def test_a_study_tells_responses_apart(tmp_path: Path) -> None:
     beds = {
         name: nacre.Response(lambda a, k=k: np.full_like(a, 1 / k))
-        for name, k in {"soft": 1e12, "hard": 4e12}.items()
+        for name, k in {"soft": 1e14, "hard": 4e14}.items()
     }
     case = {"shape": BOWL, "grid": GRID, "approach": 2e-6}
     study = nacre.sweep(case, {"body": beds}, outputs=["load"], store=tmp_path / "beds.nc")
-    assert abs(float(study.load[1] / study.load[0]) - 4) < 1e-6
+    assert abs(float(study["load"][1] / study["load"][0]) - 4) < 1e-6
 
 
 def solved() -> nacre.Solution:
