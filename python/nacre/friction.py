@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._extras import extra
-from nacre._friction_display import checked
-from nacre._friction_result import FrictionSolution
-from nacre._result import Result
+from nacre._tools.extras import extra
+from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
-from nacre.units import energy, symbol
+from nacre.contact.friction import FrictionSolution
+from nacre.results.base import Result, checked
 
 if TYPE_CHECKING:
     import xarray

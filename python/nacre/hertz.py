@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, overload
 
 import nacre._core as core
-from nacre._typing import Field, Matrix, Pair, Vector
+from nacre._tools.typing import Field, Matrix, Pair, Vector
 
 __all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius"]
 

@@ -61,9 +61,7 @@ def test_bad_input_leaves_no_traceback_in_a_process() -> None:
 
 @pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
 def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
-    code = (
-        f"import sys; sys.modules[{missing!r}] = None; import nacre.cli; nacre.cli.main(['info'])"
-    )
+    code = f"import sys; sys.modules[{missing!r}] = None; from nacre import cli; cli.main([])"
     done = python("-c", code)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
@@ -160,8 +158,8 @@ layers = [{ material = { young = 1e9, poisson = 0.4 }, thickness = 1e-6 }]
 WAITING = """
 import signal, sys, time
 import numpy.linalg
-import nacre.cli, nacre._progress
-nacre._progress.EVERY = 0.2
+import nacre.cli, nacre._tools.progress
+nacre._tools.progress.EVERY = 0.2
 asked = []
 def stop(*_):
     asked.append(time.perf_counter())

@@ -16,7 +16,7 @@ from matplotlib.image import imread
 
 import nacre
 from nacre import design
-from nacre.units import Scale, rounded, size_of, written
+from nacre._tools.units import Scale, rounded, size_of, written
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.2)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-6)])

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import nacre
+import nacre._tools.units
 import nacre.design
 import nacre.plot.sections
-import nacre.units
 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -128,7 +128,13 @@ def test_its_examples_are_true(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "module",
-    [nacre.units, nacre.design, nacre.plot.sections, nacre.indent.curves, nacre.indent.checks],
+    [
+        nacre._tools.units,
+        nacre.design,
+        nacre.plot.sections,
+        nacre.indent.curves,
+        nacre.indent.checks,
+    ],
 )
 def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:
     result = doctest.testmod(module, globs={**vars(module), "nacre": nacre}, optionflags=FLAGS)

@@ -15,8 +15,8 @@ import xarray
 
 import nacre
 from bodies import BALL, STEEL
-from nacre import values
 from nacre.case import Case
+from nacre.results import values
 
 LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
 COATED = nacre.HalfSpace(STEEL, LAYERS)

@@ -12,7 +12,7 @@ import pytest
 import nacre
 from bodies import STEEL, quiet
 from nacre import _core as core
-from nacre import values
+from nacre.results import values
 from support import python
 
 COATING = nacre.Layer(nacre.Elastic(3e9, 0.4), 2e-6, "frictionless", "lacquer")

@@ -20,7 +20,7 @@ import nacre.indent
 import results
 import support
 from bodies import BALL, STEEL
-from nacre import values
+from nacre.results import values
 from results import DLC, GRID, solved
 from support import Patch, python, resealed
 
@@ -229,11 +229,14 @@ def test_csv_may_hold_every_cell_after_a_block_of_comments(kind: str, tmp_path: 
     expected = {"x [m]": x, "y [m]": y, "pressure [Pa]": solution.pressure}
     if slides:
         assert said["source"] == f"nacre {nacre.__version__}"
-        slip = "1" if kind == "rolled" else "m"
+        slip = "" if kind == "rolled" else " [m]"
         expected["stick"] = solution.stick
+        expected["gap [m]"] = solution.normal.gap
+        expected["normal displacement [m]"] = solution.normal.displacement
         for n, axis in enumerate("xy"):
             expected[f"traction {axis} [Pa]"] = solution.traction[n]
-            expected[f"slip {axis} [{slip}]"] = solution.slip[n]
+            expected[f"displacement {axis} [m]"] = solution.displacement[n]
+            expected[f"slip {axis}{slip}"] = solution.slip[n]
     else:
         expected |= {"gap [m]": solution.gap, "displacement [m]": solution.displacement}
         assert float(said[f"load [{'N/m' if kind == 'line' else 'N'}]"]) == solution.load

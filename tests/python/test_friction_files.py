@@ -99,9 +99,8 @@ def test_every_row_of_the_text_has_its_own_name_and_is_in_the_html(kind: str) ->
     rows = [name for name in names if name and not name.startswith("warning: ")]
     assert len(set(rows)) == len(rows)
     markup = solution._repr_html_()
-    assert markup.startswith("<table>")
     for name in rows:
-        assert f">{name}</th>" in markup
+        assert f">{name}</td>" in markup
     nx, ny = solution.grid.shape
     state = "not converged" if kind.startswith("not converged") else "converged"
     pattern = rf"<FrictionSolution on {nx} x {ny} cells: force \(.*, {state}>"

@@ -13,7 +13,7 @@ import nacre
 import results
 from bodies import BALL, HELD, STEEL
 from nacre import plot
-from nacre.units import Scale
+from nacre._tools.units import Scale
 from results import CELLS, CONTACT, solved
 
 SOLVED = {name: solved(name) for name in results.FRICTION if "not" not in name}

@@ -295,7 +295,7 @@ def test_a_derivative_does_not_solve_again(tools: Any, monkeypatch: pytest.Monke
             solves.append(motion["load"])
             return self.plan.solve(*arguments, **motion)
 
-    monkeypatch.setattr("nacre._differentiable.Contact", Counted)
+    monkeypatch.setattr("nacre.design.differentiable.Contact", Counted)
     value, here = objective(tools, solver(tools)), zero(tools)
     for call in (value, tools.at.grad(value), tools.at.jacfwd(value), value):
         call(here)

@@ -19,7 +19,7 @@ from bodies import STEEL, quiet
 from nacre.indent import Adhesion, Indentation, IndentSolution, Tip, fit, slope_of, solve
 from nacre.indent.charts import bulk_limit, information, pull_off_over_thickness
 from nacre.indent.classical import gao_weights
-from nacre.values import decode, encode
+from nacre.results.values import decode, encode
 from support import DATA, errors, interrupted, refused, table
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import nacre
 from bodies import BALL, STEEL
-from nacre import values
+from nacre.results import values
 from support import Capture, command
 
 GRID = nacre.Grid((16, 16), (2e-4, 2e-4))

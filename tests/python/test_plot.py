@@ -19,7 +19,7 @@ import nacre
 import support
 from bodies import BALL, ROD, STEEL
 from nacre import design, plot
-from nacre.units import Scale, written
+from nacre._tools.units import Scale, written
 from support import errors, table
 
 Array = npt.NDArray[np.float64]

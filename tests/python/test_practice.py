@@ -704,7 +704,7 @@ def test_a_limit_of_memory_is_an_error(limit: str, used: str, left: int, work: s
 
 
 def test_without_docstrings_all_works() -> None:
-    program = "import nacre.case, nacre.cli; nacre.cli.main(['schema'])"
+    program = "import nacre.cli; nacre.cli.main(['schema'])"
     run = subprocess.run([sys.executable, "-OO", "-c", program], capture_output=True)
     assert run.returncode == 0, run.stderr
 

@@ -12,7 +12,7 @@ import pytest
 import nacre
 import results
 from bodies import BALL, STEEL
-from nacre import values
+from nacre.results import values
 from results import solved
 
 GRID = nacre.Grid((24, 20), (3e-4, 2e-4), (1e-5, -2e-6))

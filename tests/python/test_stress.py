@@ -13,7 +13,7 @@ import pytest
 
 import nacre
 from bodies import BALL, COATED, HARD, ROD, STEEL
-from nacre.units import written
+from nacre._tools.units import written
 
 GRID = nacre.Grid(shape=(41, 31), size=(4.1e-4, 3.1e-4))
 

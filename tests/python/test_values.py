@@ -11,7 +11,7 @@ import pytest
 
 import nacre
 from bodies import BALL, STEEL
-from nacre import values
+from nacre.results import values
 from support import python
 
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
@@ -205,7 +205,7 @@ def test_sums_and_shifts_are_one_list() -> None:
 
 SUMS = """
 import functools, operator, pickle, nacre
-from nacre import values
+from nacre.results import values
 
 part = nacre.Paraboloid(1.0, 1.0)
 grid = nacre.Grid((8, 8), (1e-3, 1e-3))

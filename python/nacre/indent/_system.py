@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._paths import numbers
+from nacre._tools.paths import numbers
 from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]

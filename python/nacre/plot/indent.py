@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._disk import replacing
-from nacre._extras import extra
+from nacre._tools.disk import replacing
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
 from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
-from nacre.units import Scale, written
 
 with extra("plot"):
     import matplotlib.pyplot as plt
