@@ -1,7 +1,7 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import Shape
-from nacre.contact.friction import FrictionReport, FrictionSolution
+from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
 from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
@@ -13,6 +13,7 @@ __all__ = [
     "FrictionReport",
     "FrictionSolution",
     "Gradient",
+    "History",
     "InterfaceStress",
     "LayerStress",
     "Report",

@@ -13,13 +13,13 @@ import typer
 import nacre
 from nacre._tools.disk import PICTURES
 from nacre._tools.progress import alive
-from nacre._tools.units import energy, system, written
+from nacre._tools.units import system
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
-from nacre.results.display import SLIGHT, shown
+from nacre.results.display import SLIGHT
 from nacre.results.outputs import ERROR, OF_FRICTION, check_direction
 from nacre.studies import default_threads
 
@@ -140,7 +140,7 @@ def _solve(
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
-            print(f"{_history(steps)}\n\nlast step")
+            print(f"{solved}\n\nlast step")
         print(solution if stress is None else f"{solution}\n\n{stress}")
 
 
@@ -223,26 +223,6 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
             name: value for name, value in solution.report.to_dict().items() if name != "kind"
         }
     }
-
-
-def _history(steps: list[nacre.types.FrictionSolution]) -> str:
-    """Return a table of the steps of a history."""
-    line, rolls = steps[0].grid.is_line, steps[0].shift is None
-    force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
-    lines = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
-    lines[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
-    for number, step in enumerate(steps):
-        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
-        assert motion is not None
-        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
-        forces = [written(part, force) for part in shown(step.force)]
-        row = [str(number), *forces, *said, written(step.dissipated, energy(line, rolls))]
-        lines.append([*row, step.report.termination])
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return "\n".join(
-        "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True))
-        for row in lines
-    )
 
 
 def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
-from nacre.contact.friction import FrictionReport, FrictionSolution
+from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 
 MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
@@ -162,7 +162,7 @@ def slide(
     tolerance: float = 1e-8,
     max_convolutions: int = 4000,
     coupling: bool = True,
-    initial: FrictionSolution | None = None,
+    initial: FrictionSolution | History | None = None,
     progress: Told | None = None,
     check: bool = True,
 ) -> Any:
@@ -208,7 +208,7 @@ def slide(
     coupling : bool, optional
         Whether tractions act on the pressure and pressure on the slip. Between equal bodies
         neither is so.
-    initial : FrictionSolution, optional
+    initial : FrictionSolution or History, optional
         State to go on from: the last step of an earlier history, on the same grid. It carries
         tractions and shift, and no pressure, which is solved afresh. By default the surfaces have
         not touched.
@@ -221,8 +221,8 @@ def slide(
 
     Returns
     -------
-    FrictionSolution or list of FrictionSolution
-        Tractions, slip, and all of the normal contact; a list where there are `steps`.
+    FrictionSolution or History
+        Tractions, slip, and all of the normal contact; a list of them where there are `steps`.
 
     Raises
     ------
@@ -273,7 +273,7 @@ def roll(
     tolerance: float = 1e-8,
     max_convolutions: int = 4000,
     coupling: bool = True,
-    initial: FrictionSolution | None = None,
+    initial: FrictionSolution | History | None = None,
     progress: Told | None = None,
     check: bool = True,
 ) -> Any:
@@ -317,7 +317,7 @@ def roll(
 
     Returns
     -------
-    FrictionSolution or list of FrictionSolution
+    FrictionSolution or History
         Steady state; a list with one solution for each cell rolled where `cells` is given.
 
     Raises
@@ -575,7 +575,7 @@ class Contact:
         tolerance: float = 1e-8,
         max_convolutions: int = 4000,
         coupling: bool = True,
-        initial: FrictionSolution | None = None,
+        initial: FrictionSolution | History | None = None,
         progress: Told | None = None,
         check: bool = True,
     ) -> Any:
@@ -594,8 +594,8 @@ class Contact:
 
         Returns
         -------
-        FrictionSolution or list of FrictionSolution
-            Tractions, slip, and all of the normal contact; a list where there are `steps`.
+        FrictionSolution or History
+            Tractions, slip, and all of the normal contact; a list of them where there are `steps`.
 
         Raises
         ------
@@ -632,7 +632,7 @@ class Contact:
         tolerance: float = 1e-8,
         max_convolutions: int = 4000,
         coupling: bool = True,
-        initial: FrictionSolution | None = None,
+        initial: FrictionSolution | History | None = None,
         progress: Told | None = None,
         check: bool = True,
     ) -> Any:
@@ -651,7 +651,7 @@ class Contact:
 
         Returns
         -------
-        FrictionSolution or list of FrictionSolution
+        FrictionSolution or History
             Steady state; a list with one solution for each cell rolled where `cells` is given.
 
         Raises
@@ -758,6 +758,8 @@ def _steps(
     progress = given["progress"]
     if callable(progress):
         given["progress"] = lambda number, text: progress(number, FrictionReport._made(text))
+    if isinstance(given["initial"], History) and given["initial"]:
+        given["initial"] = given["initial"][-1]
     if isinstance(given["initial"], FrictionSolution):
         given["initial"] = given["initial"]._solved
     if given.get("steps") is not None:
@@ -783,4 +785,4 @@ def _steps(
         if steps.several:
             error.solutions = solutions  # type: ignore[attr-defined]
         raise
-    return solutions if steps.several else solutions[0]
+    return History(solutions) if steps.several else solutions[0]

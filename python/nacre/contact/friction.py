@@ -6,6 +6,7 @@ import dataclasses
 import functools
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -14,11 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.units import printable
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import Stressed
-from nacre.results import display, files, values
-from nacre.results.base import Result, as_text, tuples
-from nacre.results.quantities import WITH_FRICTION, Quantity
+from nacre.results import display, files, tables, values
+from nacre.results.base import Result, as_text, checked, tuples
+from nacre.results.quantities import AXIS, WITH_FRICTION, Quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -187,6 +189,11 @@ class FrictionSolution(Result, Stressed):
         """
         return self._solved.field("stick")
 
+    @property
+    def stick_share(self) -> float:
+        """Share of the cells in contact that stick; 0 where nothing touches."""
+        return int(self.stick.sum()) / max(int((self.pressure > 0).sum()), 1)
+
     @functools.cached_property
     def bound(self) -> Field:
         """Bound of the traction, friction times pressure, ``(nx, ny)`` [Pa]."""
@@ -349,3 +356,167 @@ class FrictionSolution(Result, Stressed):
             rest = {name: state[name] for name in ("motion", "report")}
             told = as_text(cls.__name__, rest)
             return cls._of(core.FrictionSolved(normal._solved, rest=told, **fields))
+
+
+class History(list[FrictionSolution]):
+    """Steps of sliding or rolling, in their order: a list, which is printed and saved as a whole.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+    >>> loop = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps)
+    >>> loop.to_xarray().traction.dims, len(loop)
+    (('step', 'component', 'x', 'y'), 2)
+    """
+
+    _QUANTITIES = WITH_FRICTION
+
+    def numbers(self) -> xarray.Dataset:
+        """Dataset of the numbers of all steps; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Load, force, torque, dissipated energy, share of the contact that sticks and others over
+            ``step``; shift and twist of sliding, creepage and spin of rolling.
+        """
+        return self._dataset({}, {})
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of all fields and numbers over ``step``; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Fields on step, x and y; numbers on step.
+        """
+        state = self.to_dict()
+        state["steps"] = [dict(step) for step in state["steps"]]
+        arrays = [files.taken(step, self._QUANTITIES) for step in state["steps"]]
+        fields = {
+            row.name: [step[row.name] for step in arrays]
+            for row in WITH_FRICTION
+            if row.name in arrays[0]
+        }
+        return self._dataset(fields, state)
+
+    def _dataset(self, fields: dict[str, Any], state: dict[str, Any]) -> xarray.Dataset:
+        """Return the Dataset of the numbers, and of these fields."""
+        steps = checked(self)
+        columns: dict[str, Any] = {}
+        for row in WITH_FRICTION:
+            if row.name in fields:
+                columns[row.name] = ("step", *row.dims), np.array(fields[row.name])
+            elif row.dims in ((), AXIS) and (row.of(steps[0])) is not None:
+                dims = ("step", "component") if row.dims else ("step",)
+                columns[row.name] = dims, np.array([row.of(step) for step in steps])
+        coordinates: dict[str, Any] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
+        if fields:
+            coordinates |= {"x": steps[0].x, "y": steps[0].y}
+        units = ((row, steps[0]._si(row)) for row in WITH_FRICTION)
+        title = "history of a contact with friction"
+        return files.dataset(title, units, columns, coordinates, state)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the force of sliding as a function of the shift, or the last step of rolling.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Axes of the picture.
+        """
+        from nacre import plot
+
+        first = checked(self)[0].shift
+        if first is None:
+            return plot.friction(self[-1], axes)
+        ranges = [np.ptp([step.force[axis] for step in self]) for axis in range(2)]
+        return plot.loop(self, "xy"[int(np.argmax(ranges))], axes)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+            `nacre.load` and xarray; ``.csv`` is the numbers of each step; ``.png``, ``.pdf`` and
+            ``.svg`` are the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another, or there is no step.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(loop.save(f"{folder}/loop.nc")) == loop
+        True
+        """
+        writers = files.tabular(self, self._table())
+        return files.save(path, writers | files.pictures(self.plot))
+
+    def _table(self) -> list[list[Any]]:
+        """Return the numbers of each step, after their headings."""
+        first = checked(self)[0]
+        kept = [row for row, _ in tables.numbers(first)]
+        axes = [("x", "y") if row.dims else ("",) for row in kept]
+        heads = [
+            tables.headed(row, first, axis)
+            for row, names in zip(kept, axes, strict=True)
+            for axis in names
+        ]
+        rows = [np.hstack([np.ravel(row.of(step)) for row in kept]).tolist() for step in self]
+        return [["step", *heads], *([k, *row] for k, row in enumerate(rows))]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the named states of the steps, as plain data; see `FrictionSolution.to_dict`."""
+        return values.heading("History") | {"steps": [step._state() for step in self]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Return the history whose named state `to_dict` returned, to the bit.
+
+        Raises
+        ------
+        ValueError
+            As `FrictionSolution.from_dict`.
+        """
+        state = values.checked_state(data, "History", ["steps"])
+        head = values.heading("FrictionSolution")
+        with values.refusing("History"):
+            return cls(FrictionSolution.from_dict(head | step) for step in state["steps"])
+
+    def __repr__(self) -> str:
+        """Return the number of steps and the last one."""
+        last = f", the last {self[-1]!r}" if self else ""
+        return f"<History of {len(self)} steps{last}>"
+
+    def __str__(self) -> str:
+        """Return a table of the steps."""
+        return printable("\n".join(display.aligned(display.history(self), ">")))
+
+    def _repr_html_(self) -> str:
+        head, *rows = display.history(self)
+        return display.markup(rows, head=head)
+
+
+values.RESULTS["History"] = History

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+import os
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Self, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
-from nacre.results import display, values
+from nacre.results import display, files, values
 from nacre.results.base import Result, same
+from nacre.results.quantities import EXTREMES
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = npt.NDArray[np.float64]
 Depths = float | Sequence[float] | Real
@@ -23,6 +29,8 @@ Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
 Progress = Callable[[float], object]
 
+FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
+"""Safety factors that stand with extremes."""
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
@@ -403,6 +411,59 @@ class StressSummary(Result):
         data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
         data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
         return cls(**data)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
+
+        ``to_xarray().to_dataframe()`` is the table for pandas.
+
+        Returns
+        -------
+        xarray.Dataset
+            Part and name of each extreme, value, uncertainty, position and safety factor over
+            ``row``; NaN where there is none.
+        """
+        heads, *rows = self._rows()
+        columns = dict(zip(heads, zip(*rows, strict=True), strict=True))
+        variables = {name: ("row", list(column)) for name, column in columns.items()}
+        table = [(row, row.unit) for row in EXTREMES]
+        return files.dataset("extremes of the stress", table, variables, {}, self.to_dict())
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, or ``.csv`` for the table.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+        """
+        return files.save(path, files.tabular(self, self._rows()))
+
+    def _rows(self) -> list[tuple[Any, ...]]:
+        """Return the rows of the table, the heading first."""
+        rows: list[tuple[Any, ...]] = [tuple(row.name for row in EXTREMES)]
+        parts: list[LayerStress | InterfaceStress] = [*self.layers, *self.interfaces]
+        for part in parts:
+            for name in part._PEAKS:
+                if (peak := getattr(part, name)) is None:
+                    continue
+                value, place = peak
+                error = part.uncertainty.get(name, np.nan)
+                factor = getattr(part, FACTORS.get(name, ""), None)
+                limit = np.nan if factor is None else factor
+                rows.append((display.part(part), name, value, error, *place, limit))
+        return rows
 
     def __str__(self) -> str:
         """Return a table, in the units that are set."""

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._tools.disk import write_dataset
-from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol
-from nacre.results.files import dataset, save
+from nacre.results.files import dataset
 from nacre.results.quantities import FIT, INDENT, PARAMETERS
-from nacre.results.tables import SOURCE, write_rows
 from nacre.results.values import encode
 
 if TYPE_CHECKING:
@@ -97,17 +93,6 @@ def _arguments(found: IndentSolution | Fit) -> dict[str, str]:
 
 def _units(fit: Fit) -> list[str]:
     return [symbol(unit_of(name)) for name in fit.estimates]
-
-
-def saved(found: IndentSolution | Fit, rows: Iterable[list[Any]], path: AnyPath) -> Path:
-    """Write a file, whole or not at all; its ending chooses the kind. Tables have these rows."""
-    return save(
-        path,
-        {
-            ".nc": lambda file: write_dataset(found.to_xarray(), file),
-            ".csv": lambda file: write_rows(file, rows, source=SOURCE),
-        },
-    )
 
 
 def contact_rows(solution: IndentSolution) -> Iterator[list[Any]]:

@@ -20,7 +20,7 @@ from nacre.indent._residuals import ROUNDING
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import holds
-from nacre.results import display
+from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.values import decode, encode, refusing
 
@@ -234,9 +234,9 @@ class Fit(Result):
         ValueError
             If the file has another ending.
         """
-        from nacre.indent._files import parameter_rows, saved
+        from nacre.indent._files import parameter_rows
 
-        return saved(self, parameter_rows(self), path)
+        return files.save(path, files.tabular(self, parameter_rows(self)))
 
     def _state(self) -> dict[str, Any]:
         curves = [

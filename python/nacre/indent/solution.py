@@ -18,7 +18,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import Field, Layers, Matrix, Vector
 from nacre._tools.units import printable, written
-from nacre.results import display
+from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.quantities import INDENT, units
 from nacre.results.values import decode, encode, refusing
@@ -362,9 +362,9 @@ class IndentSolution(Result):
         ValueError
             If the file has another ending.
         """
-        from nacre.indent._files import contact_rows, saved
+        from nacre.indent._files import contact_rows
 
-        return saved(self, contact_rows(self), path)
+        return files.save(path, files.tabular(self, contact_rows(self)))
 
     def __eq__(self, other: object) -> bool:
         """Return whether all is equal, to the bit."""

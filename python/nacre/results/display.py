@@ -233,6 +233,21 @@ def interface_line(face: InterfaceStress) -> str:
     )
 
 
+def history(steps: Sequence[FrictionSolution]) -> list[list[str]]:
+    """Return the rows of a table of the steps of a history, the heading first."""
+    line, rolls = steps[0].grid.is_line, steps[0].shift is None
+    force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
+    rows = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
+    rows[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
+    for number, step in enumerate(steps):
+        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
+        forces = [written(part, force) for part in shown(step.force)]
+        lost = written(step.dissipated, energy(line, rolls))
+        rows.append([str(number), *forces, *said, lost, step.report.termination])
+    return rows
+
+
 def friction_line(solution: FrictionSolution) -> str:
     """Return the line that ``repr`` of a contact with friction shows."""
     nx, ny = solution.grid.shape
@@ -306,6 +321,12 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
         below = "" if above is None else f" below {above}"
         rows[start][0] = f"interfaces[{face.interface}]{below} at {written(face.depth, 'm')}"
     return rows
+
+
+def part(part: LayerStress | InterfaceStress) -> str:
+    """Return number and name of a layer, or number of an interface, in a summary."""
+    number: int | None = getattr(part, "interface", None)
+    return _layer(part) if number is None else f"interfaces[{number}]"  # type: ignore[arg-type]
 
 
 def _layer(layer: LayerStress) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping
-from functools import reduce
-from operator import getitem
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +14,8 @@ from nacre._tools.disk import PICTURES, STATE, read, replacing, write_dataset
 from nacre._tools.extras import extra
 from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol, system
-from nacre.results.quantities import CONTACT, WITH_FRICTION, Quantity
-from nacre.results.tables import SOURCE, numbers, write_cells
+from nacre.results.quantities import CONTACT, TAKEN, WITH_FRICTION, Quantity
+from nacre.results.tables import SOURCE, numbers, write_cells, write_rows
 from nacre.results.values import check_format, refusing, result_class
 from nacre.results.vtk import write_surface
 
@@ -66,7 +64,7 @@ def gridded(result: Any) -> xarray.Dataset:
     Attributes hold main numbers, bodies, motion and options, as JSON where they are no numbers.
     """
     table, state = result._QUANTITIES, result.to_dict()
-    arrays = _taken(state, table)
+    arrays = taken(state, table)
     variables: dict[str, Any] = {}
     for row in table:
         if row.name in arrays or row.follows:
@@ -85,17 +83,13 @@ def gridded(result: Any) -> xarray.Dataset:
     return dataset(result._TITLE, units, variables, coordinates, state, **attributes)
 
 
-def _taken(state: dict[str, Any], table: Iterable[Quantity]) -> dict[str, Array]:
+def taken(state: dict[str, Any], table: Iterable[Quantity]) -> dict[str, Array]:
     """Take the arrays out of a state, and return them by the names of their quantities."""
     found = {}
     for row in table:
         if isinstance(values := row.within(state), np.ndarray):
-            *places, name = (row.path or row.name).split(".")
-            inner = state
-            for place in places:
-                inner[place] = inner = dict(inner[place])
-            del inner[name]
             found[row.name] = values
+            row.put(state, TAKEN)
     return found
 
 
@@ -117,17 +111,31 @@ def writers(result: Any, draw: Callable[[], Any]) -> dict[str, Callable[[Path], 
         ".nc": lambda path: write_dataset(gridded(result), path),
         ".vtr": lambda path: write_surface(result, path),
         ".csv": lambda path: write_cells(result, path),
-        **dict.fromkeys(PICTURES, lambda path: _write_picture(draw(), path)),
+        **pictures(draw),
     }
 
 
-def _write_picture(axes: Any, path: Path) -> None:
-    try:
-        axes.figure.savefig(path, dpi=300)
-    finally:
-        from matplotlib import pyplot
+def tabular(result: Any, rows: Iterable[Iterable[Any]]) -> dict[str, Callable[[Path], object]]:
+    """Return the writers of a result whose tables have these rows, by their endings."""
+    return {
+        ".nc": lambda path: write_dataset(result.to_xarray(), path),
+        ".csv": lambda path: write_rows(path, rows, source=SOURCE),
+    }
 
-        pyplot.close(axes.figure)
+
+def pictures(draw: Callable[[], Any]) -> dict[str, Callable[[Path], object]]:
+    """Return the writers of a picture by their endings; `draw` returns its axes."""
+
+    def write(path: Path) -> None:
+        axes = draw()
+        try:
+            axes.figure.savefig(path, dpi=300)
+        finally:
+            from matplotlib import pyplot
+
+            pyplot.close(axes.figure)
+
+    return dict.fromkeys(PICTURES, write)
 
 
 def load(path: AnyPath) -> Any:
@@ -188,8 +196,11 @@ def _restored(text: str, arrays: Mapping[str, Array]) -> Any:
     check_format(state.get("format"), state.get("nacre"), "it")
     kind = result_class(state.get("kind", "Solution"))
     with refusing(kind.__name__):
+        several = len(state["steps"]) if "steps" in state else 0
         for row in kind._QUANTITIES:
-            if row.name in arrays:
-                *places, name = (row.path or row.name).split(".")
-                reduce(getitem, places, state)[name] = arrays[row.name]
+            if row.name in arrays and several:
+                for step, values in zip(state["steps"], arrays[row.name], strict=True):
+                    row.put(step, values)
+            elif row.name in arrays:
+                row.put(state, arrays[row.name])
     return kind.from_dict(state)

@@ -13,6 +13,8 @@ from typing import Any
 
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
+TAKEN = object()
+"""In place of a value that is taken out of a state."""
 CELLS, VECTOR = ("x", "y"), ("component", "x", "y")
 """Dimensions of a field, and of one with components along x and y."""
 
@@ -53,6 +55,15 @@ class Quantity:
         """Return the value in the state of a result, or None."""
         *places, name = (self.path or self.name).split(".")
         return reduce(lambda inner, place: inner[place], places, state).get(name)
+
+    def put(self, state: dict[str, Any], value: Any) -> None:
+        """Put a value into the state of a result; `TAKEN` takes it out."""
+        *places, name = (self.path or self.name).split(".")
+        for place in places:
+            state[place] = state = dict(state[place])
+        state[name] = value
+        if value is TAKEN:
+            del state[name]
 
     def si(self, *, line: bool = False, rolls: bool = False) -> str:
         """Return the SI unit in a contact of this kind."""
@@ -109,6 +120,8 @@ FRICTION = (
         rolling=("J/m", "J/m²"),
     ),
     Quantity("tangential_energy", "elastic energy of the tractions", "J", "J/m"),
+    Quantity("stick_share", "share of the contact that sticks"),
+    Quantity("convolutions", "convolutions of the solve", path="report.convolutions"),
     Quantity("traction", "traction on the body", "Pa", dims=VECTOR),
     Quantity("displacement", "displacement of the body less counterbody", "m", dims=VECTOR),
     Quantity("slip", "slip of the counterbody", "m", dims=VECTOR, rolling=("", "")),
@@ -142,6 +155,18 @@ STRESS = tuple(
     }.items()
 )
 """Extremes of the stress that studies keep."""
+
+EXTREMES = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the extreme"),
+    Quantity("value", "largest value", "Pa"),
+    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or strength over the value"),
+)
+"""Columns of the table of a stress summary."""
 
 INDENT = (
     Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),

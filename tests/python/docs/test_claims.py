@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 CLAIMS: list[dict[str, Any]] = json.loads((ROOT / "docs/claims.json").read_text(encoding="utf-8"))
 
 

@@ -1,5 +1,6 @@
 """Stress from Python: shapes, sections, both bodies, residual stress, summary, errors, progress."""
 
+import csv
 import os
 import pickle
 import signal
@@ -209,7 +210,7 @@ def test_invariants_are_those_of_the_components(solution: nacre.Solution) -> Non
 
 
 @pytest.mark.slow
-def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
+def test_the_summary_holds_the_extremes(solution: nacre.Solution, tmp_path: Path) -> None:
     summary = solution.stress_summary(
         yield_stress={"substrate": 2e9},
         strength=[1e9, None],
@@ -247,6 +248,19 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     largest = abs(jump[0] + jump[1]) / 2 + np.hypot((jump[0] - jump[1]) / 2, jump[2])
     assert interface.jump is not None
     assert interface.jump[0] == pytest.approx(largest.max(), rel=1e-12)
+    assert nacre.load(summary.save(tmp_path / "a.nc")) == summary
+    frame = summary.to_xarray().to_dataframe().set_index(["part", "quantity"])
+    shear = frame.loc[("interfaces[0]", "shear")]
+    assert (shear.value, (shear.x, shear.y, shear.z)) == interface.shear
+    mises = frame.loc[("the substrate", "von_mises")]
+    assert (mises.value, mises.uncertainty) == (
+        substrate.von_mises[0],
+        substrate.uncertainty["von_mises"],
+    )
+    assert mises.safety_factor == substrate.yield_safety_factor
+    with summary.save(tmp_path / "a.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if line[0] != "#"))
+    assert [float(row["value"]) for row in rows] == frame.value.tolist()
     lines = str(summary).splitlines()
     assert max(len(line) for line in lines if not line.startswith("warning")) <= 100
     assert [line.split("  ")[0] for line in lines if line[0] not in " w"] == [

@@ -604,7 +604,7 @@ def test_the_case_in_the_documentation_is_one(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_case_of_the_page_is_one(tmp_path: Path, capsys: Capture) -> None:
-    page = (Path(__file__).parents[2] / "docs" / "cases.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "cases.md").read_text(encoding="utf-8")
     text = page.partition(":caption: ball.toml\n")[2].partition("```")[0]
     path = written(tmp_path, text)
     assert command("sweep", path) == 0

@@ -186,7 +186,10 @@ def main(name: str, count: int, seed: int, folder: Path) -> None:
 def test_a_damaged_file_is_refused_or_read_soon(tmp_path: Path) -> None:
     seed = random.randrange(1 << 30) if ASKED else 1
     seconds = len(KINDS) * (10 + SECONDS * COUNT)
-    done = python(__file__, COUNT, seed, tmp_path, *KINDS, timeout=seconds)
+    path = {"PYTHONPATH": os.pathsep.join(sys.path)}  # bodies and support are beside this folder
+    done = python(
+        *(__file__, COUNT, seed, tmp_path, *KINDS), timeout=seconds, env=os.environ | path
+    )
     assert (done.returncode, done.stdout.splitlines()) == (0, [*KINDS]), (seed, done.stderr[-3000:])
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import csv
 import pickle
 import re
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,6 +75,58 @@ def test_other_units_change_the_names_of_units_alone() -> None:
         assert f"{shift_of(solution)[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
         assert "spin           3 /mm" in str(solved("rolled"))
     np.testing.assert_array_equal(dataset.traction, solution.traction)
+
+
+# Histories.
+
+
+@pytest.mark.parametrize("kind", ["slid", "rolled"])
+def test_a_history_is_saved_whole_and_goes_on_to_the_bit(kind: str, tmp_path: Path) -> None:
+    rolls: dict[str, Any] = {"creepage": (1e-3, None), "direction": "+x"}
+    forces: Any = [{"force": (f, 0.1)} for f in (1.0, -1.0, 0.5)]
+
+    def onward(count: int, initial: Any = None) -> Any:
+        if kind == "rolled":
+            return CONTACT.roll(BALL, **HELD, **rolls, cells=count, initial=initial)
+        return CONTACT.slide(BALL, **HELD, steps=forces[:count], initial=initial)
+
+    history = onward(3)
+    back = nacre.load(history.save(tmp_path / "a.nc"))
+    assert type(back) is nacre.types.History
+    from_dict = nacre.types.History.from_dict(history.to_dict())
+    for found in (back, pickle.loads(pickle.dumps(history)), copy.deepcopy(history), from_dict):
+        assert type(found) is nacre.types.History
+        assert found == history
+    first, second = (onward(1, begun)[0] for begun in (history[-1], back))
+    assert first.traction.tobytes() == second.traction.tobytes()
+    dataset = history.to_xarray()
+    assert dataset.traction.dims == ("step", "component", "x", "y")
+    np.testing.assert_array_equal(dataset.slip[-1], history[-1].slip)
+    np.testing.assert_array_equal(dataset.force, [step.force for step in history])
+    numbers = nacre.friction.history(history)
+    assert set(numbers.data_vars) == {n for n, v in dataset.data_vars.items() if "x" not in v.dims}
+
+
+def test_a_history_is_a_table_and_a_picture(tmp_path: Path) -> None:
+    steps = [{"force": (f, 0.1)} for f in (1.0, -1.0, 0.5)]
+    history = CONTACT.slide(BALL, **HELD, steps=steps)
+    lines = history.save(tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(line for line in lines if line[0] != "#"))
+    assert [float(row["force x [N]"]) for row in rows] == [step.force[0] for step in history]
+    assert [float(row["torque [N m]"]) for row in rows] == [step.torque for step in history]
+    assert history.save(tmp_path / "a.png").stat().st_size > 0
+    head, *table = str(history).splitlines()
+    assert head.split()[:3] == ["step", "force", "x"]
+    assert [line.split()[1] for line in table] == ["1", "-1", "500"]
+    for word in (word for line in table for word in re.split(r"\s{2,}", line.strip())):
+        assert word in history._repr_html_()
+    assert repr(history).startswith("<History of 3 steps, the last <FrictionSolution on")
+
+
+def test_the_load_holds_where_a_history_goes_on() -> None:
+    first = nacre.slide(BALL, STEEL, STEEL, load=9.0, friction=0.3, force=(1.0, 0.0))
+    onward = nacre.slide(BALL, STEEL, STEEL, friction=0.3, force=(0.5, 0.0), initial=first)
+    assert onward.normal.load == pytest.approx(9.0, rel=1e-12)
 
 
 # Text.

@@ -28,7 +28,7 @@ from nacre.surfaces import read_profile
 
 Array = npt.NDArray[np.float64]
 
-CASES = Path(__file__).parents[1] / "data" / "cases"
+CASES = Path(__file__).parents[2] / "data" / "cases"
 FILM = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-3)])
 STEEL = nacre.Elastic(210e9, 0.3)
 DIGITS = 1e-5

@@ -31,6 +31,7 @@ def test_a_history_is_a_dataset() -> None:
     assert {n: study[n].units for n in study} == {
         **{"load": "N", "force": "N", "torque": "N m", "dissipated": "J", "stick_share": "1"},
         **{"convolutions": "1", "shift": "m", "twist": "rad"},
+        **{"approach": "m", "tangential_energy": "J"},
     }
     share = [s.stick.sum() / np.count_nonzero(s.pressure) for s in loop]
     assert study.stick_share.values.tolist() == share
