@@ -11,9 +11,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
 from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
+from nacre.results import display
 from nacre.results.base import Result, checked
 
 if TYPE_CHECKING:
@@ -49,12 +51,17 @@ class CreepCoefficients(Result):
     semi_axes: tuple[float, float]
     """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
 
-    def __repr__(self) -> str:
-        """Return the coefficients with their errors."""
+    def _rows(self) -> list[tuple[str, str]]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
-        shown = ", ".join(f"{name} {c:.4f} ± {error:.4f}" for name, c, error in numbers)
-        return f"<CreepCoefficients: {shown}>"
+        return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
+
+    def __repr__(self) -> str:
+        """Return the coefficients with their errors."""
+        return f"<CreepCoefficients: {', '.join(' '.join(row) for row in self._rows())}>"
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows())
 
 
 def creep_coefficients(
@@ -197,10 +204,13 @@ def creep_curve(
         motion = {name: keywords[name] for name in MOTION if name in keywords}
         grid = solve(shape, body, counterbody, **plan, **motion).report.grid
     contact = Contact(body, grid, counterbody, **plan)
-    solutions = [
-        contact.roll(shape, creepage=(None, value) if lateral else (value, None), **keywords)
-        for value in values.tolist()
-    ]
+    solutions = []
+    with lasting("creepages") as tell:
+        for value in values.tolist():
+            creepage = (None, value) if lateral else (value, None)
+            solutions.append(contact.roll(shape, creepage=creepage, **keywords))
+            if tell is not None:
+                tell(len(solutions) / values.size)
     along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
     axis, sign = along[solutions[0].direction]
     # z x e: along +y for rolling towards +x, along -x for rolling towards +y.

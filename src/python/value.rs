@@ -2,7 +2,7 @@
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::PyTuple;
 
 use super::arguments::{array_repr, hash};
 
@@ -26,14 +26,6 @@ pub(super) trait Value {
 
     /// Arguments of the call that makes the value.
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>>;
-}
-
-/// Arguments by name, as a dict.
-pub(super) type ByName<'py> = Bound<'py, PyDict>;
-
-/// Arguments of the call that makes a value, by name.
-pub(super) fn by_name<'py>(value: &impl Value, py: Python<'py>) -> PyResult<ByName<'py>> {
-    value.arguments(py)?.into_py_dict(py)
 }
 
 /// Text of the call that makes a value.
@@ -150,8 +142,8 @@ macro_rules! class {
             }
 
             /// Arguments of the call that makes the value, by name: for paths.
-            fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<value::ByName<'py>> {
-                value::by_name(self, py)
+            fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+                pyo3::types::IntoPyDict::into_py_dict(self.arguments(py)?, py)
             }
 
             /// Callable and arguments that make the value again.

@@ -17,7 +17,7 @@ DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
 
 def numbers(made: Mapping[str, Any]) -> dict[str, float]:
     """Return all numbers of arguments by path."""
-    return dict(core.numbers({name: _described(name, made[name]) for name in made}))
+    return dict(core.numbers(described(made)))
 
 
 def put(
@@ -36,7 +36,7 @@ def holder(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str,
     said = f"{names} must name parameters of {of} by path, got {path!r}"
     if name not in made:
         raise ValueError(said)
-    held = {name: _described(name, made[name])}
+    held = described({name: made[name]})
     try:
         found = core.at(held, path)
     except LookupError as missing:
@@ -46,6 +46,7 @@ def holder(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str,
     return held
 
 
-def _described(name: str, value: Any) -> Any:
-    """Return an argument as paths describe it: the material of a body is its substrate."""
-    return core.HalfSpace(value) if name in BODIES and isinstance(value, core.Elastic) else value
+def described(made: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arguments as paths name their numbers: the material of a body is its substrate."""
+    bare = {name for name in BODIES if isinstance(made.get(name), core.Elastic)}
+    return {k: core.HalfSpace(one) if k in bare else one for k, one in made.items()}

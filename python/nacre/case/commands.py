@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 import nacre
-from nacre._tools.disk import PICTURES
+from nacre._tools.disk import PICTURES, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import system
 from nacre.case import Case, CaseError
@@ -20,7 +20,7 @@ from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
 from nacre.results.display import SLIGHT
-from nacre.results.outputs import ERROR, OF_FRICTION, check_direction
+from nacre.results.outputs import ERROR, check_direction
 from nacre.studies import default_threads
 
 app = typer.Typer(
@@ -125,22 +125,23 @@ def _solve(
                 solved = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
-        # Of a history, the last step is printed and saved.
-        solution = solved[-1] if isinstance(solved, list) else solved
+        # Of a history, the last step is printed.
+        solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
         try:
             stress = None if asked is None else solution.stress_summary(**asked)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: stress: {error}") from error
+    steps = solved if isinstance(solved, nacre.types.History) else None
     for path in save:
-        solution.save(path)
-    steps = solved if isinstance(solved, list) else []
+        # The fields of ParaView's file are those of the last step.
+        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
     if as_json:
         extremes = {} if stress is None else {"stress": stress.to_dict()}
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
-            print(f"{solved}\n\nlast step")
+            print(f"{steps}\n\nlast step")
         print(solution if stress is None else f"{solution}\n\n{stress}")
 
 
@@ -150,6 +151,9 @@ def sweep(
     store: Annotated[
         Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
     ] = None,
+    save: Annotated[
+        list[Path] | None, typer.Option(help="File to write: .csv. May be repeated.")
+    ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     units: Units = None,
     as_json: Json = False,
@@ -157,12 +161,18 @@ def sweep(
     """Solve the study that a case file describes, or the rest of it after a kill."""
     described = _read_case(case, units)
     study = described.study(store)
+    for path in save or []:
+        if path.suffix.lower() != ".csv":
+            raise CaseError(f"--save must end in .csv, got {str(path)!r}")
     with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
             dataset = nacre.sweep(described, retry=retry, **study)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: sweep: {error}") from error
+    for path in save or []:
+        with replacing(path) as temporary:
+            dataset.to_dataframe().to_csv(temporary)
     failed = int((dataset.error != "").sum())
     if as_json:
         print(json.dumps(_plain(dataset.to_dict()), indent=2))
@@ -217,8 +227,7 @@ def schema(
 
 def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
     """Return the main numbers of friction and the named state of its report."""
-    numbers = {name: getattr(solution, name) for name in OF_FRICTION}
-    return {name: value for name, value in numbers.items() if value is not None} | {
+    return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
             name: value for name, value in solution.report.to_dict().items() if name != "kind"
         }

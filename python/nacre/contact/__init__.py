@@ -10,6 +10,7 @@ from typing import Any, Literal, Self
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.progress import lasting
 from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
@@ -762,25 +763,31 @@ def _steps(
         given["initial"] = given["initial"][-1]
     if isinstance(given["initial"], FrictionSolution):
         given["initial"] = given["initial"]._solved
+    asked = None
     if given.get("steps") is not None:
         words = ("a step", "steps", "slide", "step")
-        steps = core.slide(given, _mappings(words, given["steps"], STEP), plan)
+        asked = _mappings(words, given["steps"], STEP)
+        steps = core.slide(given, asked, plan)
     else:
         steps = begin(given, plan=plan)
+    count = len(asked) if asked else given.get("cells") or 1
     solutions: list[FrictionSolution] = []
     try:
-        for solved in steps:
-            solution = FrictionSolution._of(solved)
-            ended = solution.report.termination
-            for warning in solution.normal.report.warnings if ended != "stopped" else []:
-                warnings.warn(warning, core.NacreWarning, stacklevel=3)
-            if given["check"] and ended == "iteration limit":
-                error = core.ConvergenceError(solved.not_converged())
-                error.solution = solution
-                raise error
-            solutions.append(solution)
-            if ended == "stopped":
-                break
+        with lasting("steps", progress) as tell:
+            for solved in steps:
+                solution = FrictionSolution._of(solved)
+                ended = solution.report.termination
+                for warning in solution.normal.report.warnings if ended != "stopped" else []:
+                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
+                if given["check"] and ended == "iteration limit":
+                    error = core.ConvergenceError(solved.not_converged())
+                    error.solution = solution
+                    raise error
+                solutions.append(solution)
+                if ended == "stopped":
+                    break
+                if progress is None and tell is not None:
+                    tell(len(solutions) / count)
     except BaseException as error:
         if steps.several:
             error.solutions = solutions  # type: ignore[attr-defined]

@@ -430,6 +430,21 @@ class History(list[FrictionSolution]):
         -------
         matplotlib.axes.Axes
             Axes of the picture.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are not axes.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> loop.plot().get_xlabel()
+        'shift along x [nm]'
         """
         from nacre import plot
 
@@ -495,10 +510,30 @@ class History(list[FrictionSolution]):
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the history whose named state `to_dict` returned, to the bit.
 
+        Parameters
+        ----------
+        data : dict
+            Named state; lists may stand for arrays, as in JSON.
+
+        Returns
+        -------
+        History
+            The steps.
+
         Raises
         ------
         ValueError
             As `FrictionSolution.from_dict`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> nacre.types.History.from_dict(loop.to_dict()) == loop
+        True
         """
         state = values.checked_state(data, "History", ["steps"])
         head = values.heading("FrictionSolution")
@@ -516,7 +551,8 @@ class History(list[FrictionSolution]):
 
     def _repr_html_(self) -> str:
         head, *rows = display.history(self)
-        return display.markup(rows, head=head)
+        picture = display.drawn(self.plot)
+        return display.markup(rows, picture=picture, head=head, widest=display.WIDE)
 
 
 values.RESULTS["History"] = History

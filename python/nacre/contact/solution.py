@@ -315,6 +315,17 @@ class Solution(Result, Stressed):
         """
         return self._numbers["plastic_work"]
 
+    @property
+    def elastic_energy(self) -> float:
+        """Elastic energy of the normal displacement of both bodies [J], ``½ sum p u dA``.
+
+        Where the approach has a datum, as in line contact, the displacement and the energy have it,
+        too.
+        """
+        size, shape = self.grid.size, self.grid.shape
+        cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
+        return 0.5 * cell * float(np.vdot(self.pressure, self.displacement))
+
     @cached_property
     def in_contact(self) -> npt.NDArray[np.bool_]:
         """Whether each cell is in contact: its pressure is above 0."""
@@ -359,6 +370,11 @@ class Solution(Result, Stressed):
     def contact_area(self) -> float:
         """Area of the cells in contact [m^2]."""
         return self._numbers["contact_area"]
+
+    @property
+    def contact_share(self) -> float:
+        """Share of the grid that is in contact; of a periodic surface, that of its area."""
+        return int(self.in_contact.sum()) / self.in_contact.size
 
     @property
     def contact_extent(self) -> tuple[Pair, Pair]:

@@ -13,9 +13,11 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
+from nacre.results import display
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,21 +68,33 @@ class Optimum:
         """Largest share by which a limit is exceeded; negative where none is."""
         return max((max(v) / limit - 1.0 for _, limit, v in self.limits), default=-math.inf)
 
-    def __str__(self) -> str:
-        """Return a report."""
+    def _table(self) -> tuple[list[list[str]], list[str]]:
+        """Return the rows of the table, the heading first, and lines below."""
         first = {name: column[0] for name, column in self.course.items()}
-        rows = [("objective", first["objective"], self.objective)]
-        rows += [(name, first[name], value) for name, value in self.values.items()]
-        lines = [f"{'':32}{'start':>14}{'optimum':>14}{'change':>10}"]
-        for name, start, value in rows:
+        found = {"objective": self.objective, **self.values}
+        rows = [["", "start", "optimum", "change"]]
+        for name, value in found.items():
+            start = first[name]
             change = f"{100 * (value / start - 1):+.1f} %" if start else ""
-            lines.append(f"{name:32}{start:14.5g}{value:14.5g}{change:>10}")
+            rows.append([name, f"{start:.5g}", f"{value:.5g}", change])
+        lines = []
         for output, limit, reached in self.limits:
             share = 100 * max(reached) / limit
             lines.append(f"limit {limit:.5g} on {output}: {max(reached):.5g}, {share:.1f} % of it")
         iterations = len(self.course["objective"]) - 1
         lines.append(f"{self.termination}: {iterations} iterations, {self.solves} solves")
-        return "\n".join([*lines, *(f"warning: {line}" for line in self.warnings)])
+        return rows, [*lines, *(f"warning: {line}" for line in self.warnings)]
+
+    def __str__(self) -> str:
+        """Return a report."""
+        rows, lines = self._table()
+        table = [f"{row[0]:32}{row[1]:>14}{row[2]:>14}{row[3]:>10}" for row in rows]
+        return "\n".join([*table, *lines])
+
+    def _repr_html_(self) -> str:
+        (head, *rows), lines = self._table()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, lines, widest=display.WIDE)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the course; see `nacre.plot.course`."""
@@ -141,7 +155,8 @@ def optimise(
     max_solves : int, optional
         Number of solves after which the search ends; a derivative of an output counts as a solve.
     progress : callable or bool, optional
-        Function that gets each row of the course; or True, for a line of each on standard error.
+        Function that gets each row of the course; True, for a line of each on standard error; or
+        False, for nothing. By default a terminal or a notebook shows a bar after two seconds.
 
     Returns
     -------
@@ -208,8 +223,10 @@ def optimise(
             print(f"nacre.design.optimise: {text}", file=sys.stderr, flush=True)
         elif callable(progress):
             progress(row)
+        elif tell is not None:
+            tell(f"{problem.solves} solves, objective {row['objective']:.5g}")
 
-    with warnings.catch_warnings():
+    with lasting("optimum", progress) as tell, warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
         try:
             for stage in grids:

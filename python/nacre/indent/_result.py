@@ -153,7 +153,8 @@ class Fit(Result):
 
     def _repr_html_(self) -> str:
         head, rows, notes = self._table()
-        return display.markup(rows, head=head, notes=notes)
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
         rows = []

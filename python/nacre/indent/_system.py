@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.paths import numbers
+from nacre._tools.paths import described, numbers
 from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]
@@ -34,11 +34,8 @@ class System:
         adhesion: core.Adhesion | None = None,
     ) -> System:
         """Return the system of these arguments, elastic materials as half-spaces."""
-        if isinstance(body, core.Elastic):
-            body = core.HalfSpace(body)
-        if isinstance(counterbody, core.Elastic):
-            counterbody = core.HalfSpace(counterbody)
-        return cls(body, tip, counterbody, adhesion)
+        bodies = {"body": body, "counterbody": counterbody}
+        return cls(tip=tip, adhesion=adhesion, **described(bodies))
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""

@@ -25,6 +25,7 @@ from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 Given = Literal["load", "approach", "radius"]
 Branch = Literal["stable", "unstable"]
@@ -366,6 +367,15 @@ class IndentSolution(Result):
 
         return files.save(path, files.tabular(self, contact_rows(self)))
 
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the load as a function of the approach, or of one contact the pressure.
+
+        Needs ``nacre-contact[plot]``.
+        """
+        from nacre.plot import indent
+
+        return indent.contacts(self, axes)
+
     def __eq__(self, other: object) -> bool:
         """Return whether all is equal, to the bit."""
         if not isinstance(other, IndentSolution):
@@ -388,7 +398,8 @@ class IndentSolution(Result):
 
     def _repr_html_(self) -> str:
         head, rows, notes = self._table()
-        return display.markup(rows, head=head, notes=notes)
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
 
     def _range(self, name: str) -> str:
         values = np.ravel(getattr(self, name))

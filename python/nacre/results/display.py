@@ -25,8 +25,8 @@ Texts = Mapping[str, Callable[[Any], str | None]]
 Peak = tuple[float, tuple[float, float, float]]
 
 ALT = "the contact, x to the right"
-WIDEST = 240
-"""Pixels along the longer side of the small map."""
+WIDEST, WIDE = 240, 480
+"""Pixels along the longer side of the small map, and of a drawn picture."""
 NOISE = 1e-9
 """Share of its largest possible value below which a position or a moment is printed as 0."""
 SLIGHT = 1e-8
@@ -118,6 +118,13 @@ def _extent(solution: Solution) -> str:
     return sides[1] if solution.report.grid.is_line else " × ".join(sides)
 
 
+def _contact_share(solution: Solution) -> str | None:
+    """Return the share of the area; beside one contact, the area of the grid means nothing."""
+    return (
+        f"{100 * solution.contact_share:.3g} % of the area" if all(solution.grid.periodic) else None
+    )
+
+
 def _hardness(solution: Solution) -> str | None:
     if (hardness := solution.hardness) is None:
         return None
@@ -157,6 +164,7 @@ NORMAL_TEXTS: Texts = {
     "peak_pressure": lambda s: _estimated(s, "peak_pressure", "Pa"),
     "peak_position": lambda s: _centred(s, "peak_position", "m"),
     "contact_extent": _extent,
+    "contact_share": _contact_share,
     "hardness": _hardness,
     "indentation": _indentation,
 }
@@ -346,13 +354,14 @@ def markup(
     picture: bytes | None = None,
     head: Sequence[str] = (),
     notes: Sequence[str] = (),
+    widest: int = WIDEST,
 ) -> str:
     """Return what a notebook shows of any result: a table, a picture beside it, and notes below."""
     said = [*notes, *(f"warning: {text}" for text in warnings)]
     cells = [*([_cells("th", head)] if head else []), *(_cells("td", row) for row in rows)]
     encoded = "" if picture is None else base64.b64encode(picture).decode()
     image = picture and (
-        f"<img alt='{ALT}' style='border:1px solid #bbb; max-width:{WIDEST}px' "
+        f"<img alt='{ALT}' style='border:1px solid #bbb; max-width:{widest}px' "
         f"src='data:image/png;base64,{encoded}'>"
     )
     return (
@@ -404,6 +413,18 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
     file = io.BytesIO()
     white = colormaps["viridis"].with_extremes(bad="white")
     imsave(file, field, vmin=0.0, cmap=white, format="png", origin="lower")
+    return file.getvalue()
+
+
+def drawn(draw: Callable[[], Any]) -> bytes | None:
+    """Return a PNG of the picture of which `draw` returns the axes; without Matplotlib, none."""
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        return None
+    figure, file = draw().figure, io.BytesIO()
+    figure.savefig(file, format="png", dpi=100)
+    pyplot.close(figure)
     return file.getvalue()
 
 

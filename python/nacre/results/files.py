@@ -139,7 +139,7 @@ def pictures(draw: Callable[[], Any]) -> dict[str, Callable[[Path], object]]:
 
 
 def load(path: AnyPath) -> Any:
-    """Solution or fit from a file that its `save` wrote, to the bit.
+    """Load a result from a file that its `save` wrote, to the bit.
 
     Needs ``nacre-contact[files]``. A file ends in a checksum of all before, which other readers of
     NetCDF ignore. It is compared before anything else is read, since HDF5 may hang on a damaged
@@ -153,8 +153,9 @@ def load(path: AnyPath) -> Any:
 
     Returns
     -------
-    Solution, FrictionSolution, nacre.indent.IndentSolution or nacre.indent.Fit
-        Result that was saved.
+    object
+        Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
+        `StressSummary`, an `IndentSolution` or a `Fit` of `nacre.indent`.
 
     Raises
     ------

@@ -32,7 +32,7 @@ INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 
 NUMBERS = [row.name for row in CONTACT]
 """Quantities of a solution."""
-OF_FRICTION = [row.name for row in FRICTION if row.dims in ((), AXIS)]
+OF_FRICTION = {row.name: row for row in FRICTION if row.dims in ((), AXIS)}
 """Numbers of a contact with friction."""
 OF_INDENT = [row.name for row in INDENT]
 """Numbers of an indentation."""
@@ -151,7 +151,7 @@ def _number(solution: Any, name: str) -> Any:
         return getattr(solution, name)
     if name not in OF_FRICTION:
         return getattr(normal, name)
-    value = getattr(solution, name)
+    value = OF_FRICTION[name].of(solution)
     if value is None:
         raise ValueError(
             f"the output {name} is not one of {'rolling' if rolls(solution) else 'sliding'}"

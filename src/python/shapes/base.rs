@@ -8,14 +8,14 @@ use pyo3::IntoPyObjectExt;
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyList, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyList, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::model::surface::{self, Profile, Shifted, Superposition, Surface};
 use crate::python::arguments::{Pair, Real, Repr, hash};
 use crate::python::grid::PyGrid;
-use crate::python::value::{Arguments, ByName, INNER, Reduced, call_text};
+use crate::python::value::{Arguments, INNER, Reduced, call_text};
 
 /// A kind of shape with a Python class of the same name, which is also data. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface + Serialize + DeserializeOwned {
@@ -389,7 +389,7 @@ impl PyShape {
     }
 
     /// Arguments of the call that makes the shape, by name: the parts of a sum, or a shape and its shift.
-    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<ByName<'py>> {
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.0.arguments(py)?.into_py_dict(py)
     }
 

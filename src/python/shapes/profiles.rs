@@ -4,6 +4,7 @@ use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
@@ -94,8 +95,8 @@ impl PySampledProfile {
         value::repr(self, py)
     }
 
-    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<value::ByName<'py>> {
-        value::by_name(self, py)
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.arguments(py)?.into_py_dict(py)
     }
 
     /// Callable and arguments that make the profile again.

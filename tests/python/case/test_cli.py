@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import sys
 import time
 from pathlib import Path
 
 import pytest
+import xarray
 
 import nacre
 import nacre.cli
@@ -218,8 +220,14 @@ def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
         assert "sweep.store: " in err
         assert err.count("\n") == 1
         assert sorted(tmp_path.iterdir()) == [folder]
-    assert command("sweep", case, "--store", outside) == 0  # the command line may
-    assert outside.exists()
+    table = tmp_path / "x.csv"
+    assert command("sweep", case, "--store", outside, "--save", table) == 0  # the command may
+    frame = xarray.load_dataset(outside).to_dataframe()
+    with table.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["approach"]) for row in rows] == frame["approach"].tolist()
+    assert run("sweep", case, "--save", tmp_path / "x.nc")[0] == 2
+    table.unlink()
     case.write_text(SPHERE.replace("[sweep]", '[sweep]\nstore = "below/x.nc"'))
     (folder / "below").mkdir()
     assert command("sweep", case) == 0
