@@ -57,8 +57,8 @@ pub enum Error {
     },
     /// A response that is no compliance.
     #[error(
-        "the function of the wavenumber must be finite and at least 0 everywhere, and above 0 somewhere, got {value} at \
-         {wavenumber:.3e}"
+        "the function of the wavenumber must be finite and at least 0 everywhere, and above 0 somewhere, got {value} at {}",
+        plain(*wavenumber)
     )]
     NoCompliance {
         /// Value of the response \[m/Pa\].
@@ -68,8 +68,8 @@ pub enum Error {
     },
     /// A response that has no limit at long or at short waves.
     #[error(
-        "the function of the wavenumber must settle before {wavenumber:.3e}: at small wavenumbers to c/wavenumber or to a \
-         constant, at large ones to c/wavenumber, to a constant or to less"
+        "the function of the wavenumber must settle before {}: at small wavenumbers to c/wavenumber or to a constant, at \
+         large ones to c/wavenumber, to a constant or to less", plain(*wavenumber)
     )]
     NoLimit {
         /// Wavenumber \[1/m\] at which the limit was sought.

@@ -365,8 +365,10 @@ impl PyResponse {
     }
 
     fn __repr__(&self) -> String {
-        let ((long, short), local) = (self.limits(), self.0.local());
-        format!("<Response: limits ({long:.4e}, {short:.4e}) 1/Pa, springs {local:.4e} m/Pa>")
+        let brief = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+        let [long, short] = <[f64; 2]>::from(self.limits()).map(brief);
+        let springs = brief(self.0.local());
+        format!("<Response: limits ({long:?}, {short:?}) 1/Pa, springs {springs:?} m/Pa>")
     }
 
     fn __hash__(&self) -> PyResult<u64> {

@@ -222,10 +222,10 @@ fn values_that_are_no_response_are_refused() {
     let of = |f: fn(f64) -> f64| Sampled::wavenumbers().map(f).collect::<Vec<_>>();
     assert_eq!(told(vec![1.0; 3]), "values: expected shape [37121, 1], got [3, 1]");
     let wrong = "the function of the wavenumber must be finite and at least 0 everywhere, and above 0 somewhere, got";
-    assert_eq!(told(of(|_| f64::NAN)), format!("{wrong} NaN at 6.470e-26"));
-    assert_eq!(told(of(|_| 0.0)), format!("{wrong} 0 at 1.000e0"));
-    assert!(told(of(|alpha| 1.0 / alpha.sqrt())).contains("must settle before 1.546e25"));
-    assert!(told(of(|alpha| 1.0 / alpha.powi(2))).contains("must settle before 6.470e-26"));
+    assert!(told(of(|_| f64::NAN)).starts_with(&format!("{wrong} NaN at 6.47")));
+    assert_eq!(told(of(|_| 0.0)), format!("{wrong} 0 at 1"));
+    assert!(told(of(|alpha| 1.0 / alpha.sqrt())).contains("must settle before 1.545"));
+    assert!(told(of(|alpha| 1.0 / alpha.powi(2))).contains("must settle before 6.47"));
     assert!(told(of(|alpha| 1.0 + 1.0 / alpha)).contains("give the constant as local"));
     assert_eq!(
         message(Sampled::new(of(|_| 1.0), -1.0)),
