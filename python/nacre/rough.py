@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.typing import Body
 from nacre._tools.units import symbol, written
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -293,9 +294,9 @@ def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
 
 def load_curve(
     shape: core.HeightMap | Any,
-    body: core.HalfSpace | core.Elastic,
+    body: Body,
     pressures: Sequence[float],
-    counterbody: core.HalfSpace | core.Elastic | None = None,
+    counterbody: Body | None = None,
     *,
     grid: core.Grid | None = None,
     **keywords: Any,

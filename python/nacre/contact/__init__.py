@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import Algorithm, Along, Body, Field, Matrix
+from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 
@@ -58,9 +58,9 @@ def solve(
     ----------
     shape : Shape
         Shape that is pressed in.
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body that it is pressed into.
-    counterbody : HalfSpace or Elastic, optional
+    counterbody : HalfSpace, Elastic or Response, optional
         Body that carries the shape; rigid where there is none. A roller of finite length ends on
         both sides: ``HalfSpace(steel, ends=roller.ends)``.
     grid : Grid, optional
@@ -144,8 +144,8 @@ def solve(
 
 def slide(
     shape: core.Shape,
-    body: Body,
-    counterbody: Body | None = None,
+    body: Layers,
+    counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
     threads: int | None = None,
@@ -255,8 +255,8 @@ def slide(
 
 def roll(
     shape: core.Shape,
-    body: Body,
-    counterbody: Body | None = None,
+    body: Layers,
+    counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
     threads: int | None = None,
@@ -350,11 +350,11 @@ class Contact:
 
     Parameters
     ----------
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body that the shape is pressed into.
     grid : Grid
         Cells of the pressure.
-    counterbody : HalfSpace or Elastic, optional
+    counterbody : HalfSpace, Elastic or Response, optional
         Body that carries the shape; rigid where there is none.
     coefficients : array_like, optional
         Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another
@@ -398,12 +398,12 @@ class Contact:
         return made
 
     @property
-    def body(self) -> core.HalfSpace:
+    def body(self) -> Planned:
         """Body that the shape is pressed into."""
         return self._plan.body()
 
     @property
-    def counterbody(self) -> core.HalfSpace | None:
+    def counterbody(self) -> Planned | None:
         """Body that carries the shape; rigid where `None`."""
         return self._plan.counterbody()
 

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Ending, Field, Matrix, Pair, Vector
+from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Parts = tuple[str, core.Grid, core.HalfSpace, core.HalfSpace | None]
+Parts = tuple[str, core.Grid, Planned, Planned | None]
 """JSON text of a report, its grid and its bodies."""
 
 BODIES: dict[str, Any] = {
     "grid": core.Grid,
-    "body": core.HalfSpace,
-    "counterbody": core.HalfSpace | None,
+    "body": Planned,
+    "counterbody": Planned | None,
 }
 """Classes of what stands beside the numbers of a report."""
 NESTED = {
@@ -138,9 +138,9 @@ class Report(Result):
     """
     grid: core.Grid
     """Grid of the solve."""
-    body: core.HalfSpace
+    body: Planned
     """Body that the shape was pressed into."""
-    counterbody: core.HalfSpace | None
+    counterbody: Planned | None
     """Body that carries the shape; rigid where `None`."""
     motion: dict[str, Any]
     """Motion that was asked for, as keywords of `Contact.solve`: load or approach, and the tilts.

@@ -275,11 +275,20 @@ def stiffness(solution: Solution) -> npt.NDArray[np.float64]:
     return np.asarray(solution.stiffness())
 
 
+def _interface(solution: Solution) -> float:
+    """Return the depth of the only interface."""
+    body = solution.report.body
+    if not isinstance(body, core.HalfSpace):
+        raise ValueError(f"body must be a HalfSpace with one layer, got {body!r}")
+    (bottom,) = body.interfaces
+    return bottom
+
+
 def coating_tension(
     solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest principal stress on the faces of the only layer [Pa]."""
-    (bottom,) = solution.report.body.interfaces
+    bottom = _interface(solution)
     sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
     field = solution.stress([0.0, bottom], side="above", **sliding)
     return field.peak("tension")[0]
@@ -289,7 +298,7 @@ def interface_shear(
     solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest shear traction at the only interface [Pa]."""
-    (bottom,) = solution.report.body.interfaces
+    bottom = _interface(solution)
     sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
     field = solution.stress(bottom, side="above", **sliding)
     return float(np.hypot(field.xz, field.yz).max())

@@ -15,9 +15,9 @@ import nacre._core as core
 from nacre._tools.extras import extra
 from nacre._tools.progress import lasting
 from nacre.contact.solution import Solution
+from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
 from nacre.results import display
-from nacre.studies.parameters import Bounds, scales_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

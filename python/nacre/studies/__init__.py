@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.paths import put
 from nacre._tools.progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
@@ -33,7 +34,6 @@ from nacre.results.outputs import (
 from nacre.studies.dataset import assembled, counted, laid_out
 from nacre.studies.identity import identified, key_of
 from nacre.studies.journal import Journal, Record
-from nacre.studies.parameters import put
 
 if TYPE_CHECKING:
     import xarray

@@ -4,6 +4,7 @@ use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
@@ -92,6 +93,10 @@ impl PySampledProfile {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         value::repr(self, py)
+    }
+
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.arguments(py)?.into_py_dict(py)
     }
 
     /// Callable and arguments that make the profile again.
