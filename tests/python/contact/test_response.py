@@ -181,9 +181,7 @@ def test_results_say_that_a_body_is_a_response() -> None:
     assert "E*" not in str(solution)
     line = nacre.solve(nacre.Cylinder(5e-3), of(STEEL), grid=nacre.Grid.line(64, 2e-4), load=1e4)
     assert "from the surface" in str(line)
-    assert repr(nacre.Response(bed)) == (
-        "<Response: limits (0.0, 0.0) 1/Pa, springs 5e-15 m/Pa>"
-    )
+    assert repr(nacre.Response(bed)) == ("<Response: limits (0.0, 0.0) 1/Pa, springs 5e-15 m/Pa>")
     assert "<Response: limits" in repr(nacre.Contact(nacre.Response(bed), GRID))
 
 
