@@ -172,14 +172,14 @@ class Problem:
             weights = {2: (0.5, -0.5), 3: (-1.5, 2.0, -0.5)}
             points = steps.get((up, down), (1, -1))
             sign = points[1] if len(points) == 3 else 1
-            rates: dict[str, float] = {}
+            values: dict[str, list[float]] = {}
             gap = np.zeros(grid.shape)
             edges = set()
             for step, weight in zip(points, weights[len(points)], strict=True):
                 made = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
                 moved = {name: made[name] for name in DIFFERENTIABLE if name in made}
                 for path, value in numbers(moved).items():
-                    rates[path] = rates.get(path, 0.0) + sign * weight / STEP * value
+                    values.setdefault(path, []).append(value)
                 with np.errstate(invalid="ignore"):
                     gap += sign * weight / STEP * made["shape"].gaps(grid)
                 shape = made["shape"]
@@ -190,5 +190,8 @@ class Problem:
                     f"{scale.name} must not move the edge of the shape (its {edge}): which cells "
                     f"can touch has no derivative; vary a profile instead"
                 )
-            found.append(({path: rate for path, rate in rates.items() if rate}, gap))
+            factors = sign / STEP * np.array(weights[len(points)])
+            # What stays has no rate, not even one of rounding, for which a derivative is asked.
+            moving = {path: v for path, v in values.items() if len(set(v)) > 1}
+            found.append(({path: float(factors @ v) for path, v in moving.items()}, gap))
         return found
