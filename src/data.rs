@@ -84,6 +84,15 @@ fn goes_on(ends: &[Option<f64>; 2]) -> bool {
     *ends == [None; 2]
 }
 
+/// What is not said.
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(said: &bool) -> bool {
+    *said
+}
+
 /// Whether a grid repeats in no direction.
 fn is_open(periodic: &[bool; 2]) -> bool {
     *periodic == [false; 2]
@@ -170,8 +179,23 @@ value! {
     SampledProfile by SampledProfileData {
         x: Vec<f64> = of.samples().map(|[x, _]| x).collect();
         drop: Vec<f64> = of.samples().map(|[_, drop]| drop).collect();
+        #[serde(default = "yes", skip_serializing_if = "is_yes")]
+        smooth: bool = !of.is_straight();
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        corners: Vec<f64> = of.corners().to_vec();
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        smoothing: Option<f64> = of.smoothing();
     }
-    of, given => Self::new(&given.x, &given.drop)
+    of, given => {
+        let mut profile = Self::new(&given.x, &given.drop)?.with_corners(&given.corners)?;
+        if !given.smooth {
+            profile = profile.straight();
+        }
+        match given.smoothing {
+            Some(wavelength) => profile.smoothed(wavelength),
+            None => Ok(profile),
+        }
+    }
 }
 
 value! {
@@ -231,7 +255,7 @@ impl Serialize for Warning {
             Self::CoarseSpots { axis, cells } => (axis, cells),
             Self::LargeContact { axis, ratio } => (axis, ratio),
             Self::OutsideGrid { depth } => (0, depth),
-            Self::PeakError { error } => (0, error),
+            Self::PeakError { error } | Self::Stations { error } => (0, error),
             Self::LargeMotion { size } => (0, size),
         };
         WarningData { kind: self.kind().into(), axis, figure }.serialize(serializer)
@@ -253,6 +277,7 @@ impl<'de> Deserialize<'de> for Warning {
             Self::LargeContact { axis, ratio: figure },
             Self::OutsideGrid { depth: figure },
             Self::PeakError { error: figure },
+            Self::Stations { error: figure },
             Self::LargeMotion { size: figure },
         ];
         let found = all.iter().find(|warning| warning.kind() == kind);

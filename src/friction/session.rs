@@ -197,7 +197,7 @@ impl<'a> Session<'a> {
         };
         let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
-        let (normal, solved) = loop {
+        let (mut normal, solved) = loop {
             let normal = match known {
                 Some(known) => known.clone(),
                 None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
@@ -234,6 +234,9 @@ impl<'a> Session<'a> {
             }
             pressure = Some(normal.pressure);
         };
+        if known.is_none() && !course.stopped {
+            self.compare(motion, &traction, &mut normal, &mut course);
+        }
         self.finish(task, friction, normal, solved, course)
     }
 
@@ -330,18 +333,51 @@ impl<'a> Session<'a> {
         pressure: Option<&Array2<f64>>,
         course: &mut FrictionCourse,
     ) -> Result<Solution> {
-        let mut options = Options { tolerance: self.options.tolerance, ..Options::default() };
+        let initial = pressure.filter(|p| self.coupled && p.iter().any(|p| *p > 0.0));
+        let options = Options { initial: initial.cloned(), ..self.pressing() };
         let mut watch = |_: &crate::contact::Report| course.tell();
-        let (contact, grid) = (self.contact, self.contact.grid());
-        if !self.coupled {
-            return contact.solve(self.shape, motion, options.watched(&mut watch));
+        let contact = self.contact;
+        match self.lifted(traction) {
+            None => contact.run(|| contact.solve_alone(self.shape, motion, &options, &mut watch)),
+            Some(lifted) => {
+                contact.run(|| contact.solve_alone(&lifted, motion, &options, &mut watch))
+            }
         }
-        options.initial = pressure.filter(|p| p.iter().any(|p| *p > 0.0)).cloned();
+    }
+
+    /// Options of solves for the pressure.
+    fn pressing(&self) -> Options {
+        Options { tolerance: self.options.tolerance, ..Options::default() }
+    }
+
+    /// The shape as tractions lift it, where they do.
+    fn lifted(&self, traction: &[Array2<f64>; 2]) -> Option<Lifted<&'a dyn Surface>> {
+        let grid = self.contact.grid();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
-        let lift = self.tangential.window(grid.shape()).lift(&q);
-        let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
-        let lifted = Lifted::new(self.shape, grid, lift);
-        contact.solve(&lifted, motion, options.watched(&mut watch))
+        self.coupled.then(|| {
+            let lift = self.tangential.window(grid.shape()).lift(&q);
+            let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
+            Lifted::new(self.shape, grid, lift)
+        })
+    }
+
+    /// Counts what the measurement of the shape leaves open among the errors of the pressure.
+    fn compare(
+        &self,
+        motion: &Motion,
+        traction: &[Array2<f64>; 2],
+        normal: &mut Solution,
+        course: &mut FrictionCourse,
+    ) {
+        let mut watch = |_: &crate::contact::Report| course.tell();
+        let (contact, options) = (self.contact, self.pressing());
+        let mut compare = |shape: &dyn Surface| {
+            contact.run(|| contact.compare(normal, shape, motion, &options, &mut watch));
+        };
+        match self.lifted(traction) {
+            None => compare(&self.shape),
+            Some(lifted) => compare(&lifted),
+        }
     }
 
     /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
@@ -393,7 +429,9 @@ impl<'a> Session<'a> {
         let less =
             Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
         let options = Options { tolerance: START, ..Options::default() };
-        let sticking = self.contact.solve(self.shape, &less, &options)?;
+        let go_on = &mut |_: &crate::contact::Report| ControlFlow::Continue(());
+        let contact = self.contact;
+        let sticking = contact.run(|| contact.solve_alone(self.shape, &less, &options, go_on))?;
         for ((i, j), p) in normal.pressure.indexed_iter() {
             let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);
             for (traction, component) in tractions.iter_mut().zip(forces) {

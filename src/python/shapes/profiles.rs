@@ -4,13 +4,17 @@ use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use pyo3::types::{PyTuple, PyType};
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
-use crate::python::arguments::{Repr, array_repr, mapped, read_only, real_array};
+use crate::python::arguments::{Real, Repr, array_repr, mapped, read_only, real_array};
 
-/// A measured axial profile of a roller: drops at positions, linear in between, +inf beyond.
+/// A measured axial profile of a roller: drops at positions, a smooth curve through them, +inf beyond.
+///
+/// The curve is a cubic spline whose slopes are limited so that it does not swing at steps and edges (Huynh,
+/// SIAM J. Numer. Anal. 30 (1993) 57, doi:10.1137/0730004). What lies between the positions is not known:
+/// solutions count it in ``report.discretisation``, by comparison with the spline through every second position.
 ///
 /// Parameters
 /// ----------
@@ -18,14 +22,21 @@ use crate::python::arguments::{Repr, array_repr, mapped, read_only, real_array};
 ///     Positions ``(n,)`` along the axis [m], increasing, at least two.
 /// drop : array_like
 ///     Drops ``(n,)`` below the datum [m].
+/// smooth : bool, optional
+///     Whether the curve is smooth; False joins the positions by straight lines, each of them an edge.
+/// corners : array_like, optional
+///     Positions of true edges [m], between which the curve is smooth; each is at the nearest of `x`.
+/// smoothing : float, optional
+///     Wavelength [m] below which waves are taken away as noise, of which half is left: the regression filter
+///     of ISO 16610-31, which keeps parabolas. None by default.
 ///
 /// Raises
 /// ------
 /// TypeError
-///     If positions or drops are not real numbers.
+///     If positions, drops, corners or wavelength are not real numbers.
 /// ValueError
-///     If there are not as many drops as positions, one is not finite, or the positions do not
-///     increase.
+///     If there are not as many drops as positions, one is not finite, the positions do not increase, a corner
+///     is not between the ends, or the wavelength is not above 0.
 ///
 /// Examples
 /// --------
@@ -38,7 +49,14 @@ pub(in crate::python) struct PySampledProfile(pub(super) SampledProfile);
 #[pymethods]
 impl PySampledProfile {
     #[new]
-    fn new(x: &Bound<'_, PyAny>, drop: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (x, drop, smooth=true, corners=None, smoothing=None))]
+    fn new(
+        x: &Bound<'_, PyAny>,
+        drop: &Bound<'_, PyAny>,
+        smooth: bool,
+        corners: Option<&Bound<'_, PyAny>>,
+        smoothing: Option<Real>,
+    ) -> PyResult<Self> {
         let list = |name: &str, object| -> PyResult<Vec<f64>> {
             let array = real_array(name, object)?;
             if array.ndim() != 1 {
@@ -49,10 +67,17 @@ impl PySampledProfile {
             }
             Ok(array.into_iter().collect())
         };
-        Ok(Self(SampledProfile::new(&list("x", x)?, &list("drop", drop)?)?))
+        let mut profile = SampledProfile::new(&list("x", x)?, &list("drop", drop)?)?;
+        if let Some(corners) = corners {
+            profile = profile.with_corners(&list("corners", corners)?)?;
+        }
+        if let Some(wavelength) = smoothing {
+            profile = profile.smoothed(wavelength.0)?;
+        }
+        Ok(Self(if smooth { profile } else { profile.straight() }))
     }
 
-    /// Drops at any positions along the axis, linear between the samples.
+    /// Drops at any positions along the axis.
     ///
     /// Parameters
     /// ----------
@@ -71,7 +96,9 @@ impl PySampledProfile {
     ///
     /// Examples
     /// --------
-    /// >>> nacre.SampledProfile(x=[-10e-3, 0.0, 10e-3], drop=[5e-6, 0.0, 5e-6]).drop_at(5e-3)
+    /// >>> round(nacre.SampledProfile([-10e-3, 0.0, 10e-3], [5e-6, 0.0, 5e-6]).drop_at(5e-3), 15)
+    /// 1.25e-06
+    /// >>> nacre.SampledProfile([-10e-3, 0.0, 10e-3], [5e-6, 0.0, 5e-6], smooth=False).drop_at(5e-3)
     /// 2.5e-06
     fn drop_at<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let profile = Profile::from(self.0.clone());
@@ -90,19 +117,46 @@ impl PySampledProfile {
         read_only(py, self.0.samples().map(|s| s[1]).collect())
     }
 
+    /// Whether the curve is smooth.
+    #[getter]
+    fn smooth(&self) -> bool {
+        !self.0.is_straight()
+    }
+
+    /// Positions of true edges [m], or None.
+    #[getter]
+    fn corners<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyTuple>>> {
+        let corners = self.0.corners();
+        (!corners.is_empty()).then(|| PyTuple::new(py, corners)).transpose()
+    }
+
+    /// Wavelength below which waves are taken away [m], or None.
+    #[getter]
+    fn smoothing(&self) -> Option<f64> {
+        self.0.smoothing()
+    }
+
     pub(super) fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let line = |k: usize| array_repr(py, self.0.samples().map(|s| s[k]).collect::<Array1<_>>());
-        Ok(format!("SampledProfile(x={}, drop={})", line(0)?, line(1)?))
+        let smooth = if self.smooth() { "" } else { ", smooth=False" };
+        let corners = match self.corners(py)? {
+            Some(corners) => format!(", corners={}", corners.repr()?),
+            None => String::new(),
+        };
+        let smoothing = self.smoothing().map_or_else(String::new, |w| format!(", smoothing={w:?}"));
+        Ok(format!("SampledProfile(x={}, drop={}{smooth}{corners}{smoothing})", line(0)?, line(1)?))
     }
 
     /// Callable and arguments that make the profile again.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        Ok((py.get_type::<Self>(), (self.x(py)?, self.drop(py)?)))
+        let (x, drop, corners) = (self.x(py)?, self.drop(py)?, self.corners(py)?);
+        Ok((py.get_type::<Self>(), (x, drop, self.smooth(), corners, self.smoothing())))
     }
 }
 
 type Line<'py> = Bound<'py, PyArray1<f64>>;
-type Reduced<'py> = (Bound<'py, PyType>, (Line<'py>, Line<'py>));
+type Joined<'py> = (Line<'py>, Line<'py>, bool, Option<Bound<'py, PyTuple>>, Option<f64>);
+type Reduced<'py> = (Bound<'py, PyType>, Joined<'py>);
 
 /// Profile from an argument: an object of either class, or a pair (x, drop).
 pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
@@ -113,7 +167,7 @@ pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
         return Ok(profile.0.into());
     }
     match object.extract::<[Bound<'_, PyAny>; 2]>() {
-        Ok([x, drop]) => Ok(PySampledProfile::new(&x, &drop)?.0.into()),
+        Ok([x, drop]) => Ok(PySampledProfile::new(&x, &drop, true, None, None)?.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
             "profile must be a LogarithmicProfile, a SampledProfile or a pair (x, drop), got {}",
             Repr(object)
