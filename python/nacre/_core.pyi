@@ -291,7 +291,14 @@ class LogarithmicProfile:
 @final
 class SampledProfile:
     __hash__: ClassVar[None]  # type: ignore[assignment]
-    def __new__(cls, x: _Vector, drop: _Vector) -> Self: ...
+    def __new__(
+        cls,
+        x: _Vector,
+        drop: _Vector,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
+    ) -> Self: ...
     @staticmethod
     def read(
         path: str | os.PathLike[str],
@@ -300,7 +307,16 @@ class SampledProfile:
         x: str | int | None = None,
         drop: str | int | None = None,
         height: str | int | None = None,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
     ) -> SampledProfile: ...
+    @property
+    def smooth(self) -> bool: ...
+    @property
+    def corners(self) -> tuple[float, ...] | None: ...
+    @property
+    def smoothing(self) -> float | None: ...
     @overload
     def drop_at(self, x: float) -> float: ...
     @overload

@@ -29,6 +29,9 @@ def read_profile(
     x: str | int | None = None,
     drop: str | int | None = None,
     height: str | int | None = None,
+    smooth: bool = True,
+    corners: Sequence[float] | Array | None = None,
+    smoothing: float | None = None,
 ) -> core.SampledProfile:
     r"""Read a measured profile of a roller from a text file.
 
@@ -48,6 +51,9 @@ def read_profile(
     drop, height : str or int, optional
         Column of the drops, or of heights, of which the drop is the distance from the highest. By
         default the one with such a name.
+    smooth, corners, smoothing : optional
+        How the stations are joined, true edges [m], and a wavelength against noise [m], as those of
+        `SampledProfile`.
 
     Returns
     -------
@@ -88,7 +94,7 @@ def read_profile(
             f"{str(path)!r} must have each position once, {places[twice[0]]:.6g} m comes twice: "
             f"leave out what overhangs"
         )
-    return core.SampledProfile(places, drops)
+    return core.SampledProfile(places, drops, smooth, corners, smoothing)
 
 
 def _table(

@@ -48,7 +48,12 @@ class Profile(Table):
 
 PROFILE_TABLES = {
     kind: table_of(
-        kind, maker, Profile, {"x": Numbers, "drop": Numbers} if kind == "sampled" else {}
+        kind,
+        maker,
+        Profile,
+        {"x": Numbers, "drop": Numbers, "smooth": bool, "corners": Numbers}
+        if kind == "sampled"
+        else {},
     )
     for kind, maker in PROFILES.items()
 }
