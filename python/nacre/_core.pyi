@@ -46,6 +46,7 @@ __all__ = [
     "graded_layers",
     "influence_coefficients",
     "plain",
+    "relative_radii",
     "roll",
     "slide",
     "solve",
@@ -596,6 +597,11 @@ def graded_layers(
     breakpoints: Iterable[float] | None,
 ) -> list[Layer]: ...
 def equivalent_radius(radius: float | None, counter_radius: float | None) -> float: ...
+def relative_radii(
+    radii: tuple[float | None, float | None],
+    counter_radii: tuple[float | None, float | None],
+    angle: float,
+) -> tuple[tuple[float, float], float]: ...
 def contact_modulus(body: Elastic, counterbody: Elastic | None) -> float: ...
 def influence_coefficients(
     body: HalfSpace | Elastic, grid: Grid, method: _Method, refinement: int | None
