@@ -86,20 +86,21 @@ pub fn relative_radii(
     angle: f64,
 ) -> Result<([f64; 2], f64)> {
     let [x, y] = [curvature("radii", radii[0])?, curvature("radii", radii[1])?];
-    let [along, across] = counter_radii.map(|radius| curvature("counter_radii", radius));
-    let (along, across) = (along?, across?);
+    let [along, across] = counter_radii;
+    let [along, across] =
+        [curvature("counter_radii", along)?, curvature("counter_radii", across)?];
     let (sin, cos) = finite("angle", angle)?.sin_cos();
     let counter_x = along * cos * cos + across * sin * sin;
     let counter_y = along * sin * sin + across * cos * cos;
     let mixed = (along - across) * sin * cos;
-    let (sum, half) = (x + y + along + across, 0.5 * (x + counter_x - y - counter_y));
-    let larger = 0.5 * sum + half.hypot(mixed);
+    let (mean, half) = (0.5 * (x + y + along + across), 0.5 * (x + counter_x - y - counter_y));
+    let larger = mean + half.hypot(mixed);
     let determinant = x * y + along * across + x * counter_y + y * counter_x;
     let smaller = determinant / larger;
     let found = [1.0 / smaller, 1.0 / larger];
     // Cylinders at a smaller angle than some 1e-8 are parallel but for rounding.
     if smaller > f64::EPSILON * larger && found.iter().all(|radius| radius.is_finite()) {
-        return Ok((found, 0.5 * (-2.0 * mixed).atan2(-2.0 * half)));
+        return Ok((found, 0.5 * (0.0 - mixed).atan2(-half)));
     }
     Err(Error::Inconsistent(
         "radii and counter_radii must be convex together in every direction (parallel cylinders touch along a line)",
