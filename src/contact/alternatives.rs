@@ -12,7 +12,7 @@ use crate::model::surface::Surface;
 /// where steps and sharp edges are among them.
 const BEYOND: f64 = 2.0;
 
-/// Tolerance of solutions that only their difference is wanted of.
+/// Tolerance of solutions of which only the difference counts.
 const LOOSE: f64 = 1e-5;
 
 /// Error of the peak, relative to it, from which on there is a warning.
@@ -42,25 +42,24 @@ impl Contact {
             tolerance: options.tolerance.max(LOOSE),
             ..options.clone()
         };
-        let mut most = Discretisation { peak_pressure: Some(0.0), approach: 0.0, load: 0.0 };
+        let numbers = |s: &Solution| [s.peak_pressure(), s.approach, s.load()];
+        let own = numbers(solution);
+        let mut most = [0.0_f64; 3];
         for other in &others {
             let solved = self.solve_alone(other, motion, &options, progress);
             let Some(other) = solved.ok().filter(|other| other.report.converged()) else {
                 solution.report.discretisation = None;
                 return;
             };
-            let apart =
-                |value: fn(&Solution) -> f64| BEYOND * (value(&other) - value(solution)).abs();
-            most = most.larger(
-                apart(Solution::peak_pressure),
-                apart(|s| s.approach),
-                apart(Solution::load),
-            );
+            for ((most, other), own) in most.iter_mut().zip(numbers(&other)).zip(own) {
+                *most = most.max(BEYOND * (other - own).abs());
+            }
             solution.report.convolutions += other.report.convolutions;
             solution.report.seconds += other.report.seconds;
         }
-        solution.report.discretisation = Some(known.plus(most));
-        let (peak, error) = (solution.peak_pressure(), most.peak_pressure.unwrap_or(0.0));
+        let ([error, approach, load], [peak, ..]) = (most, own);
+        let between = Discretisation { peak_pressure: Some(error), approach, load };
+        solution.report.discretisation = Some(known.plus(between));
         if known.peak_pressure.is_some() && error > UNCERTAIN * peak {
             solution.report.warnings.push(Warning::Stations { error: error / peak });
         }

@@ -134,15 +134,6 @@ impl Discretisation {
         Self { peak_pressure: self.peak_pressure.map(|error| error.max(peak)), ..self }
     }
 
-    /// These errors, raised to those of the peak pressure, approach and load where they are less.
-    pub(crate) fn larger(self, peak: f64, approach: f64, load: f64) -> Self {
-        Self {
-            approach: self.approach.max(approach),
-            load: self.load.max(load),
-            ..self.at_least(peak)
-        }
-    }
-
     /// The sum of two independent errors.
     pub(crate) fn plus(self, other: Self) -> Self {
         let peak = self.peak_pressure.zip(other.peak_pressure);

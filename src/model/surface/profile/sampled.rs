@@ -6,17 +6,14 @@ use super::MARKS;
 use super::stations::{Piece, chords, limit, smoothed, spline};
 use crate::error::{Error, Result, positive, refuse_if, require};
 
-/// A measured profile: drops at increasing positions, its stations, a smooth curve through them, and +∞ beyond.
+/// A measured profile: drops at increasing positions (its stations), a smooth curve through them, and +∞ beyond.
 ///
-/// The curve is a cubic spline whose slopes are limited, so that it does not swing at steps and edges ([`stations`]
-/// chosen by measuring the peak pressures of crowned, logarithmic, chamfered and worn rollers). Where the profile has true
-/// edges, [`SampledProfile::with_corners`] breaks the curve; [`SampledProfile::straight`] joins all stations by straight
-/// lines. [`SampledProfile::smoothed`] takes noise away.
+/// The curve is a cubic spline whose slopes are limited, so that it does not overshoot at steps and edges: Huynh, SIAM J.
+/// Numer. Anal. 30 (1993) 57, doi:10.1137/0730004, constraint M3. Where the profile has true edges,
+/// [`SampledProfile::with_corners`] breaks the curve; [`SampledProfile::straight`] joins all stations by straight lines.
+/// [`SampledProfile::smoothed`] removes noise.
 ///
-/// What is between the stations is not known. Solutions with the profile count it as part of the error of the peak pressure:
-/// [`SampledProfile::alternatives`].
-///
-/// [`stations`]: SampledProfile::samples
+/// What lies between the stations is not known. The errors of solutions count it: [`SampledProfile::alternatives`].
 ///
 /// ```
 /// use nacre::{SampledProfile, surface::Profile};
@@ -75,11 +72,10 @@ impl SampledProfile {
         let curve =
             Curve { is_straight: false, is_limited: true, corners: Vec::new(), smoothing: None };
         let made = Self::through(samples.into(), curve);
-        let is_finite = |x: &f64| made.drop(*x).is_finite();
-        let between = x.windows(2).map(|x| x[0] + 0.5 * (x[1] - x[0]));
+        let mut between = x.windows(2).map(|x| x[0] + 0.5 * (x[1] - x[0]));
         refuse_if(
-            !between.collect::<Vec<f64>>().iter().all(is_finite),
-            "profile must have slopes that are numbers of the machine: positions are too close, or drops too large",
+            !between.all(|x| made.drop(x).is_finite()),
+            "profile must have finite slopes: positions are too close, or drops too large",
         )?;
         Ok(made)
     }
