@@ -406,9 +406,9 @@ impl<'a> Session<'a> {
         let less =
             Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
         let options = Options { tolerance: START, ..Options::default() };
-        let sticking = self.contact.solve_alone(self.shape, &less, &options, &mut |_| {
-            ControlFlow::Continue(())
-        })?;
+        let sticking = self
+            .contact
+            .solve_alone(self.shape, &less, &options, &mut |_| ControlFlow::Continue(()))?;
         let more = (&normal.pressure - &sticking.pressure).mapv(|p| p.max(0.0));
         let bound = friction.times(&more);
         for (traction, component) in tractions.iter_mut().zip(forces) {

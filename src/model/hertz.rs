@@ -87,8 +87,7 @@ pub fn relative_radii(
 ) -> Result<([f64; 2], f64)> {
     let [x, y] = [curvature("radii", radii[0])?, curvature("radii", radii[1])?];
     let [along, across] = counter_radii;
-    let [along, across] =
-        [curvature("counter_radii", along)?, curvature("counter_radii", across)?];
+    let [along, across] = [curvature("counter_radii", along)?, curvature("counter_radii", across)?];
     let (sin, cos) = finite("angle", angle)?.sin_cos();
     let counter_x = along * cos * cos + across * sin * sin;
     let counter_y = along * sin * sin + across * cos * cos;

@@ -1049,8 +1049,9 @@ def test_a_profile_is_kept_with_its_joints(tmp_path: Path) -> None:
         ):
             assert other == profile
             assert other.drop_at(3e-3) == profile.drop_at(3e-3)
-    # Data of earlier versions have positions and drops alone, as those of smooth profiles have.
-    assert set(encode(nacre.SampledProfile(x, drop))["SampledProfile"]) == {"x", "drop"}
+    # What says nothing is left out.
+    assert set(encode(nacre.SampledProfile(x, drop))["SampledProfile"]) == {"x", "drop", "smooth"}
+    assert "smooth" not in repr(nacre.SampledProfile(x, drop))
     case = tmp_path / "case.toml"
     case.write_text(
         "load = 100.0\n[shape]\nkind = 'roller'\nradius = 5e-3\n[shape.profile]\nkind = 'sampled'\n"

@@ -4,9 +4,7 @@
 use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
-use nacre::hertz::{
-    Ellipse, Line, Point, contact_modulus, equivalent_radius, relative_radii,
-};
+use nacre::hertz::{Ellipse, Line, Point, contact_modulus, equivalent_radius, relative_radii};
 use nacre::surface::Extent;
 use nacre::{
     Contact, Cylinder, Elastic, Error, Grid, HeightMap, LogarithmicProfile, Motion, Options,
@@ -142,8 +140,10 @@ fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
     }
     // Aligned bodies, and bodies turned by a right angle.
     let (ball, groove) = ([Some(5e-3); 2], [Some(-5.2e-3), Some(20e-3)]);
-    let aligned =
-        [0, 1].map(|axis| equivalent_radius(ball[axis], groove[axis])).into_iter().collect::<Result<Vec<_>>>()?;
+    let aligned = [0, 1]
+        .map(|axis| equivalent_radius(ball[axis], groove[axis]))
+        .into_iter()
+        .collect::<Result<Vec<_>>>()?;
     for (angle, turned) in [(0.0, 0.0), (0.5 * PI, 0.5 * PI), (-PI, 0.0)] {
         let (radii, turn) = relative_radii(ball, groove, angle)?;
         near!(radii[0], aligned[0], 1e-13, angle);
