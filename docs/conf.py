@@ -84,7 +84,7 @@ def link_pages(app: Any, name: str, source: list[str]) -> None:
 def insert_reference(app: Any, name: str, source: list[str]) -> None:
     """Insert the reference of case files, which is made from their schema."""
     if name == "cases":
-        from nacre._reference import text
+        from nacre.case.reference import text
 
         source[0] = source[0].replace("CASE-REFERENCE", text())
 

@@ -20,13 +20,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from nacre import types as types
-from nacre._compliance import (
-    Convolution,
-    frequency_response,
-    graded_layers,
-    influence_coefficients,
-    surface_compliance,
-)
 from nacre._core import (
     RIGID,
     ConvergenceError,
@@ -45,14 +38,21 @@ from nacre._core import (
     Sphere,
     __version__,
 )
-from nacre._profiles import read_profile
+from nacre._tools.units import display_units
 from nacre.contact import Contact, roll, slide, solve
-from nacre.files import load, read_map
+from nacre.contact.compliance import (
+    Convolution,
+    frequency_response,
+    graded_layers,
+    influence_coefficients,
+    surface_compliance,
+)
+from nacre.contact.solution import Solution
+from nacre.contact.stresses import stress
 from nacre.friction import creep_coefficients
-from nacre.solution import Solution
-from nacre.stresses import stress
+from nacre.results.files import load
 from nacre.studies import sweep
-from nacre.units import display_units
+from nacre.surfaces import read_map, read_profile
 
 if TYPE_CHECKING:
     from nacre import case as case

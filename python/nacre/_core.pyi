@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import disjoint_base
 
-from nacre._typing import Topography
+from nacre._tools.typing import Topography
 
 __all__ = [
     "RIGID",

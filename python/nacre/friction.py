@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._extras import extra
-from nacre._friction_display import checked
-from nacre._friction_result import FrictionSolution
-from nacre._result import Result
+from nacre._tools.extras import extra
+from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
-from nacre.units import energy, symbol
+from nacre.contact.friction import FrictionSolution, History
+from nacre.results import display
+from nacre.results.base import Result, checked
 
 if TYPE_CHECKING:
     import xarray
@@ -50,12 +50,17 @@ class CreepCoefficients(Result):
     semi_axes: tuple[float, float]
     """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
 
-    def __repr__(self) -> str:
-        """Return the coefficients with their errors."""
+    def _rows(self) -> list[tuple[str, str]]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
-        shown = ", ".join(f"{name} {c:.4f} ± {error:.4f}" for name, c, error in numbers)
-        return f"<CreepCoefficients: {shown}>"
+        return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
+
+    def __repr__(self) -> str:
+        """Return the coefficients with their errors."""
+        return f"<CreepCoefficients: {', '.join(' '.join(row) for row in self._rows())}>"
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows())
 
 
 def creep_coefficients(
@@ -132,43 +137,7 @@ def history(solutions: Sequence[FrictionSolution]) -> xarray.Dataset:
     >>> study.force.dims, bool((study.dissipated >= 0).all())
     (('step', 'component'), True)
     """
-    with extra("files"):
-        import xarray
-
-    solutions = checked(solutions)
-    line = solutions[0].grid.is_line
-    force, rolls = "N/m" if line else "N", solutions[0].shift is None
-    touching = [np.count_nonzero(s.pressure) for s in solutions]
-    values: dict[str, tuple[tuple[str, ...], Any, str]] = {
-        "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
-        "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
-        "torque": (("step",), [s.torque for s in solutions], symbol("N" if line else "N m")),
-        "dissipated": (
-            ("step",),
-            [s.dissipated for s in solutions],
-            symbol(energy(line, rolls)),
-        ),
-        "stick_share": (
-            ("step",),
-            [s.stick.sum() / max(cells, 1) for s, cells in zip(solutions, touching, strict=True)],
-            "1",
-        ),
-        "convolutions": (("step",), [s.report.convolutions for s in solutions], "1"),
-    }
-    if all(s.shift is not None for s in solutions):
-        values["shift"] = (("step", "component"), [s.shift for s in solutions], symbol("m"))
-        values["twist"] = (("step",), [s.twist for s in solutions], "rad")
-    if all(s.creepage is not None for s in solutions):
-        values["creepage"] = (("step", "component"), [s.creepage for s in solutions], "1")
-    dataset = xarray.Dataset(
-        {name: (dims, np.asarray(data)) for name, (dims, data, _) in values.items()},
-        coords={"step": np.arange(len(solutions)), "component": ["x", "y"]},
-    )
-    for name, (_, _, unit) in values.items():
-        dataset[name].attrs = {"units": unit}
-    dataset.attrs = {"title": "history of a contact with friction"}
-    dataset.attrs["source"] = f"nacre {core.__version__}"
-    return dataset
+    return History(checked(solutions)).numbers()
 
 
 def creep_curve(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, overload
 
 import nacre._core as core
-from nacre._typing import Field, Matrix, Pair, Vector
+from nacre._tools.typing import Field, Matrix, Pair, Vector
 
 __all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius", "relative_radii"]
 
@@ -91,8 +91,7 @@ def relative_radii(
     >>> radii, turn = nacre.hertz.relative_radii((None, 8e-3), (None, 8e-3), np.pi / 3)
     >>> [round(radius * 1e3, 6) for radius in radii], round(np.degrees(turn), 6)
     ([16.0, 5.333333], 30.0)
-    >>> nacre.solve(nacre.Paraboloid(*radii), nacre.Elastic(210e9, 0.3), load=10.0).peak_pressure > 0
-    True
+    >>> crossed = nacre.Paraboloid(*radii)
     """
     return core.relative_radii(radii, counter_radii, angle)
 

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 import nacre._core as core
-from nacre._differentiable import SECOND, Array, Differentiable, Outputs
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre.design.differentiable import SECOND, Array, Differentiable, Outputs
 
 with extra("jax"):
     import jax

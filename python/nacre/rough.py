@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._extras import extra
-from nacre._patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre._tools.extras import extra
+from nacre._tools.units import symbol
 from nacre.contact import Contact
-from nacre.solution import Solution
-from nacre.units import symbol
+from nacre.contact.solution import Solution
+from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
 
 if TYPE_CHECKING:
     import xarray

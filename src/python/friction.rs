@@ -295,24 +295,27 @@ fn begun(
     let (asked, several) = asked(&shape)?;
     let contact = match plan {
         Some(plan) => Arc::clone(&plan.get().0),
-        None => planned(py, given, &shape, asked.widest())?,
+        None => planned(py, given, &shape, asked.widest(), last.as_deref())?,
     };
     let problem = Arc::new(Problem { contact, shape, asked, options });
     Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
 }
 
-/// A contact of the given bodies, on the given grid or on that which fits the shape.
+/// A contact of the given bodies: on the given grid, on that of the step before, or on one that fits the shape.
 fn planned(
     py: Python<'_>,
     given: &Given,
     shape: &Shape,
     motion: Option<Motion>,
+    last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
     let (body, setup, grid) = planning(given)?;
-    let motion = motion.ok_or_else(|| {
-        PyValueError::new_err("load or approach must be given, in the call or in the first step")
-    })?;
-    let shape = shape.clone();
+    let grid = grid.or_else(|| last.map(|last| last.grid().clone()));
+    if motion.is_none() && last.is_none() {
+        let said = "load or approach must be given, in the call or in the first step";
+        return Err(PyValueError::new_err(said));
+    }
+    let (shape, motion) = (shape.clone(), motion.unwrap_or_default());
     let contact = background::run(py, None, move |caller: &mut Caller<()>| {
         let grid = match grid {
             Some(grid) => grid,

@@ -113,29 +113,28 @@ fn equivalent_radii_are_those_of_the_sum_of_curvatures() -> Result<()> {
 
 #[test]
 fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
-    // Semi-axes of equal cylinders crossed at an angle, over the contact radius of a ball of their radius: for them the
-    // angle θ of the table is the angle itself. Timoshenko & Goodier, Theory of Elasticity, 3rd ed. (1970), §140.
-    const PRINTED: f64 = 1e-3;
+    // Semi-axes of equal cylinders crossed at an angle, over the contact radius of a ball of their radius, by the cosine of
+    // the angle: Roark's Formulas for Stress and Strain, 7th ed. (2002), table 14.1, case 4.
+    const HALF_A_DIGIT: f64 = 5e-4;
     let table = [
-        (30.0, 2.731, 0.493),
-        (40.0, 2.136, 0.567),
-        (50.0, 1.754, 0.641),
-        (60.0, 1.486, 0.717),
-        (70.0, 1.284, 0.802),
-        (80.0, 1.128, 0.893),
-        (90.0, 1.0, 1.0),
+        (0.0, 1.0, 1.0),
+        (0.1, 1.070, 0.936),
+        (0.3, 1.242, 0.822),
+        (0.5, 1.486, 0.717),
+        (0.7, 1.905, 0.608),
+        (0.8, 2.292, 0.544),
     ];
     let cylinder = [None, Some(8e-3)];
     let ball = Point::new(8e-3, 115e9, 100.0)?;
-    for (degrees, m, n) in table {
-        let angle = f64::to_radians(degrees);
+    for (cosine, alpha, beta) in table {
+        let angle = f64::acos(cosine);
         let (radii, turn) = relative_radii(cylinder, cylinder, angle)?;
         let [a, b] = Ellipse::new(radii, 115e9, 100.0)?.semi_axes;
-        below!((a / ball.radius - m).abs(), 2.0 * PRINTED, degrees);
-        below!((b / ball.radius - n).abs(), PRINTED, degrees);
+        below!((a / ball.radius - alpha).abs(), HALF_A_DIGIT, cosine);
+        below!((b / ball.radius - beta).abs(), HALF_A_DIGIT, cosine);
         // The contact lies between the two axes; at right angles it is round.
-        if degrees < 90.0 {
-            below!((turn - 0.5 * angle).abs(), ROUNDING, degrees);
+        if cosine > 0.0 {
+            below!((turn - 0.5 * angle).abs(), ROUNDING, cosine);
         }
     }
     // Aligned bodies, and bodies turned by a right angle.

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._extras import extra
-from nacre._friction_display import checked, has_friction
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.style import lengths, new_axes, next_look, styled
-from nacre.units import Scale
+from nacre.results.base import checked, has_friction
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ with extra("plot"):
 if TYPE_CHECKING:
     import xarray
 
-    from nacre._friction_result import FrictionSolution
+    from nacre.contact.friction import FrictionSolution
 
 STICK, SLIP = "#56B4E9", "#E69F00"
 """Colours of cells that stick and slip: blue and orange of the palette of Okabe and Ito."""

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._display import numbers
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.sections import section
 from nacre.plot.style import COLOURMAP, WIDTH, lengths, new_axes, outline, styled
-from nacre.units import Scale
+from nacre.results.display import numbers
 
 with extra("plot"):
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._extras import extra
-from nacre._patches import CURVE, crosses, patch_labels
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, symbol
 from nacre.plot.style import COLOURS, lengths, new_axes, next_look, styled
-from nacre.units import Scale, symbol
+from nacre.results.patches import CURVE, crosses, patch_labels
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -18,7 +18,7 @@ with extra("plot"):
 if TYPE_CHECKING:
     import xarray
 
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
 
 
 def load_curve(

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
-from nacre._outputs import ERROR
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
-from nacre.units import PARAMETERS, UNITS, Scale
+from nacre.results.outputs import ERROR
+from nacre.results.quantities import PARAMETERS, units
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -158,7 +159,7 @@ def _errors(study: xarray.Dataset, quantity: str) -> npt.NDArray[np.float64] | N
 
 def _scale(field: xarray.DataArray, quantity: str) -> Scale:
     largest = float(np.nanmax(np.abs(field.values), initial=0.0))
-    return _scale_of(field, largest, UNITS.get(quantity, ""))
+    return _scale_of(field, largest, units().get(quantity, ""))
 
 
 def _scale_of(array: xarray.DataArray, largest: float, unit: str) -> Scale:
