@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from nacre import _core as core
 from nacre._tools.text import decoded
+from nacre._tools.typing import Vector
 from nacre.surfaces.heights import AXES, METRES, Table, Text, first_words, is_counter, metres
 
 Array = npt.NDArray[np.float64]
@@ -30,7 +31,7 @@ def read_profile(
     drop: str | int | None = None,
     height: str | int | None = None,
     smooth: bool = True,
-    corners: Sequence[float] | Array | None = None,
+    corners: Vector | None = None,
     smoothing: float | None = None,
 ) -> core.SampledProfile:
     r"""Read a measured profile of a roller from a text file.

@@ -12,10 +12,6 @@ use crate::model::surface::sagitta_slope;
 
 pub use sampled::SampledProfile;
 
-/// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
-/// its length a tilt changes little.
-const MARKS: usize = 1024;
-
 /// An axial profile of a roller.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -143,7 +139,7 @@ impl Profile {
         }
     }
 
-    /// Coordinates of the corners \[m\], [`MARKS`] at most; the others are convex.
+    /// Coordinates of the stations \[m\], a thousand at most.
     pub(super) fn marks(&self) -> Vec<f64> {
         match self {
             Self::Crowned(_) | Self::Logarithmic(_) => Vec::new(),

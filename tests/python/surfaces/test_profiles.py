@@ -213,7 +213,7 @@ def s1002(s: Array) -> Array:
         *(0.0, -3.358537058e-2, 1.565681624e-3, -2.810427944e-5, 5.844240864e-8),
         *(-1.562379023e-8, 5.309217349e-15, -5.957839843e-12, 2.646656573e-13),
     ]
-    return np.polynomial.polynomial.polyval(s, powers)
+    return np.asarray(np.polynomial.polynomial.polyval(s, powers), np.float64)
 
 
 def uic60() -> tuple[Array, Array]:

@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
-use super::MARKS;
 use super::stations::{Piece, chords, limit, smoothed, spline};
 use crate::error::{Error, Result, positive, refuse_if, require};
+
+/// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
+/// its length a tilt changes little.
+const MARKS: usize = 1024;
 
 /// A measured profile: drops at increasing positions (its stations), a smooth curve through them, and +∞ beyond.
 ///
