@@ -310,7 +310,7 @@ fn planned(
     last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
     let (body, setup, grid) = planning(given)?;
-    let grid = grid.or_else(|| last.map(|last| last.grid().clone()));
+    let grid = grid.or_else(|| last.map(|last| *last.grid()));
     if motion.is_none() && last.is_none() {
         let said = "load or approach must be given, in the call or in the first step";
         return Err(PyValueError::new_err(said));

@@ -77,7 +77,11 @@ def test_from_cattaneo_to_carter() -> None:
     body, load, friction = nacre.Elastic(2 * 1.28, 0.28), 0.4705, 0.4013
     ball = nacre.Paraboloid(1 / (2 * 0.002963), 1 / (2 * 0.002963))
     contact = nacre.Contact(body, nacre.Grid((33, 33), (8.25, 8.25)), body)
-    pulled: dict[str, Any] = {"load": load, "friction": friction, "force": (0.657 * friction * load, None)}
+    pulled: dict[str, Any] = {
+        "load": load,
+        "friction": friction,
+        "force": (0.657 * friction * load, None),
+    }
     shifted = contact.slide(ball, **pulled)
     assert shifted.normal.peak_pressure == pytest.approx(printed["peak"], rel=DIGITS)
     assert shifted.normal.approach == pytest.approx(printed["approach"], rel=DIGITS)
