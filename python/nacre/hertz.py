@@ -89,7 +89,7 @@ def relative_radii(
     Two cylinders of 8 mm, crossed at 60 degrees:
 
     >>> radii, turn = nacre.hertz.relative_radii((None, 8e-3), (None, 8e-3), np.pi / 3)
-    >>> [round(radius * 1e3, 6) for radius in radii], round(np.degrees(turn), 6)
+    >>> [round(radius * 1e3, 6) for radius in radii], round(turn * 180 / np.pi, 6)
     ([16.0, 5.333333], 30.0)
     >>> crossed = nacre.Paraboloid(*radii)
     """
