@@ -66,6 +66,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("matplotlib", "drawings.scraper"),
     "abort_on_example_error": True,
     "capture_repr": (),
+    "image_srcset": ["3x"],  # some 1600 pixels, for sharp screens and for print
     "show_memory": False,
     "show_signature": False,
     "min_reported_time": 600,

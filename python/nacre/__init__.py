@@ -33,6 +33,7 @@ from nacre._core import (
     LogarithmicProfile,
     NacreWarning,
     Paraboloid,
+    Response,
     Roller,
     SampledProfile,
     Sphere,
@@ -80,6 +81,7 @@ __all__ = [
     "LogarithmicProfile",
     "NacreWarning",
     "Paraboloid",
+    "Response",
     "Roller",
     "SampledProfile",
     "Solution",
@@ -100,7 +102,14 @@ __all__ = [
 ]
 
 
-# Of the compiled classes, whose files are read in Python.
+def _markup(surface: HeightMap) -> str:
+    from nacre import rough
+
+    return rough.markup(surface)
+
+
+# Of the compiled classes, whose files are read and whose pictures are drawn in Python.
+HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
 HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
 SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
 from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
@@ -203,10 +204,13 @@ def creep_curve(
         motion = {name: keywords[name] for name in MOTION if name in keywords}
         grid = solve(shape, body, counterbody, **plan, **motion).report.grid
     contact = Contact(body, grid, counterbody, **plan)
-    solutions = [
-        contact.roll(shape, creepage=(None, value) if lateral else (value, None), **keywords)
-        for value in values.tolist()
-    ]
+    solutions = []
+    with lasting("creepages") as tell:
+        for value in values.tolist():
+            creepage = (None, value) if lateral else (value, None)
+            solutions.append(contact.roll(shape, creepage=creepage, **keywords))
+            if tell is not None:
+                tell(len(solutions) / values.size)
     along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
     axis, sign = along[solutions[0].direction]
     # z x e: along +y for rolling towards +x, along -x for rolling towards +y.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arguments::{Given, Pair, count, read_only, real_array, real_matrix, word};
 use super::background::{self, Caller};
-use super::bodies::body;
+use super::bodies::half_space;
 use super::contact::{PyPlan, motion, planning, shape_of};
 use super::data::{read, text};
 use super::shapes::Shape;
@@ -399,12 +399,12 @@ fn cells(given: &Bound<'_, PyAny>) -> PyResult<usize> {
 #[pyfunction]
 pub(super) fn creep_coefficients(
     py: Python<'_>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = half_space)] body: HalfSpace,
     counterbody: Option<&Bound<'_, PyAny>>,
     semi_axes: Pair,
     #[pyo3(from_py_with = cells)] cells: usize,
 ) -> PyResult<String> {
-    let counterbody = counterbody.map(self::body).transpose()?.map(Body::from);
+    let counterbody = counterbody.map(half_space).transpose()?.map(Body::from);
     let Pair(axes) = semi_axes;
     let found = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());

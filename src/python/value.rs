@@ -9,6 +9,9 @@ use super::arguments::{array_repr, hash};
 /// Arguments of a call by name, in their order.
 pub(super) type Arguments<'py> = Vec<(&'static str, Bound<'py, PyAny>)>;
 
+/// Name of an argument that paths do not name, but the arguments of which.
+pub(super) const INNER: &str = ".";
+
 /// A value that a call of its class makes.
 pub(super) trait Value {
     /// Name of the class.
@@ -136,6 +139,11 @@ macro_rules! class {
 
             fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
                 value::hashed(self, py)
+            }
+
+            /// Arguments of the call that makes the value, by name: for paths.
+            fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+                pyo3::types::IntoPyDict::into_py_dict(self.arguments(py)?, py)
             }
 
             /// Callable and arguments that make the value again.

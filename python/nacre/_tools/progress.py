@@ -9,9 +9,12 @@ from contextlib import contextmanager
 from datetime import timedelta
 from importlib.util import find_spec
 from threading import Event, Thread
+from typing import Any
 
 from nacre._tools.extras import extra
 
+SOON = 2.0
+"""Time after which a bar shows that work goes on [s]."""
 EVERY = 60.0
 """Shortest time between two lines in a log [s]: a night has a few hundred of them."""
 
@@ -50,6 +53,38 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
     with Progress(*parts, console=console) as bar:
         task = bar.add_task(f"solving{_found(found, total)}", total=total, completed=found)
         yield lambda: bar.advance(task)
+
+
+@contextmanager
+def lasting(what: str, given: Any = None) -> Iterator[Any]:
+    """Yield what is called with the progress: `given`, or a bar in a terminal or a notebook.
+
+    It is called with the share that is done or with a text. Work of less than two seconds shows
+    nothing; nor is anything shown without rich.
+    """
+    watched = "ipykernel" in sys.modules or sys.stderr.isatty()
+    if given is not None or not watched or find_spec("rich") is None:
+        yield given
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    parts = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    bar = Progress(*parts, console=Console(stderr=True), transient=True)
+    task, start = bar.add_task(what, total=None), time.monotonic()
+
+    def tell(done: float | str) -> None:
+        if isinstance(done, str):
+            bar.update(task, description=f"{what}: {done}")
+        else:
+            bar.update(task, completed=done, total=1.0)
+        if time.monotonic() - start > SOON:
+            bar.start()
+
+    try:
+        yield tell
+    finally:
+        bar.stop()
 
 
 @contextmanager

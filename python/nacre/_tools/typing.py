@@ -15,7 +15,11 @@ Field = npt.NDArray[np.float64]
 Real = npt.NDArray[np.floating | np.integer | np.bool]
 Vector = Real | Sequence[float]
 Matrix = Real | Sequence[Sequence[float] | Real]
-Body = core.HalfSpace | core.Elastic
+Layers = core.HalfSpace | core.Elastic
+"""Body whose layers are known, or the material that fills one."""
+Body = Layers | core.Response
+Planned = core.HalfSpace | core.Response
+"""Body of a plan or a report, where a material has become a half-space."""
 AnyPath = str | os.PathLike[str]
 Pair = tuple[float, float]
 Along = tuple[float | None, float | None]

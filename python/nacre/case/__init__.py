@@ -39,10 +39,11 @@ import copy
 import math
 import os
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import nacre._core as core
 from nacre._tools.extras import extra
 from nacre.results.outputs import named
 
@@ -164,10 +165,10 @@ class Case:
 
     def __call__(self, **values: Any) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
-        data = copy.deepcopy(self.data)
+        data = self.data
         for key, value in values.items():
-            table, last = self._place(data, key)
-            table[last] = value
+            self._check_key(key)
+            data = core.with_value(data, key, value)
         return Case(data, self.name, self.folder).arguments()
 
     def study(self, store: Path | None = None) -> dict[str, Any]:
@@ -180,7 +181,7 @@ class Case:
             raise CaseError(f"{self.name}: sweep: this table is missing")
         self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
-            self._place(self.data, key)
+            self._check_key(key)
             if not key.startswith(self._table.solved) or key.endswith(
                 (".yield_stress", ".strength")
             ):
@@ -229,57 +230,26 @@ class Case:
             )
         return path
 
-    def _place(self, data: Any, key: str) -> tuple[Any, Any]:
-        """Return the table or list that holds a key, and the last part of the key.
+    def _check_key(self, key: str) -> None:
+        """Raise an error unless the case has a value at a key.
 
         A layer is named by its number, ``body.layers[0]`` or ``body.layers.0``, or by its name.
         """
-        parts = key.replace("[", ".").replace("]", "").split(".")
-        table, last = None, None
         try:
-            for part in parts:
-                table = data if table is None else table[last]
-                last = _index(table, part)
-                table[last]
-        except (LookupError, TypeError) as error:
-            keys = ", ".join(
-                nearest(key, _keys({t: data[t] for t in self._table.solved if t in data}))[:3]
-            )
+            core.at(self.data, key)
+        except LookupError as error:
+            solved = {t: self.data[t] for t in self._table.solved if t in self.data}
+            keys = ", ".join(nearest(key, [path for path, _ in core.numbers(solved)])[:3])
             raise CaseError(
                 f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the "
                 f"nearest are {keys}"
             ) from error
-        return table, last
 
     def _checked(self, data: Mapping[str, Any]) -> Bodies:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:
             raise CaseError(f"{self.name}: {_first(error, data)}") from None
-
-
-def _index(table: Any, part: str) -> int | str:
-    """Return a part of a key as the index of a list, or as the key of a table."""
-    if not isinstance(table, list):
-        return part
-    if part.isascii() and part.isdigit():
-        return int(part)
-    names = [one.get("name") if isinstance(one, dict) else None for one in table]
-    if names.count(part) != 1:
-        raise LookupError(part)
-    return names.index(part)
-
-
-def _keys(data: Any, before: str = "") -> Iterator[str]:
-    """Yield the keys of all values that are neither tables nor lists of tables."""
-    items = data.items() if isinstance(data, dict) else enumerate(data)
-    for part, value in items:
-        key = f"{before}[{part}]" if isinstance(part, int) else f"{before}.{part}".removeprefix(".")
-        inner = isinstance(value, list) and any(isinstance(one, dict) for one in value)
-        if isinstance(value, dict) or inner:
-            yield from _keys(value, key)
-        else:
-            yield key
 
 
 def _first(error: ValidationError, data: Any) -> str:

@@ -10,7 +10,8 @@ from typing import Any, Literal, Self
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Algorithm, Along, Body, Field, Matrix
+from nacre._tools.progress import lasting
+from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 
@@ -57,9 +58,9 @@ def solve(
     ----------
     shape : Shape
         Shape that is pressed in.
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body that it is pressed into.
-    counterbody : HalfSpace or Elastic, optional
+    counterbody : HalfSpace, Elastic or Response, optional
         Body that carries the shape; rigid where there is none. A roller of finite length ends on
         both sides: ``HalfSpace(steel, ends=roller.ends)``.
     grid : Grid, optional
@@ -143,8 +144,8 @@ def solve(
 
 def slide(
     shape: core.Shape,
-    body: Body,
-    counterbody: Body | None = None,
+    body: Layers,
+    counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
     threads: int | None = None,
@@ -254,8 +255,8 @@ def slide(
 
 def roll(
     shape: core.Shape,
-    body: Body,
-    counterbody: Body | None = None,
+    body: Layers,
+    counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
     threads: int | None = None,
@@ -349,11 +350,11 @@ class Contact:
 
     Parameters
     ----------
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body that the shape is pressed into.
     grid : Grid
         Cells of the pressure.
-    counterbody : HalfSpace or Elastic, optional
+    counterbody : HalfSpace, Elastic or Response, optional
         Body that carries the shape; rigid where there is none.
     coefficients : array_like, optional
         Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another
@@ -397,12 +398,12 @@ class Contact:
         return made
 
     @property
-    def body(self) -> core.HalfSpace:
+    def body(self) -> Planned:
         """Body that the shape is pressed into."""
         return self._plan.body()
 
     @property
-    def counterbody(self) -> core.HalfSpace | None:
+    def counterbody(self) -> Planned | None:
         """Body that carries the shape; rigid where `None`."""
         return self._plan.counterbody()
 
@@ -762,25 +763,31 @@ def _steps(
         given["initial"] = given["initial"][-1]
     if isinstance(given["initial"], FrictionSolution):
         given["initial"] = given["initial"]._solved
+    asked = None
     if given.get("steps") is not None:
         words = ("a step", "steps", "slide", "step")
-        steps = core.slide(given, _mappings(words, given["steps"], STEP), plan)
+        asked = _mappings(words, given["steps"], STEP)
+        steps = core.slide(given, asked, plan)
     else:
         steps = begin(given, plan=plan)
+    count = len(asked) if asked else given.get("cells") or 1
     solutions: list[FrictionSolution] = []
     try:
-        for solved in steps:
-            solution = FrictionSolution._of(solved)
-            ended = solution.report.termination
-            for warning in solution.normal.report.warnings if ended != "stopped" else []:
-                warnings.warn(warning, core.NacreWarning, stacklevel=3)
-            if given["check"] and ended == "iteration limit":
-                error = core.ConvergenceError(solved.not_converged())
-                error.solution = solution
-                raise error
-            solutions.append(solution)
-            if ended == "stopped":
-                break
+        with lasting("steps", progress) as tell:
+            for solved in steps:
+                solution = FrictionSolution._of(solved)
+                ended = solution.report.termination
+                for warning in solution.normal.report.warnings if ended != "stopped" else []:
+                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
+                if given["check"] and ended == "iteration limit":
+                    error = core.ConvergenceError(solved.not_converged())
+                    error.solution = solution
+                    raise error
+                solutions.append(solution)
+                if ended == "stopped":
+                    break
+                if progress is None and tell is not None:
+                    tell(len(solutions) / count)
     except BaseException as error:
         if steps.several:
             error.solutions = solutions  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Body, Field, Matrix, Vector
+from nacre._tools.typing import Body, Field, Layers, Matrix, Vector
 
 if TYPE_CHECKING:
     from scipy.sparse.linalg import LinearOperator
@@ -28,7 +28,7 @@ def frequency_response(body: Body, wavenumber: Any) -> Any:
 
     Parameters
     ----------
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body under the pressure; its free ends are not counted.
     wavenumber : float or array_like
         ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
@@ -68,10 +68,10 @@ class SurfaceCompliance(NamedTuple, Generic[Value]):
 
 
 @overload
-def surface_compliance(body: Body, wavenumber: float) -> SurfaceCompliance[float]: ...
+def surface_compliance(body: Layers, wavenumber: float) -> SurfaceCompliance[float]: ...
 @overload
-def surface_compliance(body: Body, wavenumber: Vector | Matrix) -> SurfaceCompliance[Field]: ...
-def surface_compliance(body: Body, wavenumber: Any) -> SurfaceCompliance[Any]:
+def surface_compliance(body: Layers, wavenumber: Vector | Matrix) -> SurfaceCompliance[Field]: ...
+def surface_compliance(body: Layers, wavenumber: Any) -> SurfaceCompliance[Any]:
     """Surface displacements per unit traction of one wavenumber, normal and lateral.
 
     With the x axis along the wave, under pressure p and tractions q_x, q_y on the body::
@@ -116,7 +116,7 @@ def influence_coefficients(
 
     Parameters
     ----------
-    body : HalfSpace or Elastic
+    body : HalfSpace, Elastic or Response
         Body under the pressure; its free ends are not counted.
     grid : Grid
         Grid with that cell; there is an offset for each of its cells.
@@ -274,11 +274,11 @@ class Convolution:
 
         Parameters
         ----------
-        body : HalfSpace or Elastic
+        body : HalfSpace, Elastic or Response
             Body under the pressure. Free ends are not counted, of either body.
         grid : Grid
             Cells of the pressure.
-        counterbody : HalfSpace or Elastic, optional
+        counterbody : HalfSpace, Elastic or Response, optional
             Second body under the same pressure; rigid where there is none.
         threads : int, optional
             Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.

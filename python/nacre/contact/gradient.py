@@ -51,9 +51,11 @@ def described(output: Output) -> tuple[str, str]:
     """Return the name of an output, and its description for the compiled module as JSON text."""
     if isinstance(output, str):
         if output not in WORDS:
+            # The pressure of a cell is no smooth function of what moves the peak between cells.
+            hint = '; take "located_peak" for the peak' if output == "peak_pressure" else ""
             raise ValueError(
                 f"output must be {_listed(WORDS)}, a pair such as "
-                f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"'
+                f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"{hint}'
             )
         return output, json.dumps(WORDS[output])
     if isinstance(output, dict):

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Ending, Field, Matrix, Pair, Vector
+from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Parts = tuple[str, core.Grid, core.HalfSpace, core.HalfSpace | None]
+Parts = tuple[str, core.Grid, Planned, Planned | None]
 """JSON text of a report, its grid and its bodies."""
 
 BODIES: dict[str, Any] = {
     "grid": core.Grid,
-    "body": core.HalfSpace,
-    "counterbody": core.HalfSpace | None,
+    "body": Planned,
+    "counterbody": Planned | None,
 }
 """Classes of what stands beside the numbers of a report."""
 NESTED = {
@@ -138,9 +138,9 @@ class Report(Result):
     """
     grid: core.Grid
     """Grid of the solve."""
-    body: core.HalfSpace
+    body: Planned
     """Body that the shape was pressed into."""
-    counterbody: core.HalfSpace | None
+    counterbody: Planned | None
     """Body that carries the shape; rigid where `None`."""
     motion: dict[str, Any]
     """Motion that was asked for, as keywords of `Contact.solve`: load or approach, and the tilts.
@@ -315,6 +315,17 @@ class Solution(Result, Stressed):
         """
         return self._numbers["plastic_work"]
 
+    @property
+    def elastic_energy(self) -> float:
+        """Elastic energy of the normal displacement of both bodies [J], ``½ sum p u dA``.
+
+        Where the approach has a datum, as in line contact, the displacement and the energy have it,
+        too.
+        """
+        size, shape = self.grid.size, self.grid.shape
+        cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
+        return 0.5 * cell * float(np.vdot(self.pressure, self.displacement))
+
     @cached_property
     def in_contact(self) -> npt.NDArray[np.bool_]:
         """Whether each cell is in contact: its pressure is above 0."""
@@ -359,6 +370,11 @@ class Solution(Result, Stressed):
     def contact_area(self) -> float:
         """Area of the cells in contact [m^2]."""
         return self._numbers["contact_area"]
+
+    @property
+    def contact_share(self) -> float:
+        """Share of the grid that is in contact; of a periodic surface, that of its area."""
+        return int(self.in_contact.sum()) / self.in_contact.size
 
     @property
     def contact_extent(self) -> tuple[Pair, Pair]:

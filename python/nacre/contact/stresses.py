@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
@@ -602,7 +603,8 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        return _warned(StressSummary._made(core.stress_summary(self._plan, locals())))
+        with lasting("stresses", progress) as progress:
+            return _warned(StressSummary._made(core.stress_summary(self._plan, locals())))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -732,7 +734,8 @@ class Stressed:
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
         friction, direction, residual, threads, progress : optional
-            As in `stress`.
+            As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
+            seconds.
 
         Returns
         -------
@@ -759,7 +762,8 @@ class Stressed:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        return _warned(StressSummary._made(core.stress_summary(self._solved, locals())))
+        with lasting("stresses", progress) as progress:
+            return _warned(StressSummary._made(core.stress_summary(self._solved, locals())))
 
     def stress_plan(self, body: Member = "body", threads: int | None = None) -> StressPlan:
         """Plan of the stress in one body, to be evaluated any number of times.

@@ -25,7 +25,7 @@ from nacre.studies import ARGUMENTS, sweep
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Optimum", "coating_chart", "load_curve", "optimise", "tilt_curve"]
+__all__ = ["Optimum", "coating_chart", "force_table", "load_curve", "optimise", "tilt_curve"]
 
 Values = Sequence[float] | npt.NDArray[np.float64]
 
@@ -206,11 +206,89 @@ def tilt_curve(
     return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
 
 
+def force_table(
+    shape: core.Shape,
+    body: core.HalfSpace | core.Elastic,
+    approach: Values,
+    *,
+    tilt_x: Values = (0.0,),
+    tilt_y: Values = (0.0,),
+    **options: Any,
+) -> xarray.Dataset:
+    """Table of force, moments and stiffness for the contact element of a multibody program.
+
+    ``table.to_netcdf`` and ``table.to_dataframe().to_csv`` write it. With a `grid`, all cases are
+    solved on the same cells, and the table is smooth within the tolerance.
+
+    Parameters
+    ----------
+    shape, body
+        Shape that is pressed in, and body that it is pressed into.
+    approach
+        Approaches of the origin [m].
+    tilt_x, tilt_y
+        Slopes along x and along y.
+    options
+        Arguments of `nacre.solve` and of `nacre.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``load``, ``moment``, ``peak_pressure`` and ``stiffness`` as functions of ``approach``,
+        ``tilt_x`` and ``tilt_y``. ``stiffness`` is `Solution.stiffness`, the derivatives of the
+        load and of the first moments along x and y (``row``) with respect to the approach and the
+        slopes (``column``).
+
+    Examples
+    --------
+    >>> from nacre import design
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+    >>> table = design.force_table(roller, steel, [2e-6, 3e-6], tilt_x=[0.0, 1e-4], tolerance=1e-4)
+    >>> table["load"].shape, bool((table["load"].diff("approach") > 0).all())
+    ((2, 2, 1), True)
+    """
+    asked, study = _parted(options)
+
+    def case(approach: float, tilt_x: float, tilt_y: float) -> dict[str, Any]:
+        motion = {"approach": approach, "tilt": (tilt_x, tilt_y)}
+        return {"shape": shape, "body": body, **motion, **asked}
+
+    parameters = {"approach": approach, "tilt_x": tilt_x, "tilt_y": tilt_y}
+    outputs: dict[str, Output] = {
+        **{name: name for name in ("load", "moment", "peak_pressure")},
+        "stiffness": stiffness,
+    }
+    table = sweep(case, parameters, outputs=outputs, **study)
+    line = isinstance(asked.get("grid"), core.Grid) and asked["grid"].is_line
+    names = ["load", "moment x", "moment y"], ["approach", "tilt x", "tilt y"]
+    table = table.rename(stiffness_0="row", stiffness_1="column")
+    table = table.assign_coords(row=names[0], column=names[1])
+    per = symbol("Pa" if line else "N/m")
+    table["stiffness"].attrs["units"] = f"{per} times {symbol('m')} for each moment and each tilt"
+    table["approach"].attrs["units"] = symbol("m")
+    return table
+
+
+def stiffness(solution: Solution) -> npt.NDArray[np.float64]:
+    """Return the stiffness of a solution."""
+    return np.asarray(solution.stiffness())
+
+
+def _interface(solution: Solution) -> float:
+    """Return the depth of the only interface."""
+    body = solution.report.body
+    if not isinstance(body, core.HalfSpace):
+        raise ValueError(f"body must be a HalfSpace with one layer, got {body!r}")
+    (bottom,) = body.interfaces
+    return bottom
+
+
 def coating_tension(
     solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest principal stress on the faces of the only layer [Pa]."""
-    (bottom,) = solution.report.body.interfaces
+    bottom = _interface(solution)
     sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
     field = solution.stress([0.0, bottom], side="above", **sliding)
     return field.peak("tension")[0]
@@ -220,7 +298,7 @@ def interface_shear(
     solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest shear traction at the only interface [Pa]."""
-    (bottom,) = solution.report.body.interfaces
+    bottom = _interface(solution)
     sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
     field = solution.stress(bottom, side="above", **sliding)
     return float(np.hypot(field.xz, field.yz).max())

@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.paths import DIFFERENTIABLE, holder, put
 from nacre.contact import Contact
 from nacre.contact.gradient import Gradient
 from nacre.contact.solution import Solution
 from nacre.studies import ARGUMENTS
-from nacre.studies.parameters import MOTIONS, number, put
 
 Array = npt.NDArray[np.float64]
 Outputs = Sequence[str] | Mapping[str, Any]
@@ -27,7 +27,7 @@ ACCURATE = 1e-10
 """Tolerance of solves: errors of a solution enter its derivatives linearly."""
 PLANS = 4
 """Plans that are kept; a plan holds the influence coefficients of its bodies."""
-ROOTS = ("body", "counterbody", "shape", "load", "approach", *MOTIONS)
+ROOTS = (*DIFFERENTIABLE, "shape")
 """Arguments of a solve that have derivatives."""
 ABSENT = {"initial", "progress", "check"}
 """Arguments of a solve that a function cannot have: its results depend on its numbers alone."""
@@ -125,7 +125,7 @@ class Differentiable:
                     f"parameters must be paths that begin with one of {', '.join(ROOTS)}, "
                     f"got {path!r}"
                 )
-            number(self._given(), path, names="parameters", of="the arguments")
+            holder(self._given(), path, "parameters", "the arguments")
 
     def point(self, names: tuple[str, ...], x: Array) -> Point:
         """Return the solved contact at a vector."""
@@ -211,7 +211,7 @@ class Differentiable:
                 if "approach" in made:
                     made["approach"] -= lowest
             planned = {name: made.pop(name) for name in PLANNED if name in made}
-            plan = self.plans.at(repr(planned), lambda: Contact(**planned))
+            plan = self.plans.at(tuple(planned.items()), lambda: Contact(**planned))
             return Point(names, given, plan.solve(shape, **made), lowest)
         except Exception as error:
             at = ", ".join(f"{k} = {v:.6g}" for k, v in zip(names, x[:n], strict=True))

@@ -13,10 +13,11 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
 from nacre.contact.solution import Solution
+from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
 from nacre.results import display
-from nacre.studies.parameters import Bounds, scales_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -154,7 +155,8 @@ def optimise(
     max_solves : int, optional
         Number of solves after which the search ends; a derivative of an output counts as a solve.
     progress : callable or bool, optional
-        Function that gets each row of the course; or True, for a line of each on standard error.
+        Function that gets each row of the course; True, for a line of each on standard error; or
+        False, for nothing. By default a terminal or a notebook shows a bar after two seconds.
 
     Returns
     -------
@@ -221,8 +223,10 @@ def optimise(
             print(f"nacre.design.optimise: {text}", file=sys.stderr, flush=True)
         elif callable(progress):
             progress(row)
+        elif tell is not None:
+            tell(f"{problem.solves} solves, objective {row['objective']:.5g}")
 
-    with warnings.catch_warnings():
+    with lasting("optimum", progress) as tell, warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
         try:
             for stage in grids:

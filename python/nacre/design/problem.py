@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.paths import DIFFERENTIABLE, numbers, put
 from nacre.contact import Contact, solve
 from nacre.contact.solution import Solution
+from nacre.design.parameters import Scale
 from nacre.studies import ARGUMENTS
-from nacre.studies.parameters import Scale, numbers, put
 
 Build = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 Array = npt.NDArray[np.float64]
@@ -59,7 +60,7 @@ class Problem:
     solves: int = 0
     grids: list[core.Grid] = field(default_factory=list)
     known: dict[bytes, Point] = field(default_factory=dict)
-    plans: dict[int, tuple[Contact, str]] = field(default_factory=dict)
+    plans: dict[int, tuple[Contact, dict[str, Any]]] = field(default_factory=dict)
 
     def named(self, x: Array) -> dict[str, float]:
         """Return the parameters by name at a point of the optimiser."""
@@ -154,10 +155,9 @@ class Problem:
         made = {"tolerance": ACCURATE, **made, "grid": self.grids[k]}
         names = ("body", "counterbody", "grid", "threads")
         planned = {name: made.pop(name) for name in names if name in made}
-        told = repr(planned)
-        plan = next((p for p, text in self.plans.values() if text == told), None)
+        plan = next((p for p, given in self.plans.values() if given == planned), None)
         plan = plan or Contact(**planned)
-        self.plans[k] = plan, told
+        self.plans[k] = plan, planned
         return plan.solve(made.pop("shape"), **({"initial": last} | made))
 
     def changes(
@@ -172,13 +172,14 @@ class Problem:
             weights = {2: (0.5, -0.5), 3: (-1.5, 2.0, -0.5)}
             points = steps.get((up, down), (1, -1))
             sign = points[1] if len(points) == 3 else 1
-            rates: dict[str, float] = {}
+            values: dict[str, list[float]] = {}
             gap = np.zeros(grid.shape)
             edges = set()
             for step, weight in zip(points, weights[len(points)], strict=True):
                 made = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
-                for path, value in numbers(made).items():
-                    rates[path] = rates.get(path, 0.0) + sign * weight / STEP * value
+                moved = {name: made[name] for name in DIFFERENTIABLE if name in made}
+                for path, value in numbers(moved).items():
+                    values.setdefault(path, []).append(value)
                 with np.errstate(invalid="ignore"):
                     gap += sign * weight / STEP * made["shape"].gaps(grid)
                 shape = made["shape"]
@@ -189,5 +190,8 @@ class Problem:
                     f"{scale.name} must not move the edge of the shape (its {edge}): which cells "
                     f"can touch has no derivative; vary a profile instead"
                 )
-            found.append(({path: rate for path, rate in rates.items() if rate}, gap))
+            factors = sign / STEP * np.array(weights[len(points)])
+            # What stays has no rate, not even one of rounding, for which a derivative is asked.
+            moving = {path: v for path, v in values.items() if len(set(v)) > 1}
+            found.append(({path: float(factors @ v) for path, v in moving.items()}, gap))
         return found

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Body, Field, Matrix, Vector
+from nacre._tools.typing import Field, Layers, Matrix, Vector
 from nacre._tools.units import printable, written
 from nacre.results import display, files
 from nacre.results.base import Result
@@ -500,9 +500,9 @@ class Indentation:
 
     def __new__(
         cls,
-        body: Body,
+        body: Layers,
         tip: core.Tip,
-        counterbody: Body | None = None,
+        counterbody: Layers | None = None,
         *,
         adhesion: core.Adhesion | None = None,
     ) -> Self:
@@ -674,9 +674,9 @@ def said(value: float, name: str) -> str:
 
 
 def solve(
-    body: Body,
+    body: Layers,
     tip: core.Tip,
-    counterbody: Body | None = None,
+    counterbody: Layers | None = None,
     *,
     adhesion: core.Adhesion | None = None,
     load: npt.ArrayLike | None = None,

@@ -254,6 +254,8 @@ def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
     body = solution.report.body
     if options.get("body") == "counterbody" and solution.report.counterbody is not None:
         body = solution.report.counterbody
+    if not isinstance(body, HalfSpace):
+        raise ValueError(f"stresses need a HalfSpace, got {body!r}")
     return body
 
 

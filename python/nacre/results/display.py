@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Elastic, HalfSpace, Rigid
+from nacre._core import Elastic, HalfSpace, Response, Rigid
+from nacre._tools.typing import Planned
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.results.quantities import CONTACT, FRICTION, Quantity
 
@@ -117,6 +118,13 @@ def _extent(solution: Solution) -> str:
     return sides[1] if solution.report.grid.is_line else " × ".join(sides)
 
 
+def _contact_share(solution: Solution) -> str | None:
+    """Return the share of the area; beside one contact, the area of the grid means nothing."""
+    return (
+        f"{100 * solution.contact_share:.3g} % of the area" if all(solution.grid.periodic) else None
+    )
+
+
 def _hardness(solution: Solution) -> str | None:
     if (hardness := solution.hardness) is None:
         return None
@@ -156,6 +164,7 @@ NORMAL_TEXTS: Texts = {
     "peak_pressure": lambda s: _estimated(s, "peak_pressure", "Pa"),
     "peak_position": lambda s: _centred(s, "peak_position", "m"),
     "contact_extent": _extent,
+    "contact_share": _contact_share,
     "hardness": _hardness,
     "indentation": _indentation,
 }
@@ -432,18 +441,26 @@ def _estimated(solution: Solution, name: str, unit: str) -> str:
 def _approach(solution: Solution) -> str:
     """Return the approach with its error, or with the datum that it depends on and no error."""
     report = solution.report
-    bodies = [report.body] if report.counterbody is None else [report.body, report.counterbody]
     repeats = (True, False) if report.grid.is_line else report.grid.periodic
-    if sum(repeats) != 1 or all(isinstance(body.substrate, Rigid) for body in bodies):
+    if sum(repeats) != 1 or all(map(_is_held, (report.body, report.counterbody))):
         return _estimated(solution, "approach", "m")
     datum = report.grid.size[repeats.index(False)]
     return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
 
 
-def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
+def _is_held(body: Planned | None) -> bool:
+    """Return whether a body stays in its place far from a load."""
+    if isinstance(body, Response):
+        return body.limits[0] == 0
+    return body is None or isinstance(body.substrate, Rigid)
+
+
+def _body(name: str, body: Planned | None) -> list[tuple[str, str]]:
     """Describe a body: its substrate, a row for each layer or one for many, and its free ends."""
     if body is None:
         return [(name, "rigid")]
+    if isinstance(body, Response):
+        return [(name, "a response")]
     layers = [
         (
             f"  {_named(number, layer.name)}",
@@ -459,9 +476,14 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
     return [(name, _material(body.substrate)), *layers, *(ends if places else [])]
 
 
-def _moduli(body: HalfSpace, counterbody: HalfSpace | None) -> list[tuple[str, str]]:
-    """Return the contact modulus of the substrates; with coatings also of the surfaces."""
-    bodies = [body] if counterbody is None else [body, counterbody]
+def _moduli(*members: Planned | None) -> list[tuple[str, str]]:
+    """Return the contact modulus of the substrates; with coatings also of the surfaces.
+
+    There is none where a body is a response.
+    """
+    bodies = [body for body in members if isinstance(body, HalfSpace)]
+    if any(isinstance(body, Response) for body in members):
+        return []
     bases = [one.substrate for one in bodies]
     tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
     rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]

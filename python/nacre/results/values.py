@@ -58,6 +58,7 @@ def _positional(make: Any) -> tuple[str, ...]:
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
     **{name: (make, _positional(make)) for name, make in MADE.items()},
+    "Response": (core.Response._of, ("values", "local")),
     "Grid.line": (core.Grid.line, ("cells", "width", "center")),
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
 }
@@ -103,16 +104,6 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"array": [list(array.shape), hashlib.sha256(array.tobytes()).hexdigest()]}
         if isinstance(value, core.Rigid):
             return "rigid"
-        if isinstance(value, core.Grid):
-            if value.is_line:
-                center = value.center[1]
-                return {
-                    "Grid.line": {"cells": value.shape[1], "width": value.size[1], "center": center}
-                }
-            made = {"shape": value.shape, "size": value.size, "center": value.center}
-            if any(value.periodic):
-                made["periodic"] = value.periodic
-            return {"Grid": of(made)}
         if digest and type(value) is RESULTS.get("Solution"):
             return {"Solution": of(value.pressure)}
         if digest and type(value) is RESULTS.get("FrictionSolution"):
@@ -122,23 +113,20 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"FrictionSolution": begun}
         if RESULTS.get(type(value).__name__) is type(value):
             return of(value.to_dict())
-        if type(value) in FIELDS:
-            fields = {name: getattr(value, name) for name in FIELDS[type(value)]}
-            kept = {k: of(v) for k, v in fields.items() if not (k in LATER and v in ABSENT)}
-            return {type(value).__name__: kept}
-        if isinstance(value, core.Tip | core.Adhesion):
-            make, arguments = reduced(value)
-            name = f"{type(value).__name__}.{make.__name__}"
-            return {name: of(dict(zip(CALLS[name][1], arguments, strict=True)))}
-        if isinstance(value, core.Shape):
-            parts = value._parts()
-            if len(parts) == 1:
-                return shifted(*parts[0])
-            return {"sum": [shifted(*part) if any(part[1]) else of(part[0]) for part in parts]}
+        if isinstance(value, core.Response):
+            return {"Response": {"values": of(value.values), "local": value.local}}
+        if hasattr(value, "_arguments"):
+            return called(value, value._arguments())
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
-    def shifted(shape: core.Shape, by: tuple[float, float]) -> dict[str, Any]:
-        return {"shifted": [of(shape), *by]}
+    def called(value: Any, arguments: dict[str, Any]) -> dict[str, Any]:
+        if "parts" in arguments:
+            return {"sum": of(arguments["parts"])}
+        if "." in arguments:
+            return {"shifted": [of(arguments["."]), *arguments["shift"]]}
+        name, maker = type(value).__name__, value.__reduce__()[0].__name__
+        kept = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
+        return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": kept}
 
     return of(value)
 
@@ -201,12 +189,6 @@ def refusing(kind: str) -> Iterator[None]:
     except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError) as error:
         said = f"{type(error).__name__}: {error}"
         raise ValueError(f"the data do not describe a {kind}: {said}") from error
-
-
-def reduced(value: Any) -> tuple[Any, Any]:
-    """Return the callable and the arguments that make a value."""
-    make, arguments, *_ = value.__reduce__()
-    return make, arguments
 
 
 def decode(data: Any) -> Any:

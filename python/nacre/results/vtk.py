@@ -84,16 +84,13 @@ def _planes(
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():
         raise ValueError(f"depths must be at least one, each above the last, got {depths.tolist()}")
-    report = solution.report
-    body = report.counterbody if options.get("body") == "counterbody" else report.body
-    faces = body.interfaces if body else []
-    on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in faces]
-    above = np.any(on, axis=0) if on else np.full(depths.shape, False)
-    # A rigid base has no side below.
-    rigid = body is not None and isinstance(body.substrate, core.Rigid)
-    below = ~on[-1] if rigid else np.full(depths.shape, True)
     planned = {name: value for name, value in options.items() if name in ("body", "threads")}
     plan = solution.stress_plan(**planned)
+    on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in plan.body.interfaces]
+    above = np.any(on, axis=0) if on else np.full(depths.shape, False)
+    # A rigid base has no side below.
+    rigid = isinstance(plan.body.substrate, core.Rigid)
+    below = ~on[-1] if rigid else np.full(depths.shape, True)
     asked = {name: value for name, value in options.items() if name not in planned}
     parts = []
     if above.any():

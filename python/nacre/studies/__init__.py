@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre._tools.paths import put
 from nacre._tools.progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
@@ -33,7 +34,6 @@ from nacre.results.outputs import (
 from nacre.studies.dataset import assembled, counted, laid_out
 from nacre.studies.identity import identified, key_of
 from nacre.studies.journal import Journal, Record
-from nacre.studies.parameters import put
 
 if TYPE_CHECKING:
     import xarray
@@ -259,7 +259,13 @@ def _describe(
 def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
     if not isinstance(case, Mapping):
-        return dict(case(**point))
+        made = case(**point)
+        if not isinstance(made, Mapping):
+            raise TypeError(
+                "case must return the arguments of a solve as a mapping, such as "
+                f"dict(shape=..., body=..., load=...), got {made!r:.80}"
+            )
+        return dict(made)
     paths = {name for name in point if "." in name or "[" in name}
     found = {**case, **{name: value for name, value in point.items() if name not in paths}}
     for path in paths:
@@ -273,7 +279,7 @@ def _indents(case: Case, points: Sequence[Mapping[str, Any]]) -> bool:
         return "tip" in case or any("tip" in point for point in points[:1])
     for point in points:
         with suppress(ValueError, ArithmeticError):
-            return "tip" in case(**point)
+            return "tip" in _arguments(case, point)
     return False
 
 

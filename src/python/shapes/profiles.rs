@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
@@ -139,6 +139,10 @@ impl PySampledProfile {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         value::repr(self, py)
+    }
+
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.arguments(py)?.into_py_dict(py)
     }
 
     /// Callable and arguments that make the profile again.

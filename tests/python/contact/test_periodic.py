@@ -14,6 +14,7 @@ from scipy.integrate import quad
 from scipy.special import k0
 
 import nacre
+from bodies import BALL, STEEL
 from nacre import plot
 from nacre.case import Case, CaseError
 from support import DATA
@@ -71,10 +72,23 @@ def test_it_keeps_its_period_everywhere(tmp_path: Path) -> None:
 
 
 def test_the_table_leaves_out_what_makes_no_sense() -> None:
-    text = str(nacre.solve(MAP, BODY, load=1e-3))
+    solution = nacre.solve(MAP, BODY, load=1e-3)
+    text = str(solution)
     assert "periodic" in text
     for row in ("acts at", "moment", "\ntilt"):
         assert row not in text
+    share = solution.contact_area / (GRID.size[0] * GRID.size[1])
+    assert solution.contact_share == pytest.approx(share, rel=1e-12)
+    assert f"share          {100 * share:.3g} % of the area" in text
+    assert solution.to_xarray().attrs["contact_share"] == solution.contact_share
+    parts = solution.plot()
+    axes = parts["map"]
+    assert axes.get_title("left") == f"{100 * share:.3g} % of the area touches"
+    assert np.ptp(axes.get_xlim()) == pytest.approx(1e3 * GRID.size[0], rel=1e-12)
+    assert np.ptp(axes.get_ylim()) == pytest.approx(1e3 * GRID.size[1], rel=1e-12)
+    words = " ".join(text.get_text() for text in parts["numbers"].texts).split()
+    assert "periodic along x and y" in " ".join(words)
+    assert "share" not in str(nacre.solve(BALL, STEEL, load=10.0))
 
 
 def test_maps_that_repeat_on_grids_that_fit() -> None:

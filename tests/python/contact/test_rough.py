@@ -289,3 +289,50 @@ def test_saved_solutions_have_the_same_statistics(tmp_path: Path) -> None:
     again = nacre.load(SOLUTION.save(tmp_path / "rough.nc"))
     assert rough.corrected_area(again) == rough.corrected_area(SOLUTION)
     assert (rough.patches(again) == rough.patches(SOLUTION)).all()
+
+
+# Maps.
+
+
+def test_the_roughness_of_waves_is_theirs() -> None:
+    """Of a sin(qx) + b cos(ky): Sq² = (a² + b²)/2, slope² = (a²q² + b²k²)/2, and so on."""
+    n, m, step = 96, 64, 1e-6
+    x, y = step * np.arange(n)[:, None], step * np.arange(m)[None, :]
+    q, k, a, b = 2 * np.pi * 3 / (n * step), 2 * np.pi * 2 / (m * step), 2e-7, 1e-7
+    heights = 5e-6 + a * np.sin(q * x) + b * np.cos(k * y)
+    surface = nacre.HeightMap(heights, step, periodic=(True, True))
+    found = rough.roughness(surface)
+    assert found.sq == pytest.approx(np.hypot(a, b) / np.sqrt(2), rel=1e-12)
+    assert found.rms_slope == pytest.approx(np.hypot(a * q, b * k) / np.sqrt(2), rel=1e-12)
+    curvature = 0.5 * np.hypot(a * q**2, b * k**2) / np.sqrt(2)
+    assert found.rms_curvature == pytest.approx(curvature, rel=1e-12)
+    assert found.sa == pytest.approx(np.abs(heights - heights.mean()).mean(), rel=1e-12)
+    assert (found.sp, found.ssk) == pytest.approx((a + b, 0.0), rel=1e-2, abs=1e-9)
+    # Fourth moments of sines: (3/8)(a⁴ + b⁴) + 6 (a²/2)(b²/2).
+    fourth = 0.375 * (a**4 + b**4) + 1.5 * a**2 * b**2
+    assert found.sku == pytest.approx(fourth / found.sq**4, rel=1e-12)
+    assert "Sq             158.1 nm" in str(found)
+    for said in ("96 × 64", "x and y", "158.1 nm", "base64"):
+        assert said in surface._repr_html_()  # type: ignore[attr-defined]
+    flat = rough.roughness(nacre.HeightMap(np.ones((4, 4)), step))
+    assert (flat.sq, flat.ssk, flat.rms_slope) == (0.0, 0.0, 0.0)
+
+
+def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> None:
+    whole = rough.random_surface(
+        (256, 256), (1e-4, 1e-4), hurst=0.8, shortest=4e-6, longest=1e-5, rms_slope=0.05, seed=3
+    )
+    part = nacre.HeightMap(whole.heights[30:220, 40:250], whole.spacing)
+    # Some 400 waves, each of random height: 2 / sqrt(400 waves) at most; the window halves them.
+    assert rough.spectral_slope(part) == pytest.approx(0.05, rel=0.1)
+    density = rough.spectrum(whole)
+    assert set(density.data_vars) == {"surface"}
+    smooth = rough.windowed(part, 0.2)
+    assert smooth.periodic == (True, True)
+    inner = (slice(50, 140), slice(50, 150))
+    np.testing.assert_allclose(smooth.heights[inner], part.heights[inner], rtol=0, atol=1e-21)
+    rim = np.abs(smooth.heights[0] - part.heights.mean()).max()
+    assert rim < 1e-2 * np.abs(part.heights).max()
+    np.testing.assert_allclose(rough.windowed(whole).heights, whole.heights, rtol=0, atol=1e-21)
+    with pytest.raises(ValueError, match=r"taper must be above 0 and at most 0\.5, got 0\.6"):
+        rough.windowed(part, 0.6)

@@ -147,6 +147,19 @@ def test_a_shape_without_end_needs_a_grid() -> None:
 # Where it starts, and how it ends.
 
 
+def test_the_elastic_energy_is_that_of_hertz() -> None:
+    # Johnson, Contact Mechanics, (4.23): W is proportional to δ^(3/2), and U = (2/5) W δ.
+    solution = nacre.solve(BALL, STEEL, load=10.0)
+    hertz = 0.4 * solution.load * solution.approach
+    assert solution.elastic_energy == pytest.approx(hertz, rel=1e-3)
+    assert solution.to_xarray().attrs["elastic_energy"] == solution.elastic_energy
+    line = nacre.solve(nacre.Cylinder(5e-3), STEEL, load=1e5, grid=nacre.Grid.line(64, 4e-4))
+    strip = nacre.Grid((16, 64), (1e-3, 4e-4), periodic=(True, False))
+    length = strip.size[0]
+    whole = nacre.solve(nacre.Cylinder(5e-3), STEEL, load=1e5 * length, grid=strip)
+    assert line.elastic_energy * length == pytest.approx(whole.elastic_energy, rel=1e-6)
+
+
 def test_a_solution_is_taken_to_start_from() -> None:
     first = CONTACT.solve(BALL, load=LOAD)
     again = CONTACT.solve(BALL, load=LOAD, initial=first)

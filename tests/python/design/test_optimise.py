@@ -233,3 +233,57 @@ def test_solves_end_at_their_number() -> None:
 def test_bad_input_is_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises((ValueError, TypeError), match=message):
         optimise(**RADIUS | change)
+
+
+# Free ends.
+
+ENDS = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(300e9, 0.25), 2e-6)], ends=(-6e-3, 6e-3))
+
+
+def ended(crown: float, load: float = LOAD, tilt: float = 5e-4) -> nacre.Solution:
+    shape = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=crown, length=LENGTH)
+    keywords: dict[str, Any] = {"grid": ROLLER_CELLS, "load": load, "tilt": (tilt, None)}
+    return nacre.solve(shape, STEEL, ENDS, tolerance=1e-13, **keywords)
+
+
+@pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
+def test_derivatives_with_free_ends_are_slopes() -> None:
+    """Steps that keep the cells of the contact: differences of second order, some 1e-8 here."""
+    found = ended(1.0).gradient("approach", ["shape.crown_radius", "load", "tilt[0]"])
+    steps = {
+        "shape.crown_radius": (ended(1.0 + 1e-4), ended(1.0 - 1e-4), 2e-4),
+        "load": (ended(1.0, LOAD + 0.05), ended(1.0, LOAD - 0.05), 0.1),
+        "tilt[0]": (ended(1.0, tilt=5e-4 + 1e-9), ended(1.0, tilt=5e-4 - 1e-9), 2e-9),
+    }
+    for path, (above, below, step) in steps.items():
+        slope = (above.approach - below.approach) / step
+        assert found[path] == pytest.approx(slope, rel=1e-6), path
+
+
+@pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
+def test_a_roller_with_free_ends_has_an_optimum_between_tilts() -> None:
+    def build(amplitude: float) -> dict[str, Any]:
+        profile = nacre.LogarithmicProfile(amplitude, LENGTH, flat_length=6e-3, end_factor=0.9)
+        return {
+            "shape": nacre.Roller(radius=5e-3, profile=profile),
+            **{"body": STEEL, "counterbody": ENDS},
+        }
+
+    asked: dict[str, Any] = {
+        "cases": [{"load": LOAD, "tilt": (tilt, None)} for tilt in TILTS],
+        **{"grid": ROLLER_CELLS, "objective": "located_peak", "across": 1e3},
+    }
+    found = optimise(build, {"amplitude": 2e-5}, bounds={"amplitude": (1e-6, 4e-5)}, **asked)
+
+    def worst(amplitude: float) -> float:
+        solves = (nacre.solve(**build(amplitude), grid=ROLLER_CELLS, **c) for c in asked["cases"])
+        return max(solution.gradient("located_peak").value for solution in solves)
+
+    scanned = [worst(amplitude) for amplitude in np.geomspace(1e-6, 4e-5, 15)]
+    assert worst(found.values["amplitude"]) < 1.01 * min(scanned)
+    with pytest.raises(ValueError, match=r"has no derivative: .*free ends"):
+        optimise(
+            {**build(1e-5)},
+            {"counterbody.layers[0].thickness": 2e-6},
+            **(asked | {"across": 1}),
+        )

@@ -16,7 +16,9 @@ import pytest
 import nacre
 import nacre._tools.units
 import nacre.design
+import nacre.plot.rough
 import nacre.plot.sections
+import nacre.rough
 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -131,6 +133,8 @@ def test_its_examples_are_true(name: str) -> None:
     [
         nacre._tools.units,
         nacre.design,
+        nacre.rough,
+        nacre.plot.rough,
         nacre.plot.sections,
         nacre.indent.curves,
         nacre.indent.checks,

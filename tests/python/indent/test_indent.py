@@ -334,3 +334,19 @@ def test_contacts_on_grids_agree_within_the_errors_that_they_state(case: dict[st
     centre = exact.pressure(np.hypot(*grid.spacing) / 2)
     pressure = solution.pressure[127:129, 127:129].mean()
     assert abs(pressure - centre) < stated["peak_pressure"] < 1e-3 * centre
+
+
+def test_tabors_parameter_is_that_of_maugis() -> None:
+    """λ = σ0 (9 R / (2π w E*²))^(1/3), Maugis (1992), is 1.1570 μ: Johnson and Greenwood (1997)."""
+    radius, modulus, work, strength = 1e-5, 7e10, 0.05, 2e8
+    found = nacre.indent.tabor_parameter(radius, modulus, work, strength=strength)
+    maugis = strength * (9 * radius / (2 * np.pi * work * modulus**2)) ** (1 / 3)
+    assert maugis / found == pytest.approx(1.1570, abs=5e-5)
+    reach = 16 * work / (9 * 3**0.5 * strength)
+    again = nacre.indent.tabor_parameter(radius, modulus, work, distance=reach)
+    assert again == pytest.approx(found, rel=1e-14)
+    for wrong in ({}, {"distance": 1e-9, "strength": 1e8}):
+        with pytest.raises(ValueError, match="exactly one of distance and strength"):
+            nacre.indent.tabor_parameter(radius, modulus, work, **wrong)
+    with pytest.raises(ValueError, match="work must be positive and finite, got -1"):
+        nacre.indent.tabor_parameter(radius, modulus, -1, distance=1e-9)

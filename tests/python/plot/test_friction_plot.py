@@ -8,6 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.quiver import QuiverKey
 
 import nacre
 import results
@@ -129,3 +130,25 @@ def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
     shown = np.asarray(axes.lines[-1].get_xydata())
     np.testing.assert_allclose(shown[:, 0], [0.1, 1.0])
     np.testing.assert_allclose(shown[:, 1], curve.traction_ratio)
+    axes = plot.creep_curve(curve, quantity="longitudinal_force")
+    assert axes.get_ylabel() == "longitudinal force [N]"
+    np.testing.assert_allclose(axes.lines[-1].get_ydata(), curve.longitudinal_force)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"quantity must be one of longitudinal_force, .* got 'x'"):
+        plot.creep_curve(curve, quantity="x")
+
+
+@pytest.mark.parametrize(("direction", "drawn"), [("+x", (1, 0)), ("-y", (0, -1))])
+def test_an_arrow_shows_where_it_rolls_and_another_the_scale(
+    direction: Any, drawn: tuple[int, int]
+) -> None:
+    solution = CONTACT.roll(BALL, **HELD, creepage=(1e-3, None), direction=direction)
+    axes = solution.plot()
+    (arrow,) = (text for text in axes.texts if getattr(text, "arrow_patch", None))
+    way = np.subtract(arrow.xy, arrow.get_position())
+    np.testing.assert_allclose(way / np.abs(way).max(), drawn, rtol=0, atol=1e-12)
+    (key,) = (child for child in axes.get_children() if isinstance(child, QuiverKey))
+    largest = np.hypot(*solution.traction).max()
+    scale = Scale.of(largest, "Pa")
+    assert scale.unit in key.text.get_text()
+    # The arrows are those of some cells, of which the largest is near the largest of all.
+    assert float(key.text.get_text().split()[0]) == pytest.approx(scale.factor * largest, rel=0.1)

@@ -214,6 +214,11 @@ def test_a_curve_has_units_and_bars_of_its_errors(chart: Any) -> None:
     x, y = curve_of(axes)
     np.testing.assert_array_equal(x, curve["load"])
     np.testing.assert_allclose(y, 1e-6 * curve.stiffness, rtol=1e-12)
+    both: Any = plot.curve(chart, "peak_pressure")
+    lines = [line for line in both.lines if len(line.get_ydata()) > 1]
+    assert len(both.get_legend().get_texts()) == len(chart.peak_pressure)
+    for line, values in zip(lines, chart.peak_pressure.values, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), 1e-9 * values, rtol=1e-12)
     # The estimated errors are bars of a curve, and stand in the label of a chart.
     axes = plot.curve(curve, "approach")
     (container,) = axes.containers

@@ -82,6 +82,7 @@ MADE_BY_A_CALL: dict[str, Any] = {
 NOT_KEPT = {"point contact", "line contact", "ellipse", "contact", "contact with everything"}
 VALUES = MADE_BY_A_CALL | {
     "solution": SOLUTION,
+    "response": nacre.Response(lambda alpha: 1e-12 / alpha, local=1e-13),
     "convolution": nacre.Convolution(THIRDS, threads=2),
     "report": SOLUTION.report,
     "stress": SOLUTION.stress(

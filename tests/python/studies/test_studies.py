@@ -720,6 +720,7 @@ def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
             TypeError,
             "stress must",
         ),
+        ((lambda load: BALL, {"load": [1.0]}), {}, TypeError, "case must return the arguments"),
         (({"body": STEEL}, {"force": [1.0]}), {}, TypeError, "case must give arguments .*force"),
         (({"progress": print}, {"load": [1.0]}), {}, TypeError, "is not a value that can be kept"),
     ],
@@ -729,6 +730,26 @@ def test_bad_input_is_refused_before_anything_is_solved(
 ) -> None:
     with pytest.raises(kind, match=message):
         nacre.sweep(*arguments, **options)
+
+
+def test_a_force_table_is_the_solves_and_its_stiffness_the_slope() -> None:
+    step = 1e-9
+    options: dict[str, Any] = {"grid": GRID, "tolerance": 1e-12}
+    approaches = [6e-7 - step, 6e-7, 6e-7 + step]
+    slopes = [-step / 1e-4, 0.0, step / 1e-4]
+    table = design.force_table(BALL, STEEL, approaches, tilt_x=slopes, progress=False, **options)
+    here = dict(approach=1, tilt_x=1, tilt_y=0)
+    solution = nacre.solve(BALL, STEEL, approach=6e-7, tilt=(0.0, 0.0), **options)
+    assert table["load"][here].item() == solution.load
+    assert table.stiffness[here].values.tolist() == solution.stiffness().tolist()
+    # Central differences are exact to the square of the step, and to the cells that join or leave.
+    along = table["load"].differentiate("approach")[here].item()
+    expected = table.stiffness.sel(row="load", column="approach")[here].item()
+    assert along == pytest.approx(expected, rel=1e-3)
+    turned = table.moment.sel(axis="x").differentiate("tilt_x")[here].item()
+    expected = table.stiffness.sel(row="moment x", column="tilt x")[here].item()
+    assert turned == pytest.approx(expected, rel=1e-2)
+    assert table.approach.units == "m"
 
 
 def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
