@@ -48,7 +48,7 @@ mod core {
     #[pymodule_export]
     use super::grid::PyGrid;
     #[pymodule_export]
-    use super::hertz::{PyHertz, contact_modulus, equivalent_radius};
+    use super::hertz::{PyHertz, contact_modulus, equivalent_radius, relative_radii};
     #[pymodule_export]
     use super::indent::{PyIndentStates, PyIndentation};
     #[pymodule_export]

@@ -49,6 +49,7 @@ __all__ = [
     "influence_coefficients",
     "numbers",
     "plain",
+    "relative_radii",
     "roll",
     "slide",
     "solve",
@@ -315,7 +316,14 @@ class LogarithmicProfile:
 @final
 class SampledProfile:
     __hash__: ClassVar[None]  # type: ignore[assignment]
-    def __new__(cls, x: _Vector, drop: _Vector) -> Self: ...
+    def __new__(
+        cls,
+        x: _Vector,
+        drop: _Vector,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
+    ) -> Self: ...
     @staticmethod
     def read(
         path: str | os.PathLike[str],
@@ -324,7 +332,16 @@ class SampledProfile:
         x: str | int | None = None,
         drop: str | int | None = None,
         height: str | int | None = None,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
     ) -> SampledProfile: ...
+    @property
+    def smooth(self) -> bool: ...
+    @property
+    def corners(self) -> tuple[float, ...] | None: ...
+    @property
+    def smoothing(self) -> float | None: ...
     @overload
     def drop_at(self, x: float) -> float: ...
     @overload
@@ -604,6 +621,11 @@ def graded_layers(
     breakpoints: Iterable[float] | None,
 ) -> list[Layer]: ...
 def equivalent_radius(radius: float | None, counter_radius: float | None) -> float: ...
+def relative_radii(
+    radii: tuple[float | None, float | None],
+    counter_radii: tuple[float | None, float | None],
+    angle: float,
+) -> tuple[tuple[float, float], float]: ...
 def contact_modulus(body: Elastic, counterbody: Elastic | None) -> float: ...
 def influence_coefficients(
     body: _Body, grid: Grid, method: _Method, refinement: int | None

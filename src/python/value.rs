@@ -35,7 +35,7 @@ pub(super) fn repr<V: Value>(value: &V, py: Python<'_>) -> PyResult<String> {
     call_text(&format!("{}{maker}", V::NAME), &value.arguments(py)?, V::UNNAMED)
 }
 
-/// Text of a call. Arguments that say nothing, as None, are left out; the first `unnamed` have no names.
+/// Text of a call. Arguments that say nothing, as None or `smooth=True`, are left out; the first `unnamed` have no names.
 pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> PyResult<String> {
     let mut shown = Vec::new();
     for (number, (name, argument)) in arguments.iter().enumerate() {
@@ -49,7 +49,7 @@ pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> 
             argument.repr()?.to_string()
         };
         match text.as_str() {
-            "None" | "(None, None)" | "(False, False)" => {}
+            "None" | "(None, None)" | "(False, False)" | "True" => {}
             _ if number < unnamed => shown.push(text),
             _ => shown.push(format!("{name}={text}")),
         }

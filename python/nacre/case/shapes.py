@@ -24,6 +24,7 @@ from nacre.case.tables import (
     described,
     table_of,
 )
+from nacre.hertz import relative_radii
 
 PROFILES: dict[str, Any] = {
     "logarithmic": nacre.LogarithmicProfile,
@@ -48,7 +49,10 @@ class Profile(Table):
 
 PROFILE_TABLES = {
     kind: table_of(
-        kind, maker, Profile, {"x": Numbers, "drop": Numbers} if kind == "sampled" else {}
+        kind,
+        maker,
+        Profile,
+        {"x": Numbers, "drop": Numbers, "smooth": bool, "corners": Numbers},
     )
     for kind, maker in PROFILES.items()
 }
@@ -118,6 +122,7 @@ class HeightMap(Shape):
 
 
 RANDOM = described(rough.random_surface)
+CROSSED = described(relative_radii)
 
 
 class RandomSurface(Shape):
@@ -139,6 +144,34 @@ class RandomSurface(Shape):
         return rough.random_surface(**given)
 
 
+class Crossed(Shape):
+    """Two bodies at an angle, such as crossed cylinders: `nacre.hertz.relative_radii`.
+
+    The x axis of the contact lies along the longer of the relative radii.
+    """
+
+    kind: Literal["crossed"] = Field(description="Kind, which decides on the other keys.")
+    radius_x: Number | None = Field(
+        None, description="Radius of one body along x [m]; straight by default."
+    )
+    radius_y: Number | None = Field(
+        None, description="Radius of one body along y [m]; straight by default."
+    )
+    counter_radius_x: Number | None = Field(
+        None, description="Radius of the other body along its own x axis [m]; straight by default."
+    )
+    counter_radius_y: Number | None = Field(
+        None, description="Radius of the other body along its own y axis [m]; straight by default."
+    )
+    angle: Number = Field(description=CROSSED["angle"])
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift."""
+        counter_radii = (self.counter_radius_x, self.counter_radius_y)
+        radii, _ = relative_radii((self.radius_x, self.radius_y), counter_radii, self.angle)
+        return nacre.Paraboloid(*radii)
+
+
 class Sum(Shape):
     """A sum of shapes: their gaps are added."""
 
@@ -158,6 +191,7 @@ class Sum(Shape):
 OWN_TABLES: dict[str, type[Shape]] = {
     "height_map": HeightMap,
     "random_surface": RandomSurface,
+    "crossed": Crossed,
     "sum": Sum,
 }
 TABLES: dict[str, type[Shape]] = {

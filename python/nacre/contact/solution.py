@@ -134,7 +134,7 @@ class Report(Result):
     """Kinds of the warnings, without their numbers: words by which warnings are counted.
 
     They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
-    "coarse spots", "large contact", "outside grid" and "peak error".
+    "coarse spots", "large contact", "outside grid", "peak error" and "stations".
     """
     grid: core.Grid
     """Grid of the solve."""

@@ -63,9 +63,13 @@ CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
 }
 """Callables by their names in data, each with its arguments."""
-LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"}
-"""Arguments that format 1 had not at first. Where they are None they are left out: older data are
-still read, and older studies found again. Versions that do not know them refuse them by name."""
+LATER = {
+    *("name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"),
+    *("corners", "smoothing"),
+}
+"""Arguments that format 1 had not at first. Where they say nothing they are left out: older data
+are still read, and older studies found again. Versions that do not know them refuse them by
+name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
 RESULTS: dict[str, Any] = {}

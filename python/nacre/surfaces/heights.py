@@ -296,6 +296,7 @@ class Text:
             if self.path.suffix.lower() != ".xyz":
                 return None
             if table.width != 3:
+                _refuse_profile(name, table.headings, values)
                 raise ValueError(f"{name!r} must have three columns x, y, z, got {table.width}")
             columns = (0, 1, 2)
         columns = _three(name, columns)
@@ -531,13 +532,17 @@ def _is_profile(headings: Sequence[Column], values: Array) -> bool:
     return False
 
 
-def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) -> Array:
-    """Return heights without the numbers of lines and columns; a profile or places are an error."""
+def _refuse_profile(name: str, headings: Sequence[Column], values: Array) -> None:
     if _is_profile(headings, values):
         raise ValueError(
             f"{name!r} holds a profile, places beside heights, not a map: a surface must have two "
             f"dimensions, got a line; SampledProfile.read reads it for a Roller"
         )
+
+
+def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) -> Array:
+    """Return heights without the numbers of lines and columns; a profile or places are an error."""
+    _refuse_profile(name, headings, values)
     corner = bool(np.isnan(values[0, 0]))
     left, top = values[corner:, 0], values[0, corner:]
     if corner and is_counter(top) and is_counter(left):

@@ -30,7 +30,8 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
     """Return the heights in an instrument's file, in the unit of the file.
 
     Readers of the file's ending are asked first, then those of its first bytes. Text that none of
-    them knows is a table. Readers without heights are passed over.
+    them knows is a table. Readers of formats without a mark are asked where no reader has the
+    ending. Readers without heights are passed over.
     """
     with extra("surfaces"), warnings.catch_warnings():
         warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
@@ -68,10 +69,10 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
                 raise
         else:
             return _table(text, channel)
+    if any(ending in (reader.file_extensions() or ()) for reader in likely):
+        raise ValueError(f"{str(path)!r} cannot be read: {told}")
     maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
     if (heights := found([one for one in maybe if not is_text or one.format() in HEADED])) is None:
-        if any(ending in (reader.file_extensions() or ()) for reader in likely):
-            raise ValueError(f"{str(path)!r} cannot be read: {told}")
         if likely:
             raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {told}")
         raise ValueError(

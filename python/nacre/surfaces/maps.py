@@ -45,11 +45,13 @@ def read_map(
     Parameters
     ----------
     path : str, os.PathLike or topography
-        A file ``.npy`` holds a matrix of heights ``(nx, ny)``; ``.csv`` likewise, with one line
-        for each x, after optional comments ``# unit: um`` and ``# spacing: 0.5 0.5``; ``.xyz``
-        holds points on a grid. Decimal commas are recognised, and headings are left out.
-        SurfaceTopography reads any other file; a matrix in a ``.txt`` has one line for each y. A
-        topography is an object of that library.
+        A file ``.npy`` holds a matrix of heights ``(nx, ny)``. A table in text, whatever its
+        ending, holds points of a grid, with columns x, y and z in any order, or a matrix of
+        heights, with one line for each x in a ``.csv`` and one for each y in any other and below
+        the head of an instrument. Heads, headings, units such as ``# unit: um`` and
+        ``# spacing: 0.5 0.5``, decimal commas, and numbers that stand for missing points are
+        recognised; a profile is refused. SurfaceTopography reads any other file. A topography is
+        an object of that library.
     spacing : float or tuple of float, optional
         Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
     unit : str, optional
@@ -59,7 +61,7 @@ def read_map(
     detrend : {"plane", "none", "mean", "quadratic"}, optional
         Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
     channel : str or int, optional
-        Channel of the instrument that is read.
+        Channel of the instrument, or table of the text, that is read: its name or its number.
     transpose : bool, optional
         Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one
         line for each y: that needs ``transpose=True``. The first line then has the smallest y. A

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from nacre import _core as core
 from nacre._tools.text import decoded
+from nacre._tools.typing import Vector
 from nacre.surfaces.heights import AXES, METRES, Table, Text, first_words, is_counter, metres
 
 Array = npt.NDArray[np.float64]
@@ -29,6 +30,9 @@ def read_profile(
     x: str | int | None = None,
     drop: str | int | None = None,
     height: str | int | None = None,
+    smooth: bool = True,
+    corners: Vector | None = None,
+    smoothing: float | None = None,
 ) -> core.SampledProfile:
     r"""Read a measured profile of a roller from a text file.
 
@@ -48,6 +52,9 @@ def read_profile(
     drop, height : str or int, optional
         Column of the drops, or of heights, of which the drop is the distance from the highest. By
         default the one with such a name.
+    smooth, corners, smoothing : optional
+        How the stations are joined, true edges [m], and a wavelength against noise [m], as those of
+        `SampledProfile`.
 
     Returns
     -------
@@ -88,7 +95,7 @@ def read_profile(
             f"{str(path)!r} must have each position once, {places[twice[0]]:.6g} m comes twice: "
             f"leave out what overhangs"
         )
-    return core.SampledProfile(places, drops)
+    return core.SampledProfile(places, drops, smooth, corners, smoothing)
 
 
 def _table(

@@ -88,7 +88,7 @@ macro_rules! kinds {
 
         impl Shape {
             /// Calls `f` with the surface that this is.
-            pub(super) fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
+            pub(super) fn with<'a, R>(&'a self, f: impl FnOnce(&'a dyn Surface) -> R) -> R {
                 match self {
                     $(Self::$kind(shape) => f(shape),)*
                     Self::Combined(shape) => f(shape.flat()),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 import operator
 import re
 import tomllib
@@ -406,6 +407,14 @@ SHAPES: list[tuple[dict[str, Any], nacre.types.Shape]] = [
     (
         of("roller", profile={"kind": "sampled", "x": [0, 1, 2], "drop": [0, 0, 1e-3]}),
         nacre.Roller(1, profile=([0, 1, 2], [0, 0, 1e-3])),
+    ),
+    (
+        {"kind": "crossed", "radius_y": 1, "counter_radius_y": 3, "angle": 1.2},
+        nacre.Paraboloid(*nacre.hertz.relative_radii((None, 1), (None, 3), 1.2)[0]),
+    ),
+    (
+        {"kind": "crossed", "radius_y": 1, "counter_radius_y": 1, "angle": math.pi / 2},
+        nacre.Paraboloid(1, 1),
     ),
     (
         {"kind": "sum", "parts": [of("sphere"), MAP]},

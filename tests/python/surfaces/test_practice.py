@@ -319,6 +319,25 @@ def x3p(path: Path, change: tuple[bytes, bytes], folder: str = "") -> Path:
     return path
 
 
+@MARK("text", [rows(X, DOME), rows(X, DOME, mark="\t"), "Lateral,Height\n" + rows(X, DOME)])
+def test_a_profile_in_an_xyz_is_refused(text: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"holds a profile, .* SampledProfile.read"):
+        nacre.HeightMap.read(written(tmp_path / "a.xyz", text), unit="um", spacing=1e-6)
+
+
+@MARK("size", [50, 200, 1250])
+@MARK("name", ["nms_sides_of_metres/surface.nms", "x3p_en_dash/surface.x3p"])
+def test_no_other_format_is_guessed_for_a_truncated_file(
+    name: str, size: int, tmp_path: Path
+) -> None:
+    # As numbers of two bytes these would be 5 x 5, 10 x 10 and 25 x 25 heights.
+    pytest.importorskip("SurfaceTopography")
+    path = tmp_path / Path(name).name
+    path.write_bytes((CASES / name).read_bytes()[:size])
+    with pytest.raises(ValueError, match=r"cannot be read: (NanoFocus NMS|XML 3D surface)"):
+        nacre.HeightMap.read(path, unit="um", spacing=1e-3)
+
+
 def test_what_the_reader_of_an_ending_said_is_told(tmp_path: Path) -> None:
     right = nacre.HeightMap.read(CASES / "x3p_en_dash" / "surface.x3p")
     for path in (
