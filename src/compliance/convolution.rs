@@ -19,7 +19,7 @@ mod periodic;
 
 use addition::AdditionMemory;
 pub(crate) use addition::{Addition, RowWeights, length, pair};
-pub(crate) use periodic::Approximation;
+pub(crate) use periodic::{Approximation, MARGIN};
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
 ///

@@ -65,6 +65,8 @@ pub fn solve_with<'a>(
     options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Solution> {
     check_carried(setup.counterbody.as_ref(), shape)?;
+    let mut asked = options.into();
+    let options = asked.options;
     let ends = Ends::of(&bodies(body, setup));
     let limited = ends.limit(shape);
     let task = Task {
@@ -73,9 +75,8 @@ pub fn solve_with<'a>(
         setup,
         motion,
         ends: ends.range(),
+        most: options.largest_grid()?,
     };
-    let mut asked = options.into();
-    let options = asked.options;
     // A break ends all solves that follow.
     let mut stopped = false;
     let mut watched = |report: &Report| {
@@ -127,7 +128,7 @@ fn solve_on_own_grid(task: Task, options: &Options, watched: &mut Progress) -> R
 /// does not end, the solution has the warning [`Warning::OutsideGrid`].
 ///
 /// Cells are divided along the axes along which the pressure bends most at its peak, until the estimated error
-/// of the peak pressure ([`Report::discretisation`]) is at most 1 %. Where this needs more than 2²² cells, or
+/// of the peak pressure ([`Report::discretisation`]) is at most 1 %. Where this needs more than [`Options::cells`], or
 /// where dividing the cells does not lower the estimate, the solution has the warning [`Warning::PeakError`].
 ///
 /// To choose the grid takes a solution on it, which [`solve`] and [`solve_with`] return.
@@ -180,7 +181,7 @@ fn solve_on_fit_grid(
             grid = enlarged(&task, &grid, touched)?;
             (refinement, enlargements) = (Refinement::default(), enlargements + 1);
         } else {
-            match refinement.next(&solution, task.shape)? {
+            match refinement.next(&solution, &task)? {
                 Next::Enough => return Ok((solution, None)),
                 Next::TooFine(warning) => return Ok((solution, Some(warning))),
                 Next::Finer(finer) => grid = finer,
@@ -207,16 +208,11 @@ fn enlarged(task: &Task, grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
         let moved = sides[k].iter().filter(|side| **side).count();
         grid.shape()[k] + moved * grid.shape()[k].div_ceil(2)
     });
-    let most = cells[0].saturating_mul(cells[1]);
-    let larger = (most as f64 / LARGEST_GRID as f64).sqrt().max(1.0);
-    task.grid_over(wider, cells.map(|n| (n as f64 / larger) as usize))
+    task.grid_over(wider, task.at_most(cells))
 }
 
 /// Estimated error of the peak pressure, relative to the peak, above which cells are divided.
 const PEAK_ERROR: f64 = 0.01;
-
-/// Largest number of cells of a grid that is chosen: 2²², which take 0.7 GB.
-const LARGEST_GRID: usize = 1 << 22;
 
 /// Cells in contact on the line through the peak below which they are divided whatever the estimate says.
 const NARROW: usize = 8;
@@ -256,15 +252,15 @@ struct Refinement {
 }
 
 impl Refinement {
-    /// The next step after `solution` for `shape`, which has converged.
-    fn next(&mut self, solution: &Solution, shape: &dyn Surface) -> Result<Next> {
-        let edges = edges(solution, shape);
+    /// The next step after `solution`, which has converged.
+    fn next(&mut self, solution: &Solution, task: &Task) -> Result<Next> {
+        let edges = edges(solution, task.shape);
         if edges.contains(&Edge::Reached) {
             return Ok(Next::Enough);
         }
         let short_of_edge = edges.map(|edge| edge == Edge::OutOfReach);
         if short_of_edge.contains(&true) {
-            let finer = divided(solution.grid(), short_of_edge, &[4, 2])?;
+            let finer = divided(task, solution.grid(), short_of_edge, &[4, 2])?;
             return Ok(finer.map_or(Next::Enough, Next::Finer));
         }
         let Some(error) = peak_error(solution) else {
@@ -285,17 +281,17 @@ impl Refinement {
         let axes = [0, 1].map(|k| both || narrow[k] || (bends[k] && error > PEAK_ERROR));
         let far = error > 4.0 * PEAK_ERROR && axes != [true; 2];
         let parts: &[usize] = if far { &[4, 2] } else { &[2] };
-        let finer = divided(solution.grid(), axes, parts)?;
+        let finer = divided(task, solution.grid(), axes, parts)?;
         Ok(finer.map_or(Next::TooFine(Warning::PeakError { error }), Next::Finer))
     }
 }
 
 /// The grid whose cells are divided along `axes`, into the first of these numbers of `parts` with which there are
 /// not too many; `None` where there always are.
-fn divided(grid: &Grid, axes: [bool; 2], parts: &[usize]) -> Result<Option<Grid>> {
+fn divided(task: &Task, grid: &Grid, axes: [bool; 2], parts: &[usize]) -> Result<Option<Grid>> {
     for parts in parts {
         let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { *parts } else { 1 });
-        if shape[0].saturating_mul(shape[1]) <= LARGEST_GRID {
+        if shape[0].saturating_mul(shape[1]) <= task.most {
             let finer = Grid::new(shape, grid.size())?.centered_at(grid.center())?;
             return Ok(Some(finer));
         }

@@ -18,7 +18,7 @@ use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
 use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
-use crate::contact::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
+use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
     Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
 };
@@ -222,8 +222,7 @@ impl<'a> Steps<'a> {
     ) -> Result<(Arc<Array2<f64>>, SolutionFields, Option<Coarser>)> {
         let (plan, rows, options) = (self.plan, self.rows(), self.options);
         // An approach that may be too large for a solution is looked at before.
-        let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
-        let bounded = plan.datum.floats && !self.freedoms.loaded[0] && !yields;
+        let bounded = plan.datum.floats && !self.freedoms.loaded[0];
         let (finest, ahead) = rows.both(
             || -> Result<_> {
                 let sample = || checked_gaps(self.shape, &plan.grid, &rows);
@@ -240,11 +239,24 @@ impl<'a> Steps<'a> {
             },
         );
         let (gap, fields) = finest?;
-        if bounded {
-            let approach = self.motion.approach.unwrap_or(0.0);
-            plan.datum.check_gap(approach, &gap)?;
+        if bounded && self.largest_hardness() <= 0.0 {
+            self.check_gap(&gap)?;
         }
         Ok((gap, fields, ahead))
+    }
+
+    /// An error where the approach is beyond full contact, which only a hardness ends.
+    fn check_gap(&self, gap: &Array2<f64>) -> Result<()> {
+        self.motion.approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap))
+    }
+
+    /// Largest hardness of the cells that may yield; 0 where none may.
+    fn largest_hardness(&self) -> f64 {
+        let hardness = self.options.hardness.as_ref().filter(|hardness| hardness.is_limited());
+        hardness.map_or(0.0, |hardness| {
+            let values = (0..self.plan.grid.shape().iter().product()).map(|cell| hardness.at(cell));
+            values.filter(|value| value.is_finite()).fold(0.0, f64::max)
+        })
     }
 
     /// Solutions on the coarser grids; `None` where they need the `gap` of the finest.
@@ -264,6 +276,12 @@ impl<'a> Steps<'a> {
         tally: &mut Tally,
     ) -> Result<(Outcome, Vec<GridResult>)> {
         let levels = &self.plan.levels;
+        if self.check_gap(gap).is_err() {
+            // There is no elastic solution; that with the hardness is sought from where all cells yield.
+            fields.pressure.fill(2.0 * self.largest_hardness());
+            let (solver, termination) = (Solver::Preconditioned, Termination::IterationLimit);
+            return Ok((Outcome { solver, termination, lambda: [0.0; 3] }, Vec::new()));
+        }
         if let Some(given) = given_pressure(problem, self.options.initial.as_deref())? {
             let outcome = self.solve_from(given, problem, gap, fields, tally)?;
             return Ok((outcome, Vec::new()));

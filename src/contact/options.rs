@@ -4,7 +4,7 @@ use ndarray::{ArcArray2, Array2};
 
 use super::problem::bounds::Hardness;
 use crate::compliance::response::Body;
-use crate::error::{Result, fraction};
+use crate::error::{Result, fraction, require};
 
 /// Options of a plan, beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -49,6 +49,9 @@ pub struct Options {
     /// Permanent indentation (nx, ny) \[m\] that the surfaces have already: that of the solution before, in a
     /// history of loads. Default: none.
     pub indentation: Option<Array2<f64>>,
+    /// Largest number of cells of a grid that is chosen, at least 4096. Where the peak pressure needs more, the solution
+    /// has a warning. Default: 2²², which take 0.7 GB.
+    pub cells: Option<usize>,
 }
 
 impl Default for Options {
@@ -60,9 +63,16 @@ impl Default for Options {
             initial: None,
             hardness: None,
             indentation: None,
+            cells: None,
         }
     }
 }
+
+/// Default of [`Options::cells`].
+const LARGEST_GRID: usize = 1 << 22;
+
+/// Least of [`Options::cells`]: with fewer along an axis there is no coarser grid, and no estimate of the error.
+const SMALLEST_GRID: usize = 64 * 64;
 
 /// Default of [`Options::max_iterations`]: far above the 10 … 300 that solvable problems take.
 const MAX_ITERATIONS: usize = 10_000;
@@ -74,6 +84,13 @@ impl Options {
             tolerance: fraction("tolerance", self.tolerance)?,
             max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
         })
+    }
+
+    /// The largest number of cells of a grid that is chosen, checked.
+    pub(super) fn largest_grid(&self) -> Result<usize> {
+        let most = self.cells.unwrap_or(LARGEST_GRID);
+        require("cells", most as f64, most >= SMALLEST_GRID, "at least 4096")?;
+        Ok(most)
     }
 }
 

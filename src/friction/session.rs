@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use ndarray::Array2;
 
-use super::newton::{Effort, Misfit};
+use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
@@ -19,12 +19,13 @@ use crate::contact::{Contact, Motion, Options, Report, Solution, Termination, Wa
 use crate::error::{Error, Result, fraction};
 use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
+use crate::numerics::parallel::dot;
 
 /// Callback that gets the report so far, and breaks to stop.
 pub type FrictionProgress<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// Sweeps between pressure and tractions.
-const MOST_SWEEPS: usize = 60;
+const MOST_SWEEPS: usize = 200;
 
 /// Change of the pressure to which tractions are found while it changes.
 const LOOSE: f64 = 0.01;
@@ -197,6 +198,7 @@ impl<'a> Session<'a> {
         };
         let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
+        let mut mixing = Mixing::default();
         let (mut normal, solved) = loop {
             let normal = match known {
                 Some(known) => known.clone(),
@@ -206,13 +208,17 @@ impl<'a> Session<'a> {
             let is_first = course.report.sweeps == 1;
             let change = change(&normal, pressure.as_ref());
             course.report.pressure_change = if self.coupled && !is_first { change } else { 0.0 };
-            let bound = bounds(&normal.pressure, friction)?;
             if course.stopped {
                 break (normal, None);
             }
+            let is_settled = !self.coupled || !is_first && change <= tolerance;
+            let acting = match pressure.take().filter(|_| !is_settled && !is_first) {
+                Some(before) => mixing.next(before, &normal.pressure),
+                None => normal.pressure.clone(),
+            };
+            let bound = bounds(&acting, friction)?;
             task.check(grid, &bound, tolerance)?;
             task.check_memory(grid, &bound)?;
-            let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
             let [x, y, _] = task.increments.map(Freedom::force);
@@ -220,8 +226,7 @@ impl<'a> Session<'a> {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
                 false => vec![traction.clone()],
             };
-            let pressed =
-                PressedCells { grid, bound: &bound, spreading: &self.spreading(&normal.pressure) };
+            let pressed = PressedCells { grid, bound: &bound, spreading: &self.spreading(&acting) };
             let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
@@ -232,7 +237,7 @@ impl<'a> Session<'a> {
             if is_settled || course.stopped || is_spent || !normal.report.converged() {
                 break (normal, solved);
             }
-            pressure = Some(normal.pressure);
+            pressure = Some(acting);
         };
         if known.is_none() && !course.stopped {
             let (shape, mut watch) = (self.lifted(&traction), |_: &Report| course.tell());
@@ -415,6 +420,51 @@ impl<'a> Session<'a> {
             *traction = bound.mapv(|q| q * component / force);
         }
         Ok(tractions)
+    }
+}
+
+/// Earlier changes of the pressure that are looked at.
+const DEPTH: usize = 20;
+
+/// The pressure of the next sweep, from those of the last ones and what became of them: Anderson, J. ACM 12 (1965) 547,
+/// doi:10.1145/321296.321305, as Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715, eq. (2.1), doi:10.1137/10078356X, have
+/// it. In turn alone, pressure and tractions do not settle where friction is large.
+#[derive(Default)]
+struct Mixing {
+    /// A pressure that was found, and its change in the sweep.
+    last: Option<[Vec<f64>; 2]>,
+    /// Differences of both between sweeps.
+    found: Vec<Vec<f64>>,
+    changes: Vec<Vec<f64>>,
+}
+
+impl Mixing {
+    /// The next pressure where tractions under the pressure `before` lead to `found`.
+    fn next(&mut self, before: Array2<f64>, found: &Array2<f64>) -> Array2<f64> {
+        let change: Vec<f64> = found.iter().zip(&before).map(|(found, p)| found - p).collect();
+        let values: Vec<f64> = found.iter().copied().collect();
+        if let Some([last_found, last_change]) = self.last.take() {
+            let less = |a: &[f64], b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a - b).collect();
+            for (kept, difference) in [
+                (&mut self.found, less(&values, last_found)),
+                (&mut self.changes, less(&change, last_change)),
+            ] {
+                if kept.len() == DEPTH {
+                    kept.remove(0);
+                }
+                kept.push(difference);
+            }
+        }
+        let right: Vec<f64> = self.changes.iter().map(|column| dot(column, &change)).collect();
+        let shares = small_system(&self.changes, &self.changes, &right);
+        let mut next = values.clone();
+        for (share, column) in shares.iter().zip(&self.found) {
+            next.iter_mut().zip(column).for_each(|(p, column)| *p -= share * column);
+        }
+        self.last = Some([values, change]);
+        let mut pressure = before;
+        pressure.iter_mut().zip(next).for_each(|(p, next)| *p = next.max(0.0));
+        pressure
     }
 }
 

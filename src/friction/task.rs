@@ -15,6 +15,7 @@ use crate::compliance::traction::{Tangential, TangentialWindow};
 use crate::contact::{self, Warning};
 use crate::error::{Error, Result, require};
 use crate::model::grid::{Grid, Window, full_window};
+use crate::numerics::dense::eliminate;
 use crate::numerics::parallel::check_memory;
 
 /// Bytes that the fields of a solution, and the operators on the whole grid take for each cell. Measured, as those of
@@ -115,12 +116,67 @@ impl TractionTask<'_> {
             let requirement = "0, or at least 1e-100 of what friction can carry";
             require(name, value, counts, requirement)?;
         }
+        if torque != 0.0 {
+            let reserve = self.reserve(grid, bound);
+            let (name, value) = match force > 0.0 {
+                true => ("force, with torque in the same ratio,", force),
+                false => ("torque", torque.abs()),
+            };
+            if reserve <= 1.0 + tolerance {
+                return Err(Error::FullSlip { name, value, bears: reserve * value });
+            }
+        }
         let leaves = |direction: RollingDirection| {
             let axis = Axis(direction.axis());
             let edge = if direction.is_forward() { bound.len_of(axis) - 1 } else { 0 };
             bound.index_axis(axis, edge).iter().any(|bound| *bound > 0.0)
         };
         if self.direction().is_some_and(leaves) { Err(Error::RollsOffGrid) } else { Ok(()) }
+    }
+
+    /// The factor by which the given forces and torque F may grow, at most. Where the counterbody slides by C δ, they do the
+    /// work F · δ, and friction at most Σ μp |C δ| dA: the least ratio of both over all δ, by steps that each lower it
+    /// (Weiszfeld, Tôhoku Math. J. 43 (1937) 355). It ends where the ratio is below 1, or far from it.
+    fn reserve(&self, grid: &Grid, bound: &Array2<f64>) -> f64 {
+        // Share of what is above 1 by which a step must lower the ratio.
+        const PROGRESS: f64 = 1e-3;
+        let (x, y) = (grid.x(), grid.y());
+        let length = grid.size()[0].hypot(grid.size()[1]);
+        let loaded = self.increments.map(|freedom| matches!(freedom, Freedom::Loaded(_)));
+        let [fx, fy, torque] = self.increments.map(Freedom::force);
+        let forces = [fx, fy, torque / length].map(|force| force / grid.cell_area());
+        let slip = |[dx, dy, turn]: [f64; 3], x: f64, y: f64| [dx - turn * y, dy + turn * x];
+        let cells: Vec<[f64; 3]> = (bound.indexed_iter().filter(|(_, bound)| **bound > 0.0))
+            .map(|((i, j), bound)| [x[i] / length, y[j] / length, *bound])
+            .collect();
+        let (mut motion, mut least) = (None, f64::INFINITY);
+        loop {
+            let mut matrix = [[0.0; 3]; 3];
+            for [x, y, bound] in &cells {
+                let size = motion.map_or(1.0, |motion| {
+                    let [sx, sy] = slip(motion, *x, *y);
+                    sx.hypot(sy).max(f64::MIN_POSITIVE)
+                });
+                let weight = bound / size;
+                let rows = [[1.0, 0.0, -y], [0.0, 1.0, *x], [-y, *x, x * x + y * y]];
+                let sums = matrix.as_flattened_mut().iter_mut();
+                sums.zip(rows.as_flattened()).for_each(|(sum, row)| *sum += weight * row);
+            }
+            let mut next = forces;
+            eliminate(&mut matrix, &mut next, |k, _| loaded[k]);
+            let work: f64 = next.iter().zip(forces).map(|(by, force)| by * force).sum();
+            let next = next.map(|by| by / work);
+            let taken = cells.iter().map(|[x, y, bound]| {
+                let [sx, sy] = slip(next, *x, *y);
+                bound * sx.hypot(sy)
+            });
+            let ratio: f64 = taken.sum();
+            let goes_on = ratio > 1.0 && least - ratio > PROGRESS * (ratio - 1.0);
+            (motion, least) = (Some(next), least.min(ratio));
+            if !goes_on {
+                return least;
+            }
+        }
     }
 
     /// An error where there is too little memory for tractions within `bound`.

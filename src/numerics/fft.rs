@@ -118,11 +118,6 @@ impl PaddedTransform {
         Self::with_periods(shape, shape.map(|n| 2 * n - 1), periodic, threads)
     }
 
-    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
-    pub(crate) fn plan_unpadded(shape: [usize; 2], threads: &Threads) -> Self {
-        Self::with_periods(shape, shape, [false; 2], threads)
-    }
-
     /// Transforms that are padded by the share `margin` of n. Convolutions are periodic, with n as the period along
     /// directions that are `periodic`, and the fast length ≥ (1 + margin) n along others.
     pub(crate) fn plan_margin(

@@ -185,6 +185,7 @@ fn options(given: &Given) -> PyResult<Options> {
         initial: None,
         hardness: given.get("hardness")?.map(|given| hardness(&given)).transpose()?,
         indentation: None,
+        cells: None,
     })
 }
 

@@ -320,6 +320,33 @@ fn threads_change_no_bit() -> Result<()> {
     Ok(())
 }
 
+/// Beyond full contact there is no elastic solution, and an approach ends where cells yield: soon, with the force of the
+/// gaps that are left. Without a hardness it is refused.
+#[test]
+fn beyond_full_contact_cells_yield() -> Result<()> {
+    let grid = Grid::new([24, 20], [1.0, 0.8])?.periodic([true; 2])?;
+    let (shape, contact) = (rough(&grid)?, plan(Elastic::new(1.0, 0.3)?, grid)?);
+    let gaps = shape.gaps(&grid)?;
+    let mean = gaps.sum() / gaps.len() as f64;
+    let most = gaps.fold(0.0_f64, |most, gap| most.max(*gap));
+    for (part, hardness) in [(0.1, 1e-3), (0.1, 0.1), (0.6, 1e-2), (1.1, 1e-2)] {
+        let approach = mean + part * (most - mean);
+        let motion = Motion::approach(approach);
+        let refused = contact.solve(&shape, &motion, &Options::default());
+        assert!(matches!(refused, Err(Error::FullContact { .. })), "{refused:?}");
+        let options = Options { hardness: Some(Hardness::Uniform(hardness)), ..Options::default() };
+        let solution = contact.solve(&shape, &motion, &options)?;
+        assert!(solution.report.converged(), "{:?}", solution.report);
+        below!(solution.report.convolutions, 300.0, part, hardness);
+        // The dents make up for what no elastic displacement does.
+        let dents = solution.indentation.clone().expect("cells yield");
+        let gap = solution.gap().sum() / gaps.len() as f64;
+        near!(dents.sum() / gaps.len() as f64 - gap, approach - mean, 1e-9);
+        assert!(solution.peak_pressure() <= hardness);
+    }
+    Ok(())
+}
+
 /// What makes no sense on a grid that repeats is refused.
 #[test]
 fn what_does_not_repeat_is_refused() -> Result<()> {

@@ -2,14 +2,14 @@
 
 use nacre::friction::{FrictionOptions, FrictionSolution, Step};
 use nacre::{
-    Contact, Elastic, Error, Grid, HalfSpace, Member, Motion, Options, Result, StressOptions,
-    stress,
+    Contact, Elastic, Error, Grid, HalfSpace, Member, Motion, Options, Paraboloid, Result,
+    StressOptions, stress,
 };
 use ndarray::{Array2, Axis};
 
 use crate::support::checks::apart;
 use crate::support::pairs::{
-    Pulled, RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide,
+    Pulled, RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide, slide_once,
     tractions_apart, unlike,
 };
 use crate::support::settings::{Controls, against, one_thread, plan};
@@ -255,6 +255,69 @@ fn little_friction_under_forces_and_a_torque() -> Result<()> {
             }
         }
     }
+    Ok(())
+}
+
+/// Where friction is large and bodies differ, pressure and tractions change each other by more than they are: they settle
+/// all the same.
+#[test]
+fn pressure_and_tractions_settle_under_large_friction() -> Result<()> {
+    for poisson in [0.0, 0.2] {
+        let contact = plan(Elastic::new(1.0, poisson)?, Grid::new([24, 24], [3.0, 3.0])?)?;
+        let load =
+            contact.solve(&ball()?, &Motion::approach(0.7 / RADIUS), &Options::default())?.load();
+        for friction in [1.0, 3.0, 5.0] {
+            for share in [0.1, 0.4, 0.8] {
+                let force = share * friction * load;
+                let step = Step::press(Motion::load(load), friction)
+                    .with_force([Some(0.6 * force), Some(0.8 * force)]);
+                let solution = slide(&contact, step, &precise(1e-7))?;
+                below!(solution.report.pressure_change, 1e-7, friction, share);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Thin stiff coats in long contacts, where short waves of traction displace hardly anything.
+#[test]
+fn long_contacts_of_stiff_coats() -> Result<()> {
+    for (cells, ratio, thickness, friction) in
+        [(24, 10.0, 0.03, 0.27), (40, 25.0, 0.02, 0.4), (32, 6.0, 0.05, 0.7)]
+    {
+        let body = coated(ratio, thickness)?;
+        let contact = plan(body, Grid::new([cells, cells], [3.0, 39.0])?)?;
+        let shape = Paraboloid::new(RADIUS, 169.0 * RADIUS)?;
+        let pressed =
+            contact.solve(&shape, &Motion::approach(0.8 / RADIUS), &Options::default())?;
+        for angle in [0.5_f64, 1.5, 4.0] {
+            let force = 0.3 * friction * pressed.load();
+            let step = Step::press(Motion::load(pressed.load()), friction)
+                .with_force([Some(force * angle.cos()), Some(force * angle.sin())]);
+            slide_once(&contact, &shape, step, &precise(1e-7))?;
+        }
+    }
+    Ok(())
+}
+
+/// A force and a torque that friction carries alone, and not together, are refused; the largest part of both that it
+/// carries is said, and 99 % of it are carried.
+#[test]
+fn a_force_and_a_torque_may_be_too_much_together() -> Result<()> {
+    let (contact, load) = (pair(0.3, 32)?, load(0.3));
+    let bears = FRICTION * load;
+    let step = |part: f64| {
+        press(load)
+            .with_force([Some(0.8 * part * bears), Some(0.0)])
+            .with_torque(Some(0.5 * part * bears))
+    };
+    let refused = contact.slide(&ball()?, &[step(1.0)], &FrictionOptions::default(), None);
+    let Err(Error::FullSlip { value, bears: most, .. }) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!(most > 0.5 * value && most < value, "{most} {value}");
+    let solution = slide(&contact, step(0.99 * most / value), &precise(1e-6))?;
+    assert!(!solution.report.full_slip);
     Ok(())
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct Approximation {
 }
 
 /// Cells by which the mesh is longer than the window, as a share of it; see the head of this file.
-const MARGIN: f64 = 0.125;
+pub(crate) const MARGIN: f64 = 0.125;
 
 impl Convolution {
     /// Approximations of the convolution with `coefficients`. Along directions in which pressures repeat, the mesh has no
@@ -187,7 +187,7 @@ mod tests {
     fn spectra_are_positive_under_hard_coatings() -> Result<()> {
         let on_whole_mesh = |part: Convolution| {
             let shape = part.transform.periods();
-            let transform = PaddedTransform::plan_unpadded(shape, &part.threads);
+            let transform = PaddedTransform::plan_margin(shape, 0.0, [false; 2], &part.threads);
             Convolution { shape, transform, ..part }
         };
         let mut bounded = 0;

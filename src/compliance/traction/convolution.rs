@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use ndarray::{Array2, Axis, Slice};
 
 use super::{TractionCoefficients, of_pair};
+use crate::compliance::convolution::MARGIN;
 use crate::compliance::response::{Body, alpha_compliance};
 use crate::error::Result;
 use crate::model::grid::Grid;
@@ -69,25 +70,35 @@ impl Tangential {
     fn planned(&self, shape: [usize; 2]) -> TangentialWindow {
         let threads = &self.threads;
         let transform = PaddedTransform::plan(shape, threads);
+        let periodic =
+            PaddedTransform::plan_margin(shape, MARGIN, [self.grid.is_line(), false], threads);
         let mut workspace = transform.workspace();
-        let mut spectrum = |all: &Array2<f64>, odd: [bool; 2]| {
+        periodic.reserve(&mut workspace);
+        let mut spectrum = |on: &PaddedTransform, all: &Array2<f64>, odd: [bool; 2]| {
             let rows = all.slice_axis(Axis(0), Slice::from(..shape[0]));
             let part = rows.slice_axis(Axis(1), Slice::from(..shape[1]));
-            transform.parity_spectrum(&part, odd, &mut workspace, threads)
+            on.parity_spectrum(&part, odd, &mut workspace, threads)
         };
         let TractionCoefficients { xx, xy, yy, zx, zy } = &self.coefficients;
-        let coupling =
-            self.is_coupled().then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
-        let periodic = PaddedTransform::plan_unpadded(shape, threads);
+        let mut both = |on: &PaddedTransform| {
+            let kernels = [(xx, [false, false]), (xy, [true, true]), (yy, [false, false])];
+            kernels.map(|(all, odd)| spectrum(on, all, odd))
+        };
+        let [inverted, [along, cross, across]] = [&periodic, &transform].map(&mut both);
+        let inverse = periodic.inverse_spectra(inverted, self.inverse(&periodic, shape));
+        let coupling = self.is_coupled().then(|| {
+            [(zx, [true, false]), (zy, [false, true])]
+                .map(|(all, odd)| spectrum(&transform, all, odd))
+        });
         TangentialWindow {
             shape,
-            xx: spectrum(xx, [false, false]),
-            xy: spectrum(xy, [true, true]),
-            yy: spectrum(yy, [false, false]),
+            xx: along,
+            xy: cross,
+            yy: across,
             own: [xx[[0, 0]], yy[[0, 0]]],
             ahead: self.ahead(),
             coupling,
-            inverse: self.inverse(&periodic, shape),
+            inverse,
             workspace: Mutex::new(workspace),
             transform,
             periodic,
@@ -105,7 +116,7 @@ impl Tangential {
         })
     }
 
-    /// Spectra of the inverse: α/(α c22) along the wave vector and α/(α c_t) across it, periodic.
+    /// Spectra of the inverse on the whole plane: α/(α c22) along the wave vector and α/(α c_t) across it, periodic.
     fn inverse(&self, periodic: &PaddedTransform, shape: [usize; 2]) -> [ParitySpectrum; 3] {
         let [dx, dy] = self.grid.spacing();
         let longest = (shape[0] as f64 * dx).max(shape[1] as f64 * dy);

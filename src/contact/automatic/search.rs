@@ -217,7 +217,7 @@ impl<'a> Search<'a> {
             // Even, so that the middle of a symmetric contact lies between cells.
             2 * (0.5 * count).ceil() as usize
         });
-        self.task.grid_over(frame, shape)
+        self.task.grid_over(frame, self.task.at_most(shape))
     }
 }
 

@@ -33,6 +33,8 @@ pub(super) struct Task<'a> {
     pub(super) motion: &'a Motion,
     /// Range of x in which both bodies go on.
     pub(super) ends: [f64; 2],
+    /// Largest number of cells.
+    pub(super) most: usize,
 }
 
 impl Task<'_> {
@@ -43,6 +45,16 @@ impl Task<'_> {
         let frame = [[frame[0][0].max(low), frame[0][1].min(high)], frame[1]];
         Grid::new(shape, frame.map(|[low, high]| high - low))?
             .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
+    }
+
+    /// Numbers of `cells` along both axes; fewer along the longer one where they are too many, and along both where that is
+    /// not enough.
+    pub(super) fn at_most(&self, cells: [usize; 2]) -> [usize; 2] {
+        let axis = usize::from(cells[1] < cells[0]);
+        let mut fewer = cells;
+        fewer[axis] = cells[axis].clamp(1, self.most.isqrt());
+        fewer[1 - axis] = cells[1 - axis].min(self.most / fewer[axis]);
+        fewer
     }
 
     /// Plans one grid, and solves on it.

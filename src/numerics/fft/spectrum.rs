@@ -128,6 +128,33 @@ impl PaddedTransform {
         spectra
     }
 
+    /// Spectra of the inverse of a symmetric matrix of kernels, given as its elements xx, xy and yy, of which xy is odd along
+    /// both directions. Where an entry is not near that of the `others`, as on a mesh that is too small for the kernels, it
+    /// is theirs.
+    pub(crate) fn inverse_spectra(
+        &self,
+        kernels: [ParitySpectrum; 3],
+        mut others: [ParitySpectrum; 3],
+    ) -> [ParitySpectrum; 3] {
+        // Ratio of the traces. Entries of bare bodies lie between 0.7 and 1.2, those of coats up to 4.
+        const NEAR: std::ops::Range<f64> = 0.25..4.0;
+        let points = self.points();
+        for at in 0..others[0].values.len() {
+            let [xx, xy, yy] = kernels.each_ref().map(|kernel| kernel.values[at]);
+            // Two odd directions have the factor i² = −1.
+            let scale = (xx * yy - xy * xy) * points * points;
+            let inverse = [yy / scale, -xy / scale, xx / scale];
+            let trace = others[0].values[at] + others[2].values[at];
+            let near = NEAR.contains(&((inverse[0] + inverse[2]) / trace));
+            if near && scale > 0.0 {
+                for (other, value) in others.iter_mut().zip(inverse) {
+                    other.values[at] = value;
+                }
+            }
+        }
+        others
+    }
+
     /// Smallest and largest entry of `spectrum`.
     pub(crate) fn extremes(&self, spectrum: &EvenSpectrum) -> [f64; 2] {
         let (columns, rows) = (self.columns(), self.quarter_rows());
