@@ -199,10 +199,10 @@ def creep_curve(
         if name in keywords:
             raise ValueError(f"{name} must not be given: creepages say what is asked")
     plan = {"threads": keywords.pop("threads", None)}
-    grid = keywords.pop("grid", None)
+    grid, most = keywords.pop("grid", None), keywords.pop("max_cells", None)
     if grid is None:
         motion = {name: keywords[name] for name in MOTION if name in keywords}
-        grid = solve(shape, body, counterbody, **plan, **motion).report.grid
+        grid = solve(shape, body, counterbody, max_cells=most, **plan, **motion).report.grid
     contact = Contact(body, grid, counterbody, **plan)
     solutions = []
     with lasting("creepages") as tell:

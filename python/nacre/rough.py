@@ -131,32 +131,51 @@ def random_surface(
 def spectral_slope(surface: core.HeightMap) -> float:
     """Root of the mean square of the gradient of a map, from its Fourier derivative.
 
-    It is the h' of theories of rough contact. That of differences between points is less. A map
-    that is not periodic is multiplied by Hann's window along such an axis, whose mean square is
-    divided out.
+    It is the h' of theories of rough contact. That of differences between points is less. Where a
+    map is not periodic, its gradient is weighted by Hann's window, which leaves out the rim.
     """
-    (waves_x, waves_y), transform, power = _transformed(surface)
-    squares = (waves_x[:, None] ** 2 + waves_y[None, :] ** 2) * np.abs(transform) ** 2
-    return float(np.sqrt(squares.sum() / power)) / transform.size
+    first, second, _, power = _derivatives(surface)
+    return float(np.sqrt(np.mean(first**2 + second**2) / power))
 
 
-def _transformed(surface: core.HeightMap) -> tuple[tuple[Any, Any], npt.NDArray[Any], float]:
-    """Return the wavenumbers [rad/m], the transform of a map in a window, and its mean square."""
+def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
+    """Return gradient and Laplacian of a map times a window W, and the mean of W².
+
+    Along an axis that is not periodic W is 1 - cos, halved; else it is 1. The products follow from
+    Fourier derivatives of periodic functions alone: W h' = (W h)' - W' h, and
+    W h'' = (W h)'' - 2 (W' h)' + W'' h.
+    """
     heights = surface.heights - surface.heights.mean()
-    waves = [
-        2 * np.pi * np.fft.fftfreq(count, step)
-        for count, step in zip(heights.shape, surface.spacing, strict=True)
+    shape, repeats = heights.shape, surface.periodic
+    axes = [
+        np.expand_dims(2 * np.pi * (np.arange(count) + 0.5) / count, 1 - axis)
+        for axis, count in enumerate(shape)
     ]
-    power = 1.0
-    for axis, count in enumerate(heights.shape):
-        if not surface.periodic[axis]:
-            window = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 2
-            heights = heights * np.expand_dims(window, 1 - axis)
-            power *= float(np.mean(window**2))
-    for axis in range(2):  # the highest wave of an even count has no direction
-        if heights.shape[axis] % 2 == 0:
-            waves[axis][heights.shape[axis] // 2] = 0.0
-    return (waves[0], waves[1]), np.fft.fft2(heights), power
+    ones = [np.ones_like(place) for place in axes]
+    window = [
+        one if so else 0.5 - 0.5 * np.cos(place)
+        for one, so, place in zip(ones, repeats, axes, strict=True)
+    ]
+    gradient, laplacian = [], np.zeros(shape)
+    for axis, (count, step) in enumerate(zip(shape, surface.spacing, strict=True)):
+        across, rate = window[1 - axis], 2 * np.pi / (count * step)
+        slope = 0 * ones[axis] if repeats[axis] else 0.5 * rate * np.sin(axes[axis])
+        bend = 0 * ones[axis] if repeats[axis] else 0.5 * rate**2 * np.cos(axes[axis])
+        waves = np.expand_dims(2 * np.pi * np.fft.rfftfreq(count, step), 1 - axis)
+
+        def derived(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
+            factors = (1j * waves) ** order
+            if order == 1 and field.shape[axis] % 2 == 0:
+                factors[(slice(None),) * axis + (-1,)] = 0.0  # the highest wave has no direction
+            found = np.fft.rfft(field, axis=axis) * factors
+            return np.asarray(np.fft.irfft(found, field.shape[axis], axis=axis))
+
+        weighted = window[axis] * heights
+        gradient.append(across * (derived(weighted, 1) - slope * heights))
+        curved = derived(weighted, 2) - 2 * derived(slope * heights, 1) + bend * heights
+        laplacian += across * curved
+    power = float(np.mean((window[0] * window[1]) ** 2))
+    return gradient[0], gradient[1], laplacian, power
 
 
 @dataclass(frozen=True)
@@ -219,15 +238,14 @@ def roughness(surface: core.HeightMap) -> Roughness:
     """
     heights = surface.heights - surface.heights.mean()
     sq = float(heights.std())
-    (waves_x, waves_y), transform, power = _transformed(surface)
-    laplacian = (waves_x[:, None] ** 2 + waves_y[None, :] ** 2) * np.abs(transform)
-    curvature = 0.5 * float(np.sqrt((laplacian**2).sum() / power)) / transform.size
+    _, _, laplacian, power = _derivatives(surface)
+    curvature = 0.5 * float(np.sqrt(np.mean(laplacian**2) / power))
     third, fourth = (float(np.mean(heights**n)) / sq**n if sq > 0 else 0.0 for n in (3, 4))
     return Roughness(
         sa=float(np.abs(heights).mean()),
         sq=sq,
         sp=float(heights.max()),
-        sv=float(-heights.min()),
+        sv=float(np.abs(heights.min())),
         ssk=third,
         sku=fourth,
         rms_slope=spectral_slope(surface),
@@ -475,9 +493,6 @@ def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
     ValueError
         If the grid is one of strips, or the shape cannot touch everywhere.
     """
-    with extra("files"):
-        pass
-
     if isinstance(solution, core.HeightMap):
         return _spectra({"surface": solution.heights}, _grid(solution), {})
     grid, report = solution.report.grid, solution.report
@@ -493,7 +508,8 @@ def _spectra(
     fields: dict[str, Array], grid: core.Grid, attributes: dict[str, Any]
 ) -> xarray.Dataset:
     """Return the spectra of heights on a grid."""
-    import xarray
+    with extra("files"):
+        import xarray
 
     found = {}
     for name, heights in fields.items():

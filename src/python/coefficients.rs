@@ -1,4 +1,4 @@
-//! Response of a body to loads on its surface, and planned convolutions: what `nacre._compliance` is around.
+//! Response of a body to loads on its surface, and planned convolutions: what `nacre.contact.compliance` is around.
 
 use std::sync::Arc;
 

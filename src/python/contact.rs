@@ -13,7 +13,9 @@ use super::grid::PyGrid;
 use super::shapes::{Shape, shape};
 use super::solved::{PySolved, ReportParts, hardness, report_parts};
 use crate::compliance::response::Body;
-use crate::contact::{Case, Contact, Motion, Options, Report, Setup, Solution, solve_with};
+use crate::contact::{
+    Case, Contact, Motion, Options, Report, SMALLEST_GRID, Setup, Solution, solve_with,
+};
 use crate::error::Result;
 use crate::model::grid::Grid;
 
@@ -185,7 +187,7 @@ fn options(given: &Given) -> PyResult<Options> {
         initial: None,
         hardness: given.get("hardness")?.map(|given| hardness(&given)).transpose()?,
         indentation: None,
-        cells: None,
+        cells: given.count("max_cells", SMALLEST_GRID)?,
     })
 }
 

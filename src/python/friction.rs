@@ -15,7 +15,7 @@ use super::data::{read, text};
 use super::shapes::Shape;
 use super::solved::PySolved;
 use crate::compliance::response::Body;
-use crate::contact::{Contact, Motion, Options, Solution, choose_grid};
+use crate::contact::{Contact, Motion, Options, SMALLEST_GRID, Solution, choose_grid};
 use crate::friction::{
     Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Rolling,
     RollingDirection, Step, TangentialMotion,
@@ -310,6 +310,7 @@ fn planned(
     last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
     let (body, setup, grid) = planning(given)?;
+    let cells = given.count("max_cells", SMALLEST_GRID)?;
     let grid = grid.or_else(|| last.map(|last| *last.grid()));
     if motion.is_none() && last.is_none() {
         let said = "load or approach must be given, in the call or in the first step";
@@ -320,7 +321,8 @@ fn planned(
         let grid = match grid {
             Some(grid) => grid,
             None => {
-                let (options, ask) = (Options::default(), &mut |_: &_| caller.ask(|| ()));
+                let (options, ask) =
+                    (Options { cells, ..Options::default() }, &mut |_: &_| caller.ask(|| ()));
                 choose_grid(&shape, &body, &setup, &motion, options.watched(ask))?
             }
         };

@@ -1,4 +1,4 @@
-//! Stress below the surface: evaluated, summarised and planned for `nacre.stresses`.
+//! Stress below the surface: evaluated, summarised and planned for `nacre.contact.stresses`.
 
 use std::sync::Arc;
 

@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from importlib.util import find_spec
-from threading import Event, Thread
+from threading import Event, Thread, current_thread, main_thread
 from typing import Any
 
 from nacre._tools.extras import extra
 
+_shown: list[str] = []
+"""Work of which a bar may be there."""
 SOON = 2.0
 """Time after which a bar shows that work goes on [s]."""
 EVERY = 60.0
@@ -59,11 +61,12 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
 def lasting(what: str, given: Any = None) -> Iterator[Any]:
     """Yield what is called with the progress: `given`, or a bar in a terminal or a notebook.
 
-    It is called with the share that is done or with a text. Work of less than two seconds shows
-    nothing; nor is anything shown without rich.
+    It is called with the share that is done or with a text. Nothing is shown in the first two
+    seconds, inside of other work that is shown, in threads, or without rich.
     """
     watched = "ipykernel" in sys.modules or sys.stderr.isatty()
-    if given is not None or not watched or find_spec("rich") is None:
+    outermost = not _shown and current_thread() is main_thread()
+    if given is not None or not (watched and outermost) or find_spec("rich") is None:
         yield given
         return
     from rich.console import Console
@@ -81,9 +84,11 @@ def lasting(what: str, given: Any = None) -> Iterator[Any]:
         if time.monotonic() - start > SOON:
             bar.start()
 
+    _shown.append(what)
     try:
         yield tell
     finally:
+        _shown.remove(what)
         bar.stop()
 
 

@@ -128,6 +128,8 @@ class System:
             "m²": (length**2, f"{metre}²"),
             "N/m": (force / length, f"{newton}/{metre}"),
             "N m": (force * length, f"{newton} {metre}"),
+            "m/N": (length / force, f"{metre}/{newton}"),
+            "m/s": (length, f"{metre}/s"),
             "1/m": (1 / length, f"1/{metre}"),
             "m/Pa": (length / stress, f"{metre}/{pascal}"),
         }

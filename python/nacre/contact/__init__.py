@@ -32,6 +32,7 @@ def solve(
     counterbody: Body | None = None,
     *,
     grid: core.Grid | None = None,
+    max_cells: int | None = None,
     threads: int | None = None,
     load: float | None = None,
     approach: float | None = None,
@@ -66,6 +67,10 @@ def solve(
     grid : Grid, optional
         Cells of the pressure; by default those of an `initial` solution whose surfaces have a
         permanent indentation. An endless shape, such as a cylinder, needs a grid.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
     threads : int, optional
         Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     load : float, optional
@@ -148,6 +153,7 @@ def slide(
     counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
+    max_cells: int | None = None,
     threads: int | None = None,
     steps: Iterable[Mapping[str, Any]] | None = None,
     load: float | None = None,
@@ -181,6 +187,10 @@ def slide(
         Body that carries the shape and moves over the body; rigid where there is none.
     grid : Grid, optional
         Cells of pressure and traction; by default that of `solve` for the largest load.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
     threads : int, optional
         Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     steps : iterable of mapping, optional
@@ -259,6 +269,7 @@ def roll(
     counterbody: Layers | None = None,
     *,
     grid: core.Grid | None = None,
+    max_cells: int | None = None,
     threads: int | None = None,
     load: float | None = None,
     approach: float | None = None,
@@ -292,6 +303,10 @@ def roll(
         Body that carries the shape; rigid where there is none.
     grid : Grid, optional
         Cells of pressure and traction; by default that of `solve`.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
     threads : int, optional
         Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
     load, approach, eccentricity, moment, tilt : optional
@@ -698,6 +713,7 @@ class Contact:
 
 def _solved(given: dict[str, Any], plan: core.Plan | None = None) -> Solution:
     """Return the solution of what a user asked for with these arguments."""
+    _check_cells(given)
     initial, progress = given["initial"], given["progress"]
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
@@ -718,6 +734,12 @@ def _finished(solved: core.Solved, shape: core.Shape, check: bool, stacklevel: i
         error.solution = solution
         raise error
     return solution
+
+
+def _check_cells(given: Mapping[str, Any]) -> None:
+    """Raise a `ValueError` if a grid is given, and how many cells one may have that is chosen."""
+    if given.get("max_cells") is not None and given["grid"] is not None:
+        raise ValueError("max_cells must not be given beside grid: it limits a grid that is chosen")
 
 
 def _mappings(
@@ -756,6 +778,7 @@ def _steps(
     Steps are solved one after another, and warn of what they find; an exception carries those that
     are finished.
     """
+    _check_cells(given)
     progress = given["progress"]
     if callable(progress):
         given["progress"] = lambda number, text: progress(number, FrictionReport._made(text))

@@ -393,12 +393,16 @@ class History(list[FrictionSolution]):
         """
         state = self.to_dict()
         state["steps"] = [dict(step) for step in state["steps"]]
-        arrays = [files.taken(step, self._QUANTITIES) for step in state["steps"]]
-        fields = {
-            row.name: [step[row.name] for step in arrays]
-            for row in WITH_FRICTION
-            if row.name in arrays[0]
-        }
+        arrays = [files.taken(step, WITH_FRICTION) for step in state["steps"]]
+        fields: dict[str, Any] = {}
+        for row in WITH_FRICTION:
+            found = [step.get(row.name) for step in arrays]
+            if row.follows or all(values is not None for values in found):
+                fields[row.name] = [row.of(step) for step in self]
+            else:  # of some steps alone, as a coefficient of friction that becomes a field
+                for step, values in zip(state["steps"], found, strict=True):
+                    if values is not None:
+                        row.put(step, values.tolist())
         return self._dataset(fields, state)
 
     def _dataset(self, fields: dict[str, Any], state: dict[str, Any]) -> xarray.Dataset:
@@ -407,16 +411,20 @@ class History(list[FrictionSolution]):
         columns: dict[str, Any] = {}
         for row in WITH_FRICTION:
             if row.name in fields:
-                columns[row.name] = ("step", *row.dims), np.array(fields[row.name])
-            elif row.dims in ((), AXIS) and (row.of(steps[0])) is not None:
+                values = np.array(fields[row.name])
+                plain = values.astype(np.int8) if values.dtype == bool else values
+                columns[row.name] = ("step", *row.dims), plain
+            elif row.dims in ((), AXIS) and row.of(steps[0]) is not None:
                 dims = ("step", "component") if row.dims else ("step",)
                 columns[row.name] = dims, np.array([row.of(step) for step in steps])
+        columns["termination"] = "step", [step.report.termination for step in steps]
         coordinates: dict[str, Any] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
         if fields:
             coordinates |= {"x": steps[0].x, "y": steps[0].y}
         units = ((row, steps[0]._si(row)) for row in WITH_FRICTION)
         title = "history of a contact with friction"
-        return files.dataset(title, units, columns, coordinates, state)
+        rolls = {} if steps[0].direction is None else {"direction": steps[0].direction}
+        return files.dataset(title, units, columns, coordinates, state, **rolls)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the force of sliding as a function of the shift, or the last step of rolling.
@@ -499,8 +507,13 @@ class History(list[FrictionSolution]):
             for row, names in zip(kept, axes, strict=True)
             for axis in names
         ]
-        rows = [np.hstack([np.ravel(row.of(step)) for row in kept]).tolist() for step in self]
-        return [["step", *heads], *([k, *row] for k, row in enumerate(rows))]
+        rows = [
+            [k, *np.hstack([np.ravel(row.of(step)) for row in kept]).tolist()]
+            for k, step in enumerate(self)
+        ]
+        ends = (step.report.termination for step in self)
+        ended = [[*row, end] for row, end in zip(rows, ends, strict=True)]
+        return [["step", *heads, "termination"], *ended]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the named states of the steps, as plain data; see `FrictionSolution.to_dict`."""
@@ -545,11 +558,28 @@ class History(list[FrictionSolution]):
         last = f", the last {self[-1]!r}" if self else ""
         return f"<History of {len(self)} steps{last}>"
 
+    def __getitem__(self, place: Any) -> Any:
+        """Return a step, or the history of some of them."""
+        found = super().__getitem__(place)
+        return type(self)(found) if isinstance(place, slice) else found
+
+    def __add__(self, other: Any) -> Any:
+        """Return the history of these steps and others."""
+        return type(self)([*self, *other])
+
+    def copy(self) -> Self:
+        """Return a history of the same steps."""
+        return type(self)(self)
+
     def __str__(self) -> str:
         """Return a table of the steps."""
+        if not self:
+            return "a history of 0 steps"
         return printable("\n".join(display.aligned(display.history(self), ">")))
 
     def _repr_html_(self) -> str:
+        if not self:
+            return display.markup([["a history of 0 steps"]])
         head, *rows = display.history(self)
         picture = display.drawn(self.plot)
         return display.markup(rows, picture=picture, head=head, widest=display.WIDE)

@@ -425,10 +425,11 @@ class StressSummary(Result):
             ``row``; NaN where there is none.
         """
         heads, *rows = self._rows()
-        columns = dict(zip(heads, zip(*rows, strict=True), strict=True))
-        variables = {name: ("row", list(column)) for name, column in columns.items()}
+        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
         table = [(row, row.unit) for row in EXTREMES]
-        return files.dataset("extremes of the stress", table, variables, {}, self.to_dict())
+        said = {name: str(value) for name, value in self._comments().items()}
+        title = "extremes of the stress"
+        return files.dataset(title, table, variables, {}, self.to_dict(), **said)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a file, whole or not at all.
@@ -460,7 +461,12 @@ class StressSummary(Result):
         ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
         True
         """
-        return files.save(path, files.tabular(self, self._rows()))
+        return files.save(path, files.tabular(self, self._rows(), **self._comments()))
+
+    def _comments(self) -> dict[str, Any]:
+        """Return what stands beside the table."""
+        warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
+        return {"finished": self.finished, **warnings}
 
     def _rows(self) -> list[tuple[Any, ...]]:
         """Return the rows of the table, the heading first."""
@@ -580,7 +586,7 @@ class StressPlan:
         Parameters
         ----------
         yield_stress, strength, friction, direction, residual, progress : optional
-            As in `Solution.stress_summary`.
+            As in `Solution.stress_summary`, with its bar.
 
         Returns
         -------

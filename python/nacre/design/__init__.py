@@ -262,8 +262,9 @@ def force_table(
     table = sweep(case, parameters, outputs=outputs, **study)
     line = isinstance(asked.get("grid"), core.Grid) and asked["grid"].is_line
     names = ["load", "moment x", "moment y"], ["approach", "tilt x", "tilt y"]
-    table = table.rename(stiffness_0="row", stiffness_1="column")
-    table = table.assign_coords(row=names[0], column=names[1])
+    if "stiffness_0" in table.dims:  # else all cases failed
+        table = table.rename(stiffness_0="row", stiffness_1="column")
+        table = table.assign_coords(row=names[0], column=names[1])
     per = symbol("Pa" if line else "N/m")
     table["stiffness"].attrs["units"] = f"{per} times {symbol('m')} for each moment and each tilt"
     table["approach"].attrs["units"] = symbol("m")

@@ -157,6 +157,7 @@ class Problem:
         planned = {name: made.pop(name) for name in names if name in made}
         plan = next((p for p, given in self.plans.values() if given == planned), None)
         plan = plan or Contact(**planned)
+        made.pop("max_cells", None)  # of the grid, which is chosen by now
         self.plans[k] = plan, planned
         return plan.solve(made.pop("shape"), **({"initial": last} | made))
 

@@ -77,6 +77,8 @@ def checked(solutions: object) -> list[FrictionSolution]:
         raise ValueError(
             "solutions must all slide or all roll, in line contact or not, got some of each"
         )
+    if len({(s.grid.shape, s.grid.size, s.grid.center) for s in found}) > 1:
+        raise ValueError("solutions must be on one grid, got some on others")
     return found
 
 

@@ -251,8 +251,8 @@ def history(steps: Sequence[FrictionSolution]) -> list[list[str]]:
         motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
         said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
         forces = [written(part, force) for part in shown(step.force)]
-        lost = written(step.dissipated, energy(line, rolls))
-        rows.append([str(number), *forces, *said, lost, step.report.termination])
+        ended = [_dissipated(step), step.report.termination]
+        rows.append([str(number), *forces, *said, *ended])
     return rows
 
 
@@ -291,6 +291,8 @@ def stresses_markup(summary: StressSummary) -> str:
 
 def _share(error: float, value: float) -> str:
     """Return an error in per cent of a value."""
+    if error == 0:
+        return ""
     if error >= abs(value):
         return "> 100 %"
     percent = 100 * error / abs(value)

@@ -115,11 +115,13 @@ def writers(result: Any, draw: Callable[[], Any]) -> dict[str, Callable[[Path], 
     }
 
 
-def tabular(result: Any, rows: Iterable[Iterable[Any]]) -> dict[str, Callable[[Path], object]]:
+def tabular(
+    result: Any, rows: Iterable[Iterable[Any]], **comments: Any
+) -> dict[str, Callable[[Path], object]]:
     """Return the writers of a result whose tables have these rows, by their endings."""
     return {
         ".nc": lambda path: write_dataset(result.to_xarray(), path),
-        ".csv": lambda path: write_rows(path, rows, source=SOURCE),
+        ".csv": lambda path: write_rows(path, rows, source=SOURCE, **comments),
     }
 
 
@@ -183,7 +185,7 @@ def load(path: AnyPath) -> Any:
     try:
         return _restored(*read(path, ARRAYS))
     except ValueError as error:
-        raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
+        raise ValueError(f"{str(path)!r} must be a result that nacre saved: {error}") from error
 
 
 def _restored(text: str, arrays: Mapping[str, Array]) -> Any:

@@ -126,7 +126,9 @@ FRICTION = (
     Quantity("convolutions", "convolutions of the solve", path="report.convolutions"),
     Quantity("traction", "traction on the body", "Pa", dims=VECTOR),
     Quantity("displacement", "displacement of the body less counterbody", "m", dims=VECTOR),
-    Quantity("slip", "slip of the counterbody", "m", dims=VECTOR, rolling=("", "")),
+    Quantity(
+        "slip", "slip in the step; over the way in rolling", "m", None, VECTOR, rolling=("", "")
+    ),
     Quantity("stick", "whether a cell sticks", dims=CELLS, follows=True),
     Quantity("friction", "coefficient of friction", dims=CELLS),
 )

@@ -75,7 +75,7 @@ def write_cells(result: Any, path: Path) -> None:
         "cells": "{} x {}, y varies fastest".format(*grid.shape),
         f"spacing [{symbol('m')}]": "{} {}".format(*grid.spacing),
         **{headed(row, result): _plain(value) for row, value in numbers(result)},
-        "termination": result.report.termination,
+        **{name: said for name, said in result._attributes().items() if name != "warnings"},
         **{f"warning {k}": text for k, text in enumerate(result._warnings, start=1)},
     }
     _write(result, path, {"": (slice(None), slice(None))}, **comments)

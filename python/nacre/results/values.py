@@ -93,6 +93,8 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return int(value)
         if isinstance(value, float | np.floating):
             return float(value)
+        if type(value) is RESULTS.get("History"):
+            return of(value.to_dict())
         if isinstance(value, tuple | list):
             return [of(item) for item in value]
         if isinstance(value, Mapping):

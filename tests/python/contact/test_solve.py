@@ -115,6 +115,29 @@ def test_a_grid_is_chosen(shape: nacre.types.Shape, load: float) -> None:
             assert 0.2 < margin / widths[axis] < 0.35
 
 
+def test_the_cells_of_a_chosen_grid_are_limited_at_a_stated_cost() -> None:
+    roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+    free = nacre.solve(roller, STEEL, load=1e3)
+    assert free.pressure.size > 16384
+    capped = nacre.solve(roller, STEEL, load=1e3, max_cells=16384)
+    assert capped.pressure.size <= 16384
+    found, fine = (s.report.discretisation for s in (capped, free))
+    assert found is not None
+    assert fine is not None
+    cost, least = (estimate["peak_pressure"] for estimate in (found, fine))
+    assert cost is not None
+    assert least is not None
+    assert cost > least
+    assert abs(capped.peak_pressure - free.peak_pressure) < 3 * cost
+    # A contact of friction is on the same grid.
+    slid = nacre.slide(roller, STEEL, STEEL, load=1e3, friction=0.1, max_cells=16384)
+    assert slid.pressure.size <= 16384
+    with pytest.raises(ValueError, match="max_cells must be an integer of at least 4096, got 100"):
+        nacre.solve(roller, STEEL, load=1e3, max_cells=100)
+    with pytest.raises(ValueError, match="max_cells must not be given beside grid"):
+        nacre.solve(BALL, STEEL, load=1.0, grid=GRID, max_cells=4096)
+
+
 def test_a_punch_has_a_grid_that_holds_it() -> None:
     with pytest.warns(nacre.NacreWarning, match="sharp edge"):
         solution = nacre.solve(nacre.FlatPunch(1e-3), COATED, load=LOAD)

@@ -335,7 +335,7 @@ class StopError(Exception):
 
 
 @pytest.mark.parametrize("planned", [False, True])
-def test_progress_stops_and_raises(solution: nacre.Solution, planned: bool) -> None:
+def test_progress_stops_and_raises(solution: nacre.Solution, planned: bool, tmp_path: Path) -> None:
     plan: Any = solution.stress_plan()
     stress = plan.stress if planned else solution.stress
     summary = plan.summary if planned else solution.stress_summary
@@ -347,6 +347,10 @@ def test_progress_stops_and_raises(solution: nacre.Solution, planned: bool) -> N
     assert stopped.xx.shape == (1, 41, 31)
     assert list(stopped.z) == [0.0]
     assert not summary(progress=lambda part: part < 0.1).finished
+    nothing = summary(progress=lambda _: False)
+    assert nacre.load(nothing.save(tmp_path / "a.nc")) == nothing
+    assert nothing.to_xarray().attrs["finished"] == "False"
+    assert "# finished: False" in nothing.save(tmp_path / "a.csv").read_text()
 
     def fail(part: float) -> None:
         raise StopError

@@ -439,7 +439,7 @@ def test_a_damaged_file_is_refused_by_its_name(message: str, tmp_path: Path) -> 
         for key, value in changes.pop("state").items():
             state[key] = state[key] | value if isinstance(value, dict) else value
         changes["nacre_solution"] = json.dumps(state)
-    with pytest.raises(ValueError, match=f"changed.nc' must be a solution .*{message}"):
+    with pytest.raises(ValueError, match=f"changed.nc' must be a result .*{message}"):
         nacre.load(rewritten(path, **changes))
 
 
@@ -449,7 +449,7 @@ def test_what_is_no_solution_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("text")
     xarray.Dataset({"a": 1.0}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     for name in ("text.nc", "other.nc"):
-        with pytest.raises(ValueError, match="must be a solution that nacre saved"):
+        with pytest.raises(ValueError, match="must be a result that nacre saved"):
             nacre.load(tmp_path / name)
 
 

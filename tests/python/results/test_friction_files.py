@@ -15,6 +15,7 @@ import pytest
 import nacre
 import results
 from bodies import BALL, HELD, STEEL
+from nacre.results import values
 from results import CONTACT, solved
 
 ROLLED = ("rolled", "line rolled")
@@ -121,6 +122,28 @@ def test_a_history_is_a_table_and_a_picture(tmp_path: Path) -> None:
     for word in (word for line in table for word in re.split(r"\s{2,}", line.strip())):
         assert word in history._repr_html_()
     assert repr(history).startswith("<History of 3 steps, the last <FrictionSolution on")
+
+
+def test_a_history_keeps_what_changes_its_kind_and_its_parts_are_histories(tmp_path: Path) -> None:
+    cells = np.full(CONTACT.grid.shape, 0.3)
+    for pair in ((0.3, cells), (cells, 0.3)):
+        steps: Any = [{"force": (0.5, None), "friction": friction} for friction in pair]
+        history = CONTACT.slide(BALL, steps=steps, load=10.0)
+        assert nacre.load(history.save(tmp_path / "a.nc")) == history
+    for part in (history[:1], history + history[1:], history.copy()):
+        assert type(part) is nacre.types.History
+        assert nacre.load(part.save(tmp_path / "a.nc")) == part
+    assert values.decode(values.encode(history)) == history
+    empty = history[:0]
+    assert str(empty) == "a history of 0 steps"
+    assert "0 steps" in empty._repr_html_()
+    assert nacre.types.History.from_dict(empty.to_dict()) == empty
+    with pytest.raises(ValueError, match="must hold at least one solution"):
+        empty.save(tmp_path / "b.nc")
+    other = nacre.slide(BALL, STEEL, STEEL, **HELD, force=(0.5, None))
+    with pytest.raises(ValueError, match="must be on one grid"):
+        nacre.types.History([*history, other]).to_xarray()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc"]
 
 
 def test_the_load_holds_where_a_history_goes_on() -> None:

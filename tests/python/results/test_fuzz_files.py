@@ -227,7 +227,7 @@ def test_arrays_are_read_from_the_file_alone_and_as_large_as_it(name: str, tmp_p
         del file["pressure"]
         bombs()[name](file, tmp_path)
     start = time.process_time()
-    with pytest.raises(ValueError, match="must be a solution that nacre saved: it is no result"):
+    with pytest.raises(ValueError, match="must be a result that nacre saved: it is no result"):
         nacre.load(sealed(inner.read_bytes(), tmp_path / "b.nc"))
     assert time.process_time() - start < SECONDS
 
