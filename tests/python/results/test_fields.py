@@ -31,7 +31,14 @@ MADE: dict[str, list[dict[str, Any]]] = {
     "LogarithmicProfile": [
         {"amplitude": 1e-6, "length": 10e-3, "flat_length": 2e-3, "end_factor": 0.9},
     ],
-    "SampledProfile": [{"x": (-1e-3, 0.0, 1e-3), "drop": (1e-6, 0.0, 2e-6)}],
+    "SampledProfile": [
+        {"x": (-1e-3, 0.0, 1e-3), "drop": (1e-6, 0.0, 2e-6), "smooth": False},
+        {
+            "x": (-1e-3, -5e-4, 5e-4, 1e-3),
+            "drop": (1e-6, 0.0, 0.0, 2e-6),
+            **{"corners": (5e-4,), "smoothing": 2e-4},
+        },
+    ],
     "Sphere": [{"radius": 5e-3, "counter_radius_x": 6e-2, "counter_radius_y": 7e-2}],
     "Paraboloid": [
         {
