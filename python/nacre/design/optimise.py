@@ -258,10 +258,8 @@ def optimise(
             termination = "solve limit"
     point = problem.best()
     table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    reached = [point.outputs[:, 1 + k] for k in range(len(problem.limits))]
-    limits = [
-        (*pair, tuple(map(float, r))) for pair, r in zip(problem.limits, reached, strict=True)
-    ]
+    reached = point.outputs[:, 1:].T.tolist()
+    limits = [(*pair, tuple(r)) for pair, r in zip(problem.limits, reached, strict=True)]
     slopes = dict(zip(problem.named(x), point.slope, strict=True))
     told = [line for solution in point.solutions for line in solution.report.warnings]
     told = list(dict.fromkeys([*told, *point.warnings]))
