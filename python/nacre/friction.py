@@ -15,8 +15,9 @@ from nacre._tools.progress import lasting
 from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
-from nacre.results import display
-from nacre.results.base import Result, checked
+from nacre.results.base import checked
+from nacre.results.listed import Listed
+from nacre.results.quantities import CREEP
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +26,7 @@ __all__ = ["creep_coefficients", "creep_curve", "history"]
 
 
 @dataclass(frozen=True, repr=False)
-class CreepCoefficients(Result):
+class CreepCoefficients(Listed):
     """Kalker's linear coefficients of an elliptic contact, with their estimated errors.
 
     Examples
@@ -35,6 +36,10 @@ class CreepCoefficients(Result):
     >>> round(creep.c11, 1), round(creep.c22, 1), round(creep.c23, 1)
     (4.1, 3.7, 1.5)
     """
+
+    _COMPILED = True
+    _QUANTITIES = CREEP
+    _TITLE = "Kalker's coefficients"
 
     c11: float
     """C11, of the longitudinal creepage: ``F_x = a b G C11 xi``."""
@@ -55,13 +60,6 @@ class CreepCoefficients(Result):
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
         return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
-
-    def __repr__(self) -> str:
-        """Return the coefficients with their errors."""
-        return f"<CreepCoefficients: {', '.join(' '.join(row) for row in self._rows())}>"
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows())
 
 
 def creep_coefficients(

@@ -48,6 +48,8 @@ class FrictionReport(Result):
     ('converged', True, False)
     """
 
+    _COMPILED = True
+
     termination: Literal["running", "converged", "iteration limit", "stopped"]
     """How the iteration ended: "converged", "iteration limit" or "stopped"; "running" in progress.
     """

@@ -257,6 +257,7 @@ def _short(value: float, digits: int) -> str:
 class _Extremes(Result):
     """Peaks, and their errors by name; in plain data an error stands with its peak."""
 
+    _COMPILED = True
     _TOLD = ("uncertainty",)
     _PEAKS: ClassVar[tuple[str, ...]]
 
@@ -395,6 +396,7 @@ class StressSummary(Result):
     True
     """
 
+    _COMPILED = True
     _TOLD = ("warnings",)
 
     layers: list[LayerStress]

@@ -1,7 +1,8 @@
 """What all results have in common: plain data, equality, pickles.
 
-A result is a frozen dataclass. The compiled module hands it over as JSON text, with bodies, grids
-and arrays apart, and checks it again where it is read from a file.
+A result is a frozen dataclass. What the compiled module computes it hands over as JSON text, with
+bodies, grids and arrays apart, and checks again where it is read from a file. The fields of other
+results are checked by their annotations.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import dataclasses
 import json
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from types import NoneType
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -106,11 +108,31 @@ def as_text(kind: str, state: dict[str, Any], *, infinite: bool = False) -> str:
     return "{" + ", ".join(fields) + "}"
 
 
+def _fitted(kind: Any, value: Any) -> Any:
+    """Return plain data as a value of the type of a field, or raise a `TypeError`."""
+    made, parts = get_origin(kind), get_args(kind)
+    if NoneType in parts and made is not tuple:  # a type or None
+        return None if value is None else _fitted(parts[0], value)
+    if made is Literal and any(same(value, word) for word in parts):
+        return value
+    if made is tuple and isinstance(value, list | tuple):
+        kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
+        if len(kinds) == len(value):
+            return tuple(map(_fitted, kinds, value))
+    if kind is float and type(value) is int:
+        return float(value)
+    if kind in (bool, int, float, str) and type(value) is kind:
+        return value
+    raise TypeError(f"{value!r} is no {kind}")
+
+
 class Result:
     """Base of results: each is a dataclass whose fields are its state."""
 
     _QUANTITIES: ClassVar[tuple[Quantity, ...]] = ()
     """Rows of the table of quantities that the result has."""
+    _COMPILED: ClassVar[bool] = False
+    """Whether the compiled module makes the result, and checks its state."""
     _TOLD: ClassVar[tuple[str, ...]] = ()
     """Fields that are no part of the state, but follow from it."""
     _LATER: ClassVar[tuple[str, ...]] = ()
@@ -172,8 +194,18 @@ class Result:
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        """Return the result with these fields, which the compiled module checks."""
-        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True)))
+        """Return the result with these fields, checked."""
+        name = cls.__name__
+        if cls._COMPILED:
+            return cls._made(core.checked(name, as_text(name, state, infinite=True)))
+        kinds, fields = get_type_hints(cls), {}
+        for key, value in state.items():
+            try:
+                fields[key] = _fitted(kinds[key], value)
+            except TypeError as error:
+                said = f'{name}: the value of the key "{key}" does not fit: {value!r}'
+                raise ValueError(said) from error
+        return cls(**fields)
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""

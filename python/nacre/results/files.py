@@ -157,7 +157,7 @@ def load(path: AnyPath) -> Any:
     -------
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
-        `StressSummary`, an `IndentSolution` or a `Fit` of `nacre.indent`.
+        `StressSummary`, `CreepCoefficients`, an `IndentSolution` or a `Fit` of `nacre.indent`.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def _restored(text: str, arrays: Mapping[str, Array]) -> Any:
     check_format(state.get("format"), state.get("nacre"), "it")
     kind = result_class(state.get("kind", "Solution"))
     with refusing(kind.__name__):
-        several = len(state["steps"]) if "steps" in state else 0
+        several = isinstance(state.get("steps"), list) and bool(state["steps"])
         for row in kind._QUANTITIES:
             if row.name in arrays and several:
                 for step, values in zip(state["steps"], arrays[row.name], strict=True):

@@ -134,6 +134,17 @@ FRICTION = (
 )
 """Quantities of a contact with friction, numbers first, in the order in which they are printed."""
 
+CREEP = (
+    Quantity("c11", "coefficient of the longitudinal creepage"),
+    Quantity("c22", "coefficient of the lateral creepage"),
+    Quantity("c23", "coefficient of the spin in the lateral force"),
+    Quantity("c33", "coefficient of the spin in the torque"),
+    Quantity("errors", "estimated errors of c11, c22, c23 and c33", dims=("coefficient",)),
+    Quantity("shear", "shear modulus", "Pa"),
+    Quantity("semi_axes", "semi-axes along and across rolling", "m", dims=("semi_axis",)),
+)
+"""Kalker's coefficients."""
+
 NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
 NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
 """Quantities of the normal contact that one with friction has too, and their names there."""

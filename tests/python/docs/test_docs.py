@@ -13,9 +13,14 @@ import pytest
 import nacre
 import nacre.design
 import nacre.plot
+import nacre.rough
 from support import ROOT, command, printed, python
 
 DOCS = ROOT / "docs"
+MODULES = (
+    *(nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot, nacre.rough),
+    nacre.types,
+)
 PAGES = [DOCS / "start.md", *sorted((DOCS / "howto").glob("*.md"))]
 FENCE = re.compile(
     r"^```(?:\{code-block\} )?(\w+)\n(?::caption: (\S+)\n\n)?(.*?)^```$", re.MULTILINE | re.DOTALL
@@ -103,8 +108,9 @@ def test_every_public_name_is_in_the_reference() -> None:
     listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"
-        for module in (nacre.design, nacre.hertz, nacre.indent, nacre.plot, nacre.types)
+        for module in MODULES
         for name in module.__all__
+        if name not in nacre.__all__
     }
     assert public - listed == set()
 

@@ -190,6 +190,22 @@ def test_every_row_of_the_text_has_its_own_name_and_is_in_the_html(kind: str) ->
 
 
 def test_coefficients_print_their_errors() -> None:
-    assert repr(nacre.creep_coefficients(STEEL, STEEL, (1e-3, 1e-3))).startswith(
-        "<CreepCoefficients: C11 4.29"
-    )
+    creep = nacre.creep_coefficients(STEEL, STEEL, (1e-3, 1e-3))
+    assert repr(creep).startswith("<CreepCoefficients: C11 4.29")
+    assert [line.split()[0] for line in str(creep).splitlines()] == ["C11", "C22", "C23", "C33"]
+
+
+def test_listed_numbers_have_names_and_units_everywhere(tmp_path: Path) -> None:
+    tried = solved("tried")
+    assert str(tried) == "force  (1 N, -2 N)\nshift  333.3 pm"
+    assert repr(tried) == "<Tried: force (1 N, -2 N), shift 333.3 pm>"
+    assert ">force</td>" in tried._repr_html_()
+    source, head, row = tried.save(tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    assert source == f"# source: nacre {nacre.__version__}"
+    assert head == "force x [N],force y [N],shift [m]"
+    assert row == f"1.0,-2.0,{1e-9 / 3}"
+    dataset = tried.to_xarray()
+    assert (dataset.force.dims, dataset.force.units) == (("axis",), "N")
+    assert dataset["shift"].long_name == "a length"
+    creep = solved("creep coefficients").to_xarray()
+    assert (creep.shear.units, creep.c11.units, creep.errors.size) == ("Pa", "1", 4)

@@ -30,6 +30,7 @@ RESULTS: dict[str, Any] = {
     "InterfaceStress": SUMMARY.interfaces[0],
     **{kind: solved(kind) for kind in results.FRICTION},
     "FrictionReport": solved("slid").report,
+    **{kind: solved(kind) for kind in results.LISTED},
 }
 
 every_result = pytest.mark.parametrize("kind", RESULTS)
@@ -94,6 +95,18 @@ def test_a_state_that_is_wrong_is_refused(kind: str) -> None:
         restore(other)
     with pytest.raises(ValueError, match="must name a result of nacre, got 'Sandwich'"):
         values.decode(other)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        *(("force", [1.0]), ("force", "ab"), ("shift", True), ("shift", None), ("steps", 1.0)),
+        *(("axis", "z"), ("names", [1]), ("is_line", 0)),
+    ],
+)
+def test_a_field_of_another_type_is_refused(key: str, value: Any) -> None:
+    with pytest.raises(ValueError, match=rf'Tried: the value of the key "{key}" does not fit'):
+        results.Tried.from_dict(solved("tried").to_dict() | {key: value})
 
 
 @pytest.mark.parametrize("data", [None, [], 3, "state"])
