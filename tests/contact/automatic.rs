@@ -258,7 +258,7 @@ fn simple_contacts_keep_their_grids() -> Result<()> {
 /// are above 1 % of the peak, a warning says so.
 #[test]
 fn a_cap_on_the_cells_is_kept() -> Result<()> {
-    let body = Body::from(HalfSpace::from(coated(steel()?, 2.0, 40e-6)?));
+    let body = Body::from(coated(steel()?, 2.0, 40e-6)?);
     let (roller, motion) = (Roller::new(5e-3, 1e-3, 1.0)?, Motion::load(20.0));
     let solve = |cells| {
         let options = Options { cells, ..Options::default() };
