@@ -63,12 +63,9 @@ impl Misfit {
 pub(super) type ConvolutionWatch<'a> = dyn FnMut(usize, Misfit) -> ControlFlow<()> + 'a;
 
 /// Inner residuals relative to their start: at most the first; the second times the misfit; and no less than the third
-/// of what is still missing to the tolerance. Chosen by trial among half a dozen: 0.03 and 0.3 for the first take up to a
-/// quarter more convolutions, as 3 for the second does.
-const INNER: [f64; 3] = [0.1, 30.0, 0.2];
-
-/// The second of [`INNER`] in rolling, where the first sets are far off: 30 takes up to a quarter more convolutions.
-const INNER_ROLLING: f64 = 300.0;
+/// of what is still missing to the tolerance. Chosen by trial: with 0.03 or 0.3 for the first, or 30 for the second, contacts
+/// of 256² cells take up to a quarter more convolutions, with 3 for the second up to half as many again.
+const INNER: [f64; 3] = [0.1, 300.0, 0.2];
 
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
@@ -199,10 +196,7 @@ impl TractionProblem<'_> {
             residual.iter_mut().for_each(|r| *r = -*r);
             let pairs = self.columns.iter().zip(&self.forces);
             let missing: Vec<f64> = pairs.map(|(column, force)| force - dot(column, &q)).collect();
-            let [most, mut factor, least] = INNER;
-            if self.operator.rolling.is_some() {
-                factor = INNER_ROLLING;
-            }
+            let [most, factor, least] = INNER;
             let sticks = !states.iter().any(|state| matches!(state, CellState::Slip { .. }));
             let sought = if sticks && outer > 0 {
                 // Nothing slipped after a first solve: the problem is linear.
