@@ -7,9 +7,9 @@ use crate::contact::solution::warnings::Warning;
 use crate::contact::solution::{Progress, Solution};
 use crate::model::surface::Surface;
 
-/// The error of a solution, relative to the largest difference from those of alternative shapes. Chosen by trial: of the
-/// peaks of 22 crowned, logarithmic, chamfered and worn rollers with 11 to 201 stations, 99 % are within the error, and 97 %
-/// where steps and sharp edges are among them.
+/// The error of a solution, relative to the largest difference from those of alternative shapes. Chosen by trial: 147 peaks of
+/// 21 crowned, logarithmic, chamfered and worn rollers with 11 to 201 stations are all within the error, and 98 % of the
+/// peaks of 89 random rollers.
 const BEYOND: f64 = 2.0;
 
 /// Tolerance of solutions of which only the difference counts.
