@@ -72,7 +72,7 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 
 fuzz: $(WHEEL) $(DEV) ## random contacts, calls, files and indentations: CASES=1000 of each kind, more than ten thousand in all
 	NACRE_FUZZ=$(CASES) cargo test --test contacts fuzz
-	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/test_fuzz*.py
+	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/*/test_fuzz*.py
 
 # The other solvers are installed into a separate environment under target/peers.
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
@@ -86,7 +86,7 @@ torch: $(WHEEL) ## tests of nacre.torch, with PyTorch in an environment of its o
 	$(PYTHON) -m venv $(TARGET)/torch
 	$(TARGET)/torch/bin/python -m pip install --quiet "$$(echo $(TARGET)/wheels/*.whl)[torch]" 'pytest>=9'
 	$(TARGET)/torch/bin/python -m pip install --quiet --force-reinstall --no-deps $(TARGET)/wheels/*.whl
-	$(TARGET)/torch/bin/python -m pytest tests/python/test_functions.py
+	$(TARGET)/torch/bin/python -m pytest tests/python/design/test_functions.py
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)

@@ -66,6 +66,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("matplotlib", "drawings.scraper"),
     "abort_on_example_error": True,
     "capture_repr": (),
+    "image_srcset": ["3x"],  # some 1600 pixels, for sharp screens and for print
     "show_memory": False,
     "show_signature": False,
     "min_reported_time": 600,
@@ -84,7 +85,7 @@ def link_pages(app: Any, name: str, source: list[str]) -> None:
 def insert_reference(app: Any, name: str, source: list[str]) -> None:
     """Insert the reference of case files, which is made from their schema."""
     if name == "cases":
-        from nacre._reference import text
+        from nacre.case.reference import text
 
         source[0] = source[0].replace("CASE-REFERENCE", text())
 

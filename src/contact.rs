@@ -1,5 +1,6 @@
 //! The contact problem: g = h + u − δ − s_x x − s_y y ≥ 0, p ≥ 0, p g = 0.
 
+mod alternatives;
 mod automatic;
 mod batch;
 mod cascade;
@@ -15,6 +16,7 @@ pub use automatic::{choose_grid, solve, solve_with};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
 pub use driver::WatchedSolve;
+pub(crate) use options::SMALLEST_GRID;
 pub use options::{Algorithm, Motion, Options, Setup};
 pub use plan::Contact;
 pub use problem::bounds::Hardness;

@@ -170,8 +170,21 @@ value! {
     SampledProfile by SampledProfileData {
         x: Vec<f64> = of.samples().map(|[x, _]| x).collect();
         drop: Vec<f64> = of.samples().map(|[_, drop]| drop).collect();
+        smooth: bool = !of.is_straight();
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        corners: Vec<f64> = of.corners().to_vec();
+        smoothing: Option<f64> = of.smoothing();
     }
-    of, given => Self::new(&given.x, &given.drop)
+    of, given => {
+        let mut profile = Self::new(&given.x, &given.drop)?.with_corners(&given.corners)?;
+        if !given.smooth {
+            profile = profile.straight();
+        }
+        match given.smoothing {
+            Some(wavelength) => profile.smoothed(wavelength),
+            None => Ok(profile),
+        }
+    }
 }
 
 value! {
@@ -231,7 +244,7 @@ impl Serialize for Warning {
             Self::CoarseSpots { axis, cells } => (axis, cells),
             Self::LargeContact { axis, ratio } => (axis, ratio),
             Self::OutsideGrid { depth } => (0, depth),
-            Self::PeakError { error } => (0, error),
+            Self::PeakError { error } | Self::Stations { error } => (0, error),
             Self::LargeMotion { size } => (0, size),
         };
         WarningData { kind: self.kind().into(), axis, figure }.serialize(serializer)
@@ -253,6 +266,7 @@ impl<'de> Deserialize<'de> for Warning {
             Self::LargeContact { axis, ratio: figure },
             Self::OutsideGrid { depth: figure },
             Self::PeakError { error: figure },
+            Self::Stations { error: figure },
             Self::LargeMotion { size: figure },
         ];
         let found = all.iter().find(|warning| warning.kind() == kind);

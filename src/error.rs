@@ -55,6 +55,32 @@ pub enum Error {
         /// Indices of the first such element.
         index: [usize; 2],
     },
+    /// A response that is no compliance.
+    #[error(
+        "the function of the wavenumber must be finite and at least 0 everywhere, and above 0 somewhere, got {value} at {}",
+        plain(*wavenumber)
+    )]
+    NoCompliance {
+        /// Value of the response \[m/Pa\].
+        value: f64,
+        /// Wavenumber \[1/m\].
+        wavenumber: f64,
+    },
+    /// A response that has no limit at long or at short waves.
+    #[error(
+        "the function of the wavenumber must settle before {}: at small wavenumbers to c/wavenumber or to a constant, at \
+         large ones to c/wavenumber, to a constant or to less", plain(*wavenumber)
+    )]
+    NoLimit {
+        /// Wavenumber \[1/m\] at which the limit was sought.
+        wavenumber: f64,
+    },
+    /// A response of which a constant hides the rest at short waves.
+    #[error(
+        "the function of the wavenumber ends in a constant, in whose rounding the rest is lost: return the rest, and give \
+         the constant as local"
+    )]
+    HiddenBySprings,
     /// Influence coefficients with which some pressure has an elastic energy below 0.
     #[error(
         "the influence coefficients are not positive definite, so that the contact has no unique solution; \

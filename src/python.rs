@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, arguments, background, data, value,
-//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent.
+//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent, paths.
 
 use pyo3::prelude::*;
 
@@ -17,6 +17,7 @@ mod gradient;
 mod grid;
 mod hertz;
 mod indent;
+mod paths;
 mod shapes;
 mod solved;
 mod stress;
@@ -28,7 +29,7 @@ mod core {
     use super::arguments::plain;
     use super::bodies::{self, PyRigid};
     #[pymodule_export]
-    use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
+    use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse};
     #[pymodule_export]
     use super::coefficients::{
         PyConvolution, frequency_response, graded_layers, influence_coefficients,
@@ -47,9 +48,11 @@ mod core {
     #[pymodule_export]
     use super::grid::PyGrid;
     #[pymodule_export]
-    use super::hertz::{PyHertz, contact_modulus, equivalent_radius};
+    use super::hertz::{PyHertz, contact_modulus, equivalent_radius, relative_radii};
     #[pymodule_export]
     use super::indent::{PyIndentStates, PyIndentation};
+    #[pymodule_export]
+    use super::paths::{at, numbers, with_value};
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]

@@ -20,13 +20,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from nacre import types as types
-from nacre._compliance import (
-    Convolution,
-    frequency_response,
-    graded_layers,
-    influence_coefficients,
-    surface_compliance,
-)
 from nacre._core import (
     RIGID,
     ConvergenceError,
@@ -40,19 +33,27 @@ from nacre._core import (
     LogarithmicProfile,
     NacreWarning,
     Paraboloid,
+    Response,
     Roller,
     SampledProfile,
     Sphere,
     __version__,
 )
-from nacre._profiles import read_profile
+from nacre._tools.units import display_units
 from nacre.contact import Contact, roll, slide, solve
-from nacre.files import load, read_map
+from nacre.contact.compliance import (
+    Convolution,
+    frequency_response,
+    graded_layers,
+    influence_coefficients,
+    surface_compliance,
+)
+from nacre.contact.solution import Solution
+from nacre.contact.stresses import stress
 from nacre.friction import creep_coefficients
-from nacre.solution import Solution
-from nacre.stresses import stress
+from nacre.results.files import load
 from nacre.studies import sweep
-from nacre.units import display_units
+from nacre.surfaces import read_map, read_profile
 
 if TYPE_CHECKING:
     from nacre import case as case
@@ -80,6 +81,7 @@ __all__ = [
     "LogarithmicProfile",
     "NacreWarning",
     "Paraboloid",
+    "Response",
     "Roller",
     "SampledProfile",
     "Solution",
@@ -100,7 +102,14 @@ __all__ = [
 ]
 
 
-# Of the compiled classes, whose files are read in Python.
+def _markup(surface: HeightMap) -> str:
+    from nacre import rough
+
+    return rough.markup(surface)
+
+
+# Of the compiled classes, whose files are read and whose pictures are drawn in Python.
+HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
 HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
 SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import disjoint_base
 
-from nacre._typing import Topography
+from nacre._tools.typing import Topography
 
 __all__ = [
     "RIGID",
@@ -29,6 +29,7 @@ __all__ = [
     "NacreWarning",
     "Paraboloid",
     "Plan",
+    "Response",
     "Roller",
     "SampledProfile",
     "Shape",
@@ -36,6 +37,7 @@ __all__ = [
     "Sphere",
     "StressPlan",
     "__version__",
+    "at",
     "checked",
     "checked_report",
     "checked_stress",
@@ -45,7 +47,9 @@ __all__ = [
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
+    "numbers",
     "plain",
+    "relative_radii",
     "roll",
     "slide",
     "solve",
@@ -55,6 +59,7 @@ __all__ = [
     "stress_summary",
     "stress_under",
     "surface_compliance",
+    "with_value",
 ]
 
 _Field: TypeAlias = npt.NDArray[np.float64]
@@ -63,7 +68,9 @@ _Vector: TypeAlias = _Real | Sequence[float]
 _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]
 _Given: TypeAlias = dict[str, Any]
-_Report: TypeAlias = tuple[str, Grid, HalfSpace, HalfSpace | None]
+_Planned: TypeAlias = HalfSpace | Response
+_Body: TypeAlias = HalfSpace | Elastic | Response
+_Report: TypeAlias = tuple[str, Grid, _Planned, _Planned | None]
 _Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image", "spectral"]
@@ -136,6 +143,24 @@ class HalfSpace:
     def __hash__(self) -> int: ...
 
 @final
+class Response:
+    def __new__(
+        cls, function: Callable[[_Field], npt.ArrayLike], *, local: float = 0.0
+    ) -> Self: ...
+    @property
+    def wavenumbers(self) -> _Field: ...
+    @property
+    def values(self) -> _Field: ...
+    @property
+    def local(self) -> float: ...
+    @property
+    def limits(self) -> _Pair: ...
+    @staticmethod
+    def _of(values: Any, local: float) -> Response: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
 class Grid:
     def __new__(
         cls,
@@ -173,7 +198,7 @@ class Shape:
     def shifted(self, x: float, y: float) -> Shape: ...
     def __add__(self, value: Shape, /) -> Shape: ...
     def __radd__(self, value: Shape, /) -> Shape: ...
-    def _parts(self) -> list[tuple[Shape, _Pair]]: ...
+    def _arguments(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
 
@@ -291,7 +316,14 @@ class LogarithmicProfile:
 @final
 class SampledProfile:
     __hash__: ClassVar[None]  # type: ignore[assignment]
-    def __new__(cls, x: _Vector, drop: _Vector) -> Self: ...
+    def __new__(
+        cls,
+        x: _Vector,
+        drop: _Vector,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
+    ) -> Self: ...
     @staticmethod
     def read(
         path: str | os.PathLike[str],
@@ -300,7 +332,16 @@ class SampledProfile:
         x: str | int | None = None,
         drop: str | int | None = None,
         height: str | int | None = None,
+        smooth: bool = True,
+        corners: _Vector | None = None,
+        smoothing: float | None = None,
     ) -> SampledProfile: ...
+    @property
+    def smooth(self) -> bool: ...
+    @property
+    def corners(self) -> tuple[float, ...] | None: ...
+    @property
+    def smoothing(self) -> float | None: ...
     @overload
     def drop_at(self, x: float) -> float: ...
     @overload
@@ -370,14 +411,14 @@ class Plan:
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def __new__(
         cls,
-        body: HalfSpace | Elastic,
+        body: _Body,
         grid: Grid,
-        counterbody: HalfSpace | Elastic | None,
+        counterbody: _Body | None,
         coefficients: _Matrix | None,
         threads: int | None,
     ) -> Self: ...
-    def body(self) -> HalfSpace: ...
-    def counterbody(self) -> HalfSpace | None: ...
+    def body(self) -> _Planned: ...
+    def counterbody(self) -> _Planned | None: ...
     def grid(self) -> Grid: ...
     def coefficients(self) -> _Field | None: ...
     def threads(self) -> int: ...
@@ -463,9 +504,9 @@ class Convolution:
     def __new__(cls, coefficients: _Matrix, threads: int | None) -> Self: ...
     @staticmethod
     def of_bodies(
-        body: HalfSpace | Elastic,
+        body: _Body,
         grid: Grid,
-        counterbody: HalfSpace | Elastic | None,
+        counterbody: _Body | None,
         threads: int | None,
     ) -> Convolution: ...
     @property
@@ -569,7 +610,7 @@ class IndentStates:
     def derivatives(self, wrt: str) -> tuple[Any, Any, Any, Any, Any]: ...
 
 def slope_of(half_angle: float) -> float: ...
-def frequency_response(body: HalfSpace | Elastic, wavenumber: Any) -> Any: ...
+def frequency_response(body: _Body, wavenumber: Any) -> Any: ...
 def surface_compliance(body: HalfSpace | Elastic, wavenumber: Any) -> list[Any]: ...
 def graded_layers(
     substrate: Elastic | Rigid,
@@ -580,9 +621,14 @@ def graded_layers(
     breakpoints: Iterable[float] | None,
 ) -> list[Layer]: ...
 def equivalent_radius(radius: float | None, counter_radius: float | None) -> float: ...
+def relative_radii(
+    radii: tuple[float | None, float | None],
+    counter_radii: tuple[float | None, float | None],
+    angle: float,
+) -> tuple[tuple[float, float], float]: ...
 def contact_modulus(body: Elastic, counterbody: Elastic | None) -> float: ...
 def influence_coefficients(
-    body: HalfSpace | Elastic, grid: Grid, method: _Method, refinement: int | None
+    body: _Body, grid: Grid, method: _Method, refinement: int | None
 ) -> _Field: ...
 def plain(name: str, value: Any) -> Any: ...
 def solve(given: _Given, plan: Plan | None = None) -> Solved: ...
@@ -592,7 +638,7 @@ def slide(
 def roll(given: _Given, plan: Plan | None = None) -> FrictionSteps: ...
 def checked(kind: str, given: str) -> str: ...
 def checked_report(
-    told: str, grid: Grid, body: HalfSpace, counterbody: HalfSpace | None
+    told: str, grid: Grid, body: _Planned, counterbody: _Planned | None
 ) -> _Report: ...
 def creep_coefficients(
     body: HalfSpace | Elastic,
@@ -608,3 +654,6 @@ def stress_summary(of: Solved | FrictionSolved | StressPlan, given: _Given) -> s
 def stress_plan(of: Solved | FrictionSolved, given: _Given) -> StressPlan: ...
 def checked_stress(stress: _Given) -> _Given: ...
 def stress_invariants(stress: _Given, name: str) -> list[_Field]: ...
+def numbers(object: Any) -> list[tuple[str, float]]: ...
+def at(object: Any, path: str) -> Any: ...
+def with_value(object: Any, path: str, value: Any) -> Any: ...

@@ -39,7 +39,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        from nacre._commands import app
+        from nacre.case.commands import app
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 

@@ -10,12 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._extras import extra
-from nacre._friction_display import checked
-from nacre._friction_result import FrictionSolution
-from nacre._result import Result
+from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
+from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
-from nacre.units import energy, symbol
+from nacre.contact.friction import FrictionSolution, History
+from nacre.results.base import checked
+from nacre.results.listed import Listed
+from nacre.results.quantities import CREEP
 
 if TYPE_CHECKING:
     import xarray
@@ -24,7 +26,7 @@ __all__ = ["creep_coefficients", "creep_curve", "history"]
 
 
 @dataclass(frozen=True, repr=False)
-class CreepCoefficients(Result):
+class CreepCoefficients(Listed):
     """Kalker's linear coefficients of an elliptic contact, with their estimated errors.
 
     Examples
@@ -34,6 +36,10 @@ class CreepCoefficients(Result):
     >>> round(creep.c11, 1), round(creep.c22, 1), round(creep.c23, 1)
     (4.1, 3.7, 1.5)
     """
+
+    _COMPILED = True
+    _QUANTITIES = CREEP
+    _TITLE = "Kalker's coefficients"
 
     c11: float
     """C11, of the longitudinal creepage: ``F_x = a b G C11 xi``."""
@@ -50,12 +56,10 @@ class CreepCoefficients(Result):
     semi_axes: tuple[float, float]
     """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
 
-    def __repr__(self) -> str:
-        """Return the coefficients with their errors."""
+    def _rows(self) -> list[tuple[str, str]]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
-        shown = ", ".join(f"{name} {c:.4f} ± {error:.4f}" for name, c, error in numbers)
-        return f"<CreepCoefficients: {shown}>"
+        return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
 
 
 def creep_coefficients(
@@ -132,43 +136,7 @@ def history(solutions: Sequence[FrictionSolution]) -> xarray.Dataset:
     >>> study.force.dims, bool((study.dissipated >= 0).all())
     (('step', 'component'), True)
     """
-    with extra("files"):
-        import xarray
-
-    solutions = checked(solutions)
-    line = solutions[0].grid.is_line
-    force, rolls = "N/m" if line else "N", solutions[0].shift is None
-    touching = [np.count_nonzero(s.pressure) for s in solutions]
-    values: dict[str, tuple[tuple[str, ...], Any, str]] = {
-        "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
-        "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
-        "torque": (("step",), [s.torque for s in solutions], symbol("N" if line else "N m")),
-        "dissipated": (
-            ("step",),
-            [s.dissipated for s in solutions],
-            symbol(energy(line, rolls)),
-        ),
-        "stick_share": (
-            ("step",),
-            [s.stick.sum() / max(cells, 1) for s, cells in zip(solutions, touching, strict=True)],
-            "1",
-        ),
-        "convolutions": (("step",), [s.report.convolutions for s in solutions], "1"),
-    }
-    if all(s.shift is not None for s in solutions):
-        values["shift"] = (("step", "component"), [s.shift for s in solutions], symbol("m"))
-        values["twist"] = (("step",), [s.twist for s in solutions], "rad")
-    if all(s.creepage is not None for s in solutions):
-        values["creepage"] = (("step", "component"), [s.creepage for s in solutions], "1")
-    dataset = xarray.Dataset(
-        {name: (dims, np.asarray(data)) for name, (dims, data, _) in values.items()},
-        coords={"step": np.arange(len(solutions)), "component": ["x", "y"]},
-    )
-    for name, (_, _, unit) in values.items():
-        dataset[name].attrs = {"units": unit}
-    dataset.attrs = {"title": "history of a contact with friction"}
-    dataset.attrs["source"] = f"nacre {core.__version__}"
-    return dataset
+    return History(checked(solutions)).numbers()
 
 
 def creep_curve(
@@ -229,15 +197,18 @@ def creep_curve(
         if name in keywords:
             raise ValueError(f"{name} must not be given: creepages say what is asked")
     plan = {"threads": keywords.pop("threads", None)}
-    grid = keywords.pop("grid", None)
+    grid, most = keywords.pop("grid", None), keywords.pop("max_cells", None)
     if grid is None:
         motion = {name: keywords[name] for name in MOTION if name in keywords}
-        grid = solve(shape, body, counterbody, **plan, **motion).report.grid
+        grid = solve(shape, body, counterbody, max_cells=most, **plan, **motion).report.grid
     contact = Contact(body, grid, counterbody, **plan)
-    solutions = [
-        contact.roll(shape, creepage=(None, value) if lateral else (value, None), **keywords)
-        for value in values.tolist()
-    ]
+    solutions = []
+    with lasting("creepages") as tell:
+        for value in values.tolist():
+            creepage = (None, value) if lateral else (value, None)
+            solutions.append(contact.roll(shape, creepage=creepage, **keywords))
+            if tell is not None:
+                tell(len(solutions) / values.size)
     along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
     axis, sign = along[solutions[0].direction]
     # z x e: along +y for rolling towards +x, along -x for rolling towards +y.

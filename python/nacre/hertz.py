@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any, overload
 
 import nacre._core as core
-from nacre._typing import Field, Matrix, Pair, Vector
+from nacre._tools.typing import Field, Matrix, Pair, Vector
 
-__all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius"]
+__all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius", "relative_radii"]
 
 
 def equivalent_radius(radius: float | None, counter_radius: float | None = None) -> float:
@@ -46,6 +46,54 @@ def equivalent_radius(radius: float | None, counter_radius: float | None = None)
     0.006
     """
     return core.equivalent_radius(radius, counter_radius)
+
+
+def relative_radii(
+    radii: tuple[float | None, float | None],
+    counter_radii: tuple[float | None, float | None],
+    angle: float,
+) -> tuple[Pair, float]:
+    """Principal relative radii of two surfaces at an angle, as of crossed cylinders.
+
+    Johnson, Contact Mechanics (1985), eqs (4.4) and (4.5), doi:10.1017/CBO9781139171731.
+
+    Parameters
+    ----------
+    radii : tuple of float or None
+        Radii of one surface along its principal axes x and y [m]: above 0 where it is convex,
+        below 0 where it is concave; None where it is straight.
+    counter_radii : tuple of float or None
+        Radii of the other surface along its own axes [m], likewise.
+    angle : float
+        Angle from the x axis of the one surface to that of the other [rad].
+
+    Returns
+    -------
+    tuple of float
+        Relative radii [m], the longer first: those of `nacre.Paraboloid` and `Ellipse`, whose x
+        axis then lies along the longer radius.
+    float
+        Angle from the x axis of the one surface to that of the longer radius [rad], above -pi/2
+        and at most pi/2.
+
+    Raises
+    ------
+    TypeError
+        If radii are not pairs of real numbers or None.
+    ValueError
+        If a radius is 0 or not finite, the angle is not finite, or the surfaces are not convex
+        together in every direction, as parallel cylinders are not.
+
+    Examples
+    --------
+    Two cylinders of 8 mm, crossed at 60 degrees:
+
+    >>> radii, turn = nacre.hertz.relative_radii((None, 8e-3), (None, 8e-3), np.pi / 3)
+    >>> [round(radius * 1e3, 6) for radius in radii], round(turn * 180 / np.pi, 6)
+    ([16.0, 5.333333], 30.0)
+    >>> crossed = nacre.Paraboloid(*radii)
+    """
+    return core.relative_radii(radii, counter_radii, angle)
 
 
 def contact_modulus(body: core.Elastic, counterbody: core.Elastic | None = None) -> float:

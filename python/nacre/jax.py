@@ -9,8 +9,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 import nacre._core as core
-from nacre._differentiable import SECOND, Array, Differentiable, Outputs
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.typing import Body
+from nacre.design.differentiable import SECOND, Array, Differentiable, Outputs
 
 with extra("jax"):
     import jax
@@ -50,8 +51,8 @@ class Solver(Protocol):
 
 def solver(
     shape: core.Shape | None,
-    body: core.HalfSpace | core.Elastic,
-    counterbody: core.HalfSpace | core.Elastic | None = None,
+    body: Body,
+    counterbody: Body | None = None,
     *,
     grid: core.Grid,
     outputs: Outputs = ("approach",),
@@ -70,7 +71,7 @@ def solver(
     ----------
     shape : Shape or None
         Undeformed shape. None if the gap of each call is the whole shape.
-    body, counterbody : HalfSpace or Elastic
+    body, counterbody : HalfSpace, Elastic or Response
         Bodies, as for `nacre.solve`.
     grid : Grid
         Grid of all solves.

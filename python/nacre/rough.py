@@ -7,22 +7,26 @@ SurfaceTopography, patches those of SciPy, and tables those of xarray.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._extras import extra
-from nacre._patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre._tools.extras import extra
+from nacre._tools.typing import Body
+from nacre._tools.units import symbol, written
 from nacre.contact import Contact
-from nacre.solution import Solution
-from nacre.units import symbol
+from nacre.contact.solution import Solution
+from nacre.results import display
+from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = [
+    "Roughness",
     "corrected_area",
     "gap_distribution",
     "load_curve",
@@ -30,12 +34,16 @@ __all__ = [
     "percolates",
     "pressure_distribution",
     "random_surface",
+    "roughness",
     "spectral_slope",
     "spectrum",
+    "windowed",
 ]
 
 Array = npt.NDArray[np.float64]
 
+HEIGHTS = ("sa", "sq", "sp", "sv")
+"""Height parameters that are lengths."""
 PERIMETER = (np.pi - 1 + np.log(2)) / 24
 """Error of the area of counted cells over perimeter times cell, by Yastrebov et al. (2017)."""
 
@@ -121,23 +129,192 @@ def random_surface(
 
 
 def spectral_slope(surface: core.HeightMap) -> float:
-    """Root of the mean square of the gradient of a periodic map, from its Fourier derivative.
+    """Root of the mean square of the gradient of a map, from its Fourier derivative.
 
-    It is the h' of theories of rough contact. That of differences between points is less.
+    It is the h' of theories of rough contact. That of differences between points is less. Where a
+    map is not periodic, its gradient is weighted by Hann's window, which leaves out the rim.
     """
-    if not all(surface.periodic):
-        raise ValueError(
-            "surface must be periodic along x and y: others have no Fourier derivative"
-        )
-    topography = _topography(surface.heights, _grid(surface), "surface")
-    return float(np.sqrt(sum(np.mean(part**2) for part in topography.fourier_derivative())))
+    first, second, _, power = _derivatives(surface)
+    return float(np.sqrt(np.mean(first**2 + second**2) / power))
+
+
+def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
+    """Return gradient and Laplacian of a map times a window W, and the mean of W².
+
+    Along an axis that is not periodic W is 1 - cos, halved; else it is 1. The products follow from
+    Fourier derivatives of periodic functions alone: W h' = (W h)' - W' h, and
+    W h'' = (W h)'' - 2 (W' h)' + W'' h.
+    """
+    heights = surface.heights - surface.heights.mean()
+    shape, repeats = heights.shape, surface.periodic
+    axes = [
+        np.expand_dims(2 * np.pi * (np.arange(count) + 0.5) / count, 1 - axis)
+        for axis, count in enumerate(shape)
+    ]
+    ones = [np.ones_like(place) for place in axes]
+    window = [
+        one if so else 0.5 - 0.5 * np.cos(place)
+        for one, so, place in zip(ones, repeats, axes, strict=True)
+    ]
+    gradient, laplacian = [], np.zeros(shape)
+    for axis, (count, step) in enumerate(zip(shape, surface.spacing, strict=True)):
+        across, rate = window[1 - axis], 2 * np.pi / (count * step)
+        slope = 0 * ones[axis] if repeats[axis] else 0.5 * rate * np.sin(axes[axis])
+        bend = 0 * ones[axis] if repeats[axis] else 0.5 * rate**2 * np.cos(axes[axis])
+        waves = np.expand_dims(2 * np.pi * np.fft.rfftfreq(count, step), 1 - axis)
+
+        def derived(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
+            factors = (1j * waves) ** order
+            if order == 1 and field.shape[axis] % 2 == 0:
+                factors[(slice(None),) * axis + (-1,)] = 0.0  # the highest wave has no direction
+            found = np.fft.rfft(field, axis=axis) * factors
+            return np.asarray(np.fft.irfft(found, field.shape[axis], axis=axis))
+
+        weighted = window[axis] * heights
+        gradient.append(across * (derived(weighted, 1) - slope * heights))
+        curved = derived(weighted, 2) - 2 * derived(slope * heights, 1) + bend * heights
+        laplacian += across * curved
+    power = float(np.mean((window[0] * window[1]) ** 2))
+    return gradient[0], gradient[1], laplacian, power
+
+
+@dataclass(frozen=True)
+class Roughness:
+    """Height parameters of a map, about its mean plane, and its slope and curvature."""
+
+    sa: float
+    """Sa: mean of the absolute heights [m], ISO 25178-2."""
+    sq: float
+    """Sq: root of the mean square of the heights [m]."""
+    sp: float
+    """Sp: highest point above the mean plane [m]."""
+    sv: float
+    """Sv: lowest point below the mean plane [m]."""
+    ssk: float
+    """Ssk: skewness of the heights; 0 for a plane."""
+    sku: float
+    """Sku: kurtosis of the heights, 3 for Gaussian ones; 0 for a plane."""
+    rms_slope: float
+    """Root of the mean square of the gradient, as `spectral_slope` finds it."""
+    rms_curvature: float
+    """Root of the mean square of the mean curvature, half the Laplacian [1/m], likewise."""
+
+    def _rows(self) -> list[tuple[str, str]]:
+        heights = [(name.capitalize(), written(getattr(self, name), "m")) for name in HEIGHTS]
+        shares = [(name.capitalize(), f"{getattr(self, name):.4g}") for name in ("ssk", "sku")]
+        slope = ("rms slope", f"{self.rms_slope:.4g}")
+        curvature = f"{self.rms_curvature:.4g} /{symbol('m')}"
+        return [*heights, *shares, slope, ("rms curvature", curvature)]
+
+    def __str__(self) -> str:
+        """Return a table."""
+        return display.text(self._rows(), [])
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows())
+
+
+def roughness(surface: core.HeightMap) -> Roughness:
+    """Height parameters, slope and curvature of a map.
+
+    A plane that was not subtracted when the map was read is part of its roughness.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Measured or random surface.
+
+    Returns
+    -------
+    Roughness
+        Parameters of ISO 25178-2, and slope and curvature from the spectrum.
+
+    Examples
+    --------
+    >>> wave = 1e-6 * np.sin(2 * np.pi * np.arange(64) / 64)[:, None] * np.ones(64)
+    >>> found = nacre.rough.roughness(nacre.HeightMap(wave, 1e-6, periodic=(True, True)))
+    >>> round(found.sq * 1e6, 3), round(found.rms_slope, 4)
+    (0.707, 0.0694)
+    """
+    heights = surface.heights - surface.heights.mean()
+    sq = float(heights.std())
+    _, _, laplacian, power = _derivatives(surface)
+    curvature = 0.5 * float(np.sqrt(np.mean(laplacian**2) / power))
+    third, fourth = (float(np.mean(heights**n)) / sq**n if sq > 0 else 0.0 for n in (3, 4))
+    return Roughness(
+        sa=float(np.abs(heights).mean()),
+        sq=sq,
+        sp=float(heights.max()),
+        sv=float(np.abs(heights.min())),
+        ssk=third,
+        sku=fourth,
+        rms_slope=spectral_slope(surface),
+        rms_curvature=curvature,
+    )
+
+
+def markup(surface: core.HeightMap) -> str:
+    """Return what a notebook shows of a map: its size, its roughness and a picture."""
+
+    def draw() -> Any:
+        from nacre import plot
+
+        return plot.heights(surface)
+
+    grid = _grid(surface)
+    points = " × ".join(map(str, surface.heights.shape))
+    size = " × ".join(written(side, "m") for side in grid.size)
+    repeats = [name for name, is_so in zip("xy", surface.periodic, strict=True) if is_so]
+    rows = [("points", points), ("size", size), ("periodic", " and ".join(repeats) or "no")]
+    table = [*rows, *roughness(surface)._rows()]
+    return display.markup(table, picture=display.drawn(draw), widest=display.WIDE)
+
+
+def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
+    """Make a map periodic: its heights go to their mean at the rim, as half a cosine.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Map; along an axis in which it is periodic already it stays as it is.
+    taper : float, optional
+        Share of each side over which the heights fall off, above 0 and at most 0.5.
+
+    Returns
+    -------
+    HeightMap
+        The map, periodic along x and y.
+
+    Raises
+    ------
+    ValueError
+        If the share is out of range.
+
+    Examples
+    --------
+    >>> rough = nacre.HeightMap(np.random.default_rng(1).normal(size=(64, 64)) * 1e-7, 1e-6)
+    >>> nacre.rough.windowed(rough).periodic
+    (True, True)
+    """
+    if not 0 < taper <= 0.5:
+        raise ValueError(f"taper must be above 0 and at most 0.5, got {taper}")
+    mean = surface.heights.mean()
+    heights = surface.heights - mean
+    for axis, count in enumerate(heights.shape):
+        if not surface.periodic[axis]:
+            place = (np.arange(count) + 0.5) / count
+            edge = np.minimum(np.minimum(place, 1 - place) / taper, 1.0)
+            heights = heights * np.expand_dims(np.sin(0.5 * np.pi * edge) ** 2, 1 - axis)
+    return core.HeightMap(
+        heights + mean, surface.spacing, center=surface.center, periodic=(True, True)
+    )
 
 
 def load_curve(
     shape: core.HeightMap | Any,
-    body: core.HalfSpace | core.Elastic,
+    body: Body,
     pressures: Sequence[float],
-    counterbody: core.HalfSpace | core.Elastic | None = None,
+    counterbody: Body | None = None,
     *,
     grid: core.Grid | None = None,
     **keywords: Any,
@@ -303,8 +480,10 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
     return found
 
 
-def spectrum(solution: Solution) -> xarray.Dataset:
+def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
     """Power spectra of the undeformed and of the deformed surface, averaged over directions.
+
+    Of a map it is the spectrum of the ``surface``; one that is not periodic is windowed.
 
     The deformed surface is minus the gap: flat where the bodies touch. The density is that of
     SurfaceTopography, ``power_spectrum_from_area`` [m⁴], over the wavenumber [rad/m].
@@ -314,23 +493,33 @@ def spectrum(solution: Solution) -> xarray.Dataset:
     ValueError
         If the grid is one of strips, or the shape cannot touch everywhere.
     """
-    with extra("files"):
-        import xarray
-
+    if isinstance(solution, core.HeightMap):
+        return _spectra({"surface": solution.heights}, _grid(solution), {})
     grid, report = solution.report.grid, solution.report
     if not np.isfinite(solution.gap).all():
         raise ValueError("the shape must be able to touch everywhere for a spectrum")
     tilt = solution.tilt[0] * solution.x[:, None] + solution.tilt[1] * solution.y[None, :]
     undeformed = -(solution.gap - solution.displacement + tilt)
+    both = {"undeformed": undeformed, "deformed": -solution.gap}
+    return _spectra(both, grid, {"residual": report.residual})
+
+
+def _spectra(
+    fields: dict[str, Array], grid: core.Grid, attributes: dict[str, Any]
+) -> xarray.Dataset:
+    """Return the spectra of heights on a grid."""
+    with extra("files"):
+        import xarray
+
     found = {}
-    for name, heights in {"undeformed": undeformed, "deformed": -solution.gap}.items():
+    for name, heights in fields.items():
         topography = _topography(heights - heights.mean(), grid, "solution")
         wavenumber, density = topography.power_spectrum_from_area()
         kept = np.isfinite(density) & (wavenumber > 0)
         found[name] = ("wavenumber", np.asarray(density[kept], dtype=np.float64))
     dataset = xarray.Dataset(found, {"wavenumber": np.asarray(wavenumber[kept])})
     dataset.attrs["source"] = f"nacre {core.__version__}"
-    dataset.attrs["residual"] = report.residual
+    dataset.attrs |= attributes
     dataset["wavenumber"].attrs = {"long_name": "wavenumber", "units": f"rad/{symbol('m')}"}
     for name in found:
         words = f"spectral density of the {name} surface"

@@ -1,11 +1,11 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import Shape
-from nacre._friction_result import FrictionReport, FrictionSolution
+from nacre.contact.friction import FrictionReport, FrictionSolution, History
+from nacre.contact.gradient import Direction, Gradient
+from nacre.contact.solution import Report
+from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 from nacre.friction import CreepCoefficients
-from nacre.gradient import Direction, Gradient
-from nacre.solution import Report
-from nacre.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 
 __all__ = [
     "CreepCoefficients",
@@ -13,6 +13,7 @@ __all__ = [
     "FrictionReport",
     "FrictionSolution",
     "Gradient",
+    "History",
     "InterfaceStress",
     "LayerStress",
     "Report",

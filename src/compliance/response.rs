@@ -13,21 +13,24 @@
 //! substrate up (`layer`), which was derived here. Only sums of positive terms occur in it: the result is
 //! accurate to a few units in the last place for any thickness, contrast and Poisson's ratio up to 0.5.
 
+use std::any::Any;
 use std::fmt;
-use std::ops::Deref;
-use std::sync::Arc;
 
 use crate::error::{Error, Result, finite, not_negative, positive, require};
 use crate::model::body::{HalfSpace, Interface, Substrate};
 use crate::model::material::Elastic;
 
+mod body;
 mod derivatives;
 pub(crate) mod interior;
 mod layer;
+mod sampled;
 
+pub use body::Body;
 pub(crate) use derivatives::ResponseSlope;
 pub use derivatives::{asymptote_derivatives, normal_derivatives};
 pub use layer::Compliance;
+pub use sampled::Sampled;
 
 use layer::Slab;
 
@@ -157,7 +160,7 @@ pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
 
 /// Normal frequency response of a body: surface displacement per pressure of the same wavenumber.
 ///
-/// [`HalfSpace`] implements it. A body of another kind (an elastic foundation, a membrane, a
+/// [`HalfSpace`] implements it, and [`Sampled`] for values of a response. A body of another kind (an elastic foundation, a membrane, a
 /// transversely isotropic half-space) needs nothing else to go through influence coefficients,
 /// convolution and contact. It must be the same in all directions of the surface: û_z/p̂ depends on
 /// α = √(m² + n²) alone.
@@ -214,7 +217,7 @@ pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
 /// assert!((solution.central_pressure() / 0.3 - 1.0).abs() < 0.01);
 /// # Ok::<(), nacre::Error>(())
 /// ```
-pub trait Response: fmt::Debug + Send + Sync {
+pub trait Response: Any + fmt::Debug + Send + Sync {
     /// α û_z/p̂ \[1/Pa\] at wavenumber α > 0 \[1/m\], finite and at least 0, without the local
     /// compliance.
     fn normal(&self, wavenumber: f64) -> f64;
@@ -254,72 +257,6 @@ impl Response for HalfSpace {
 
     fn half_space(&self) -> Option<&HalfSpace> {
         Some(self)
-    }
-}
-
-/// A body of any kind, shared by whatever was planned with it.
-#[derive(Clone)]
-pub struct Body(Arc<dyn Response>);
-
-impl Body {
-    /// The body with this `response`.
-    pub fn new(response: impl Response + 'static) -> Self {
-        Self(Arc::new(response))
-    }
-}
-
-impl Deref for Body {
-    type Target = dyn Response;
-
-    fn deref(&self) -> &Self::Target {
-        &*self.0
-    }
-}
-
-impl fmt::Debug for Body {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-/// Half-spaces are equal if their layers and substrates are; other bodies if they are the same object.
-impl PartialEq for Body {
-    fn eq(&self, other: &Self) -> bool {
-        match (self.half_space(), other.half_space()) {
-            (Some(a), Some(b)) => a == b,
-            (None, None) => Arc::ptr_eq(&self.0, &other.0),
-            _ => false,
-        }
-    }
-}
-
-impl<R: Response + 'static> From<R> for Body {
-    fn from(response: R) -> Self {
-        Self::new(response)
-    }
-}
-
-impl From<&HalfSpace> for Body {
-    fn from(body: &HalfSpace) -> Self {
-        Self::new(body.clone())
-    }
-}
-
-impl From<&Body> for Body {
-    fn from(body: &Body) -> Self {
-        body.clone()
-    }
-}
-
-impl From<Elastic> for Body {
-    fn from(material: Elastic) -> Self {
-        Self::new(HalfSpace::from(material))
-    }
-}
-
-impl From<&Elastic> for Body {
-    fn from(material: &Elastic) -> Self {
-        (*material).into()
     }
 }
 

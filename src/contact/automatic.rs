@@ -17,7 +17,7 @@ use crate::contact::automatic::search::{Search, moved_out, touched_sides};
 use crate::contact::automatic::task::{Task, frame_of};
 use crate::contact::driver::WatchedSolve;
 use crate::contact::options::{Algorithm, Motion, Options, Setup};
-use crate::contact::plan::bodies;
+use crate::contact::plan::{Contact, bodies};
 use crate::contact::problem::bounds::Hardness;
 use crate::contact::solution::warnings::Warning;
 use crate::contact::solution::{Progress, Report, Solution};
@@ -83,9 +83,19 @@ pub fn solve_with<'a>(
         stopped = stopped || asked.tell(report).is_break();
         if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    if let Some(grid) = shape.grid() {
-        return task.solve(grid, options, &mut watched);
+    let mut solution = match shape.grid() {
+        Some(grid) => task.solve(grid, options, &mut watched)?,
+        None => solve_on_own_grid(task, options, &mut watched)?,
+    };
+    if !shape.alternatives().is_empty() {
+        let plan = Contact::plan(body, *solution.grid(), setup.clone())?;
+        plan.run(|| plan.compare(&mut solution, shape, motion, options, &mut watched));
     }
+    Ok(solution)
+}
+
+/// A solution on a grid that is chosen, with these options.
+fn solve_on_own_grid(task: Task, options: &Options, watched: &mut Progress) -> Result<Solution> {
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
@@ -96,10 +106,10 @@ pub fn solve_with<'a>(
         indentation: None,
         ..options.clone()
     };
-    let (mut solution, warning) = solve_on_fit_grid(task, &plain, &mut watched)?;
+    let (mut solution, warning) = solve_on_fit_grid(task, &plain, watched)?;
     if plain != *options {
         let grid = *solution.grid();
-        solution = task.solve(grid, options, &mut watched)?;
+        solution = task.solve(grid, options, watched)?;
     }
     solution.report.warnings.extend(warning);
     Ok(solution)

@@ -135,8 +135,12 @@ impl Contact {
                             break;
                         };
                         let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
-                        let solved = plan
-                            .run(|| plan.solve_sampled(*shape, sampled, motion, options, progress));
+                        let solved = plan.run(|| {
+                            let mut solution =
+                                plan.solve_sampled(*shape, sampled, motion, options, progress)?;
+                            plan.compare(&mut solution, *shape, motion, options, progress);
+                            Ok(solution)
+                        });
                         let unfinished = matches!(&solved, Ok(solution)
                         if solution.report.termination == Termination::Stopped);
                         if !unfinished {

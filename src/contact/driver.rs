@@ -73,10 +73,26 @@ impl Contact {
         motion: &Motion,
         options: impl Into<WatchedSolve<'a>>,
     ) -> Result<Solution> {
-        let (mut asked, sampled) = (options.into(), &mut Sampled::default());
+        let mut asked = options.into();
         let options = asked.options;
         let progress = &mut |report: &Report| asked.tell(report);
-        self.run(|| self.solve_sampled(shape, sampled, motion, options, progress))
+        self.run(|| {
+            let mut solution = self.solve_alone(shape, motion, options, progress)?;
+            self.compare(&mut solution, shape, motion, options, progress);
+            Ok(solution)
+        })
+    }
+
+    /// [`Contact::solve`] without comparison with alternatives of the shape, on this thread and on threads of the plan that
+    /// are free.
+    pub(crate) fn solve_alone(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
     }
 
     /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`

@@ -72,7 +72,7 @@ impl Default for Options {
 const LARGEST_GRID: usize = 1 << 22;
 
 /// Least of [`Options::cells`]: with fewer along an axis there is no coarser grid, and no estimate of the error.
-const SMALLEST_GRID: usize = 64 * 64;
+pub(crate) const SMALLEST_GRID: usize = 64 * 64;
 
 /// Default of [`Options::max_iterations`]: far above the 10 … 300 that solvable problems take.
 const MAX_ITERATIONS: usize = 10_000;

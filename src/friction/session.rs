@@ -16,7 +16,7 @@ use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
-use crate::contact::{Contact, Motion, Options, Solution, Termination, Warning};
+use crate::contact::{Contact, Motion, Options, Report, Solution, Termination, Warning};
 use crate::error::{Error, Result, fraction};
 use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
@@ -200,7 +200,7 @@ impl<'a> Session<'a> {
         let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let mut mixing = Mixing::default();
-        let (normal, solved) = loop {
+        let (mut normal, solved) = loop {
             let normal = match known {
                 Some(known) => known.clone(),
                 None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
@@ -240,6 +240,10 @@ impl<'a> Session<'a> {
             }
             pressure = Some(acting);
         };
+        if known.is_none() && !course.stopped {
+            let (shape, mut watch) = (self.lifted(&traction), |_: &Report| course.tell());
+            self.contact.compare(&mut normal, &shape, motion, &self.pressing(), &mut watch);
+        }
         self.finish(task, friction, normal, solved, course)
     }
 
@@ -336,18 +340,27 @@ impl<'a> Session<'a> {
         pressure: Option<&Array2<f64>>,
         course: &mut FrictionCourse,
     ) -> Result<Solution> {
-        let mut options = Options { tolerance: self.options.tolerance, ..Options::default() };
-        let mut watch = |_: &crate::contact::Report| course.tell();
-        let (contact, grid) = (self.contact, self.contact.grid());
+        let initial = pressure.filter(|p| self.coupled && p.iter().any(|p| *p > 0.0));
+        let options = Options { initial: initial.cloned(), ..self.pressing() };
+        let mut watch = |_: &Report| course.tell();
+        self.contact.solve_alone(&self.lifted(traction), motion, &options, &mut watch)
+    }
+
+    /// Options of solves for the pressure.
+    fn pressing(&self) -> Options {
+        Options { tolerance: self.options.tolerance, ..Options::default() }
+    }
+
+    /// The shape, lifted by tractions where they act on the pressure.
+    fn lifted(&self, traction: &[Array2<f64>; 2]) -> Box<dyn Surface + 'a> {
         if !self.coupled {
-            return contact.solve(self.shape, motion, options.watched(&mut watch));
+            return Box::new(self.shape);
         }
-        options.initial = pressure.filter(|p| p.iter().any(|p| *p > 0.0)).cloned();
+        let grid = self.contact.grid();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
         let lift = self.tangential.window(grid.shape()).lift(&q);
         let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
-        let lifted = Lifted::new(self.shape, grid, lift);
-        contact.solve(&lifted, motion, options.watched(&mut watch))
+        Box::new(Lifted::new(self.shape, grid, lift))
     }
 
     /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
@@ -399,7 +412,9 @@ impl<'a> Session<'a> {
         let less =
             Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
         let options = Options { tolerance: START, ..Options::default() };
-        let sticking = self.contact.solve(self.shape, &less, &options)?;
+        let sticking = self
+            .contact
+            .solve_alone(self.shape, &less, &options, &mut |_| ControlFlow::Continue(()))?;
         let more = (&normal.pressure - &sticking.pressure).mapv(|p| p.max(0.0));
         let bound = friction.times(&more);
         for (traction, component) in tractions.iter_mut().zip(forces) {

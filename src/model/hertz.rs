@@ -29,13 +29,8 @@ use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 /// # Ok::<(), nacre::Error>(())
 /// ```
 pub fn equivalent_radius(radius: Option<f64>, counter_radius: Option<f64>) -> Result<f64> {
-    for (name, given) in [("radius", radius), ("counter_radius", counter_radius)] {
-        if let Some(value) = given {
-            let is_curved = finite(name, value)?.abs() > 0.0;
-            let requirement = "other than 0 (None for a straight surface)";
-            require(name, value, is_curved, requirement)?;
-        }
-    }
+    curvature("radius", radius)?;
+    curvature("counter_radius", counter_radius)?;
     let equivalent = match (radius, counter_radius) {
         // Below 0 where both are concave, or the wider one is the convex one.
         (Some(one), Some(two)) => one * (two / (one + two)),
@@ -47,6 +42,67 @@ pub fn equivalent_radius(radius: Option<f64>, counter_radius: Option<f64>) -> Re
     }
     Err(Error::Inconsistent(
         "radius and counter_radius must be convex together: 1/radius + 1/counter_radius must be above 0",
+    ))
+}
+
+/// Curvature 1/R \[1/m\]; 0 where the surface is straight.
+fn curvature(name: &'static str, radius: Option<f64>) -> Result<f64> {
+    let Some(value) = radius else {
+        return Ok(0.0);
+    };
+    let is_curved = finite(name, value)?.abs() > 0.0;
+    require(name, value, is_curved, "other than 0 (None for a straight surface)")?;
+    Ok(1.0 / value)
+}
+
+/// Principal relative radii \[m\] of two surfaces in contact, the longer first, and the angle \[rad\] from the x axis of
+/// the first surface to the axis of the longer radius, above −π/2 and at most π/2.
+///
+/// ```text
+/// A + B = ½ (1/R_1x + 1/R_1y + 1/R_2x + 1/R_2y)          R′ = 1/2A      R″ = 1/2B
+/// B − A = ½ √[(1/R_1x − 1/R_1y)² + (1/R_2x − 1/R_2y)² + 2 (1/R_1x − 1/R_1y)(1/R_2x − 1/R_2y) cos 2φ]
+/// ```
+///
+/// `radii` and `counter_radii` \[m\] are those of each surface along its own principal axes x and y, above 0 where it is
+/// convex, below 0 where it is concave, `None` where it is straight; the x axis of the second surface is at the `angle` φ
+/// \[rad\] from that of the first. A is computed from 4AB, the determinant of the sum of both curvatures, which has no
+/// cancellation between convex surfaces. Johnson (1985), eqs (4.4) and (4.5).
+///
+/// # Errors
+/// Unless each radius is finite and not 0, the angle is finite, and A > 0.
+///
+/// ```
+/// use nacre::hertz::relative_radii;
+/// // Cylinders of 5 mm and 8 mm, crossed at right angles.
+/// let ([longer, shorter], turn) =
+///     relative_radii([None, Some(5e-3)], [None, Some(8e-3)], std::f64::consts::FRAC_PI_2)?;
+/// assert!((longer / 8e-3 - 1.0).abs() < 1e-14 && (shorter / 5e-3 - 1.0).abs() < 1e-14);
+/// assert!(turn.abs() < 1e-14);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn relative_radii(
+    radii: [Option<f64>; 2],
+    counter_radii: [Option<f64>; 2],
+    angle: f64,
+) -> Result<([f64; 2], f64)> {
+    let [x, y] = [curvature("radii", radii[0])?, curvature("radii", radii[1])?];
+    let [along, across] = counter_radii;
+    let [along, across] = [curvature("counter_radii", along)?, curvature("counter_radii", across)?];
+    let (sin, cos) = finite("angle", angle)?.sin_cos();
+    let counter_x = along * cos * cos + across * sin * sin;
+    let counter_y = along * sin * sin + across * cos * cos;
+    let mixed = (along - across) * sin * cos;
+    let (mean, half) = (0.5 * (x + y + along + across), 0.5 * (x + counter_x - y - counter_y));
+    let larger = mean + half.hypot(mixed);
+    let determinant = x * y + along * across + x * counter_y + y * counter_x;
+    let smaller = determinant / larger;
+    let found = [1.0 / smaller, 1.0 / larger];
+    // Cylinders at a smaller angle than some 1e-8 are parallel but for rounding.
+    if smaller > f64::EPSILON * larger && found.iter().all(|radius| radius.is_finite()) {
+        return Ok((found, 0.5 * (0.0 - mixed).atan2(-half)));
+    }
+    Err(Error::Inconsistent(
+        "radii and counter_radii must be convex together in every direction (parallel cylinders touch along a line)",
     ))
 }
 

@@ -113,6 +113,12 @@ pub trait Surface: fmt::Debug + Send + Sync {
         Err(absent(name))
     }
 
+    /// Other shapes that a measurement of this one may mean, as curves through its stations. A solution is compared with
+    /// those of them: the differences are part of its discretisation errors. None by default.
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        Vec::new()
+    }
+
     /// Whether gaps depend smoothly on where the shape lies. Default: yes.
     fn is_smooth(&self) -> bool {
         self.base().is_none_or(Surface::is_smooth)
@@ -177,6 +183,10 @@ where
 
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
         (**self).gap_derivative(name, grid)
+    }
+
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        (**self).alternatives()
     }
 
     fn is_smooth(&self) -> bool {
@@ -278,6 +288,11 @@ impl<S: Surface> Surface for Shifted<S> {
             }
             _ => self.shape.gap_derivative(name, &self.own(grid)?),
         }
+    }
+
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        let others = self.shape.alternatives().into_iter();
+        others.map(|shape| Box::new(Shifted::by(shape, self.by)) as Box<_>).collect()
     }
 }
 
@@ -384,6 +399,16 @@ impl<S: Surface> Surface for Superposition<S> {
         part(name).unwrap_or_else(|| Err(absent(name)))
     }
 
+    /// Sums of the alternatives of all shapes with the same number; shapes with fewer keep the last.
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        let most = self.0.iter().map(|shape| shape.alternatives().len()).max().unwrap_or(0);
+        let other = |number: usize| {
+            let shapes = self.0.iter().map(|shape| alternative(shape, number)).collect();
+            Box::new(Superposition(shapes)) as Box<_>
+        };
+        (0..most).map(other).collect()
+    }
+
     fn is_smooth(&self) -> bool {
         self.0.iter().all(Surface::is_smooth)
     }
@@ -393,6 +418,15 @@ impl<S: Surface> Surface for Superposition<S> {
         let mut directions = self.0.iter().filter_map(Surface::rolling_direction);
         let [x, y] = directions.next()?;
         directions.all(|other| (x - other[0]).hypot(y - other[1]) < f64::EPSILON).then_some([x, y])
+    }
+}
+
+/// The alternative of `shape` with this number, or the last; the shape itself where it has none.
+fn alternative<S: Surface>(shape: &S, number: usize) -> Box<dyn Surface + '_> {
+    let mut others = shape.alternatives();
+    match others.len() {
+        0 => Box::new(shape),
+        count => others.swap_remove(number.min(count - 1)),
     }
 }
 
@@ -520,14 +554,14 @@ pub(super) fn absent(name: &str) -> Error {
 
 /// A shape plus a field on the cells of a grid, bilinear between cell centres and constant beyond the outer ones.
 #[derive(Debug)]
-pub(crate) struct Lifted<'a> {
-    shape: &'a dyn Surface,
+pub(crate) struct Lifted<S> {
+    shape: S,
     grid: Grid,
     lift: Array2<f64>,
 }
 
-impl<'a> Lifted<'a> {
-    pub(crate) fn new(shape: &'a dyn Surface, grid: &Grid, lift: Array2<f64>) -> Self {
+impl<S: Surface> Lifted<S> {
+    pub(crate) fn new(shape: S, grid: &Grid, lift: Array2<f64>) -> Self {
         Self { shape, grid: *grid, lift }
     }
 
@@ -545,9 +579,15 @@ impl<'a> Lifted<'a> {
     }
 }
 
-impl Surface for Lifted<'_> {
+impl<S: Surface> Surface for Lifted<S> {
     fn base(&self) -> Option<&dyn Surface> {
-        Some(self.shape)
+        Some(&self.shape)
+    }
+
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        let others = self.shape.alternatives().into_iter();
+        let lifted = |shape| Lifted::new(shape, &self.grid, self.lift.clone());
+        others.map(|shape| Box::new(lifted(shape)) as Box<_>).collect()
     }
 
     fn gap(&self, x: f64, y: f64) -> f64 {

@@ -1,14 +1,17 @@
-//! `nacre.Elastic`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.RIGID`.
+//! `nacre.Elastic`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.Response`, `nacre.RIGID`.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use numpy::PyArray1;
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 
-use super::arguments::{Real, Repr, ends, items, word, word_of};
+use super::arguments::{Real, Repr, ends, items, read_only, real, real_array, word, word_of};
 use super::value::{self, Arguments, Value, class};
-use crate::compliance::response::Body;
+use crate::compliance::response::{Body, Sampled};
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
 
@@ -255,12 +258,155 @@ impl Value for PyHalfSpace {
     }
 }
 
-impl PyHalfSpace {
-    /// Half-space of a body; every body that Python makes is one.
-    pub(super) fn of(body: &Body) -> Self {
+/// A body that is known by its normal response, a function of the wavenumber.
+///
+/// An elastic foundation, a plate, or a compliance that was measured or published takes part in contacts as a
+/// body or a counterbody. It must be the same in all directions of the surface.
+///
+/// Parameters
+/// ----------
+/// function : callable
+///     Function that takes wavenumbers ``alpha = sqrt(m**2 + n**2)`` [1/m], an array, and returns the normal
+///     displacement of the surface per unit pressure at each, ``u_z/p`` [m/Pa], finite and at least 0. It is called
+///     once, with 37121 wavenumbers from 6e-26 to 2e25, and must keep its digits there.
+/// local : float, optional
+///     Displacement of a point per pressure on that point [m/Pa], at least 0, beside that of the function, as springs
+///     have it. A function that ends in a constant contains it.
+///
+/// Raises
+/// ------
+/// TypeError
+///     If the function is not callable, or does not return real numbers.
+/// ValueError
+///     If what the function returns has another shape than its argument, is not finite, below 0 or 0 everywhere, or does
+///     not settle: to ``c/alpha`` or a constant at long waves, and to ``c/alpha``, a constant or less at short ones.
+///
+/// Notes
+/// -----
+/// Values between the wavenumbers, 320 in a factor of e, are interpolated. Pickles and files keep the values, and not
+/// the function. Friction, stresses, tips and derivatives by the numbers of a body need a `HalfSpace`.
+///
+/// Examples
+/// --------
+/// A Winkler bed of 1e12 Pa/m: the pressure is the displacement times the stiffness.
+///
+/// >>> bed = nacre.Response(lambda alpha: np.full_like(alpha, 1e-12))
+/// >>> grid = nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4))
+/// >>> solution = nacre.solve(nacre.Paraboloid(5e-3, 5e-3), bed, grid=grid, approach=2e-6)
+/// >>> bool(np.allclose(solution.pressure, 1e12 * solution.displacement))
+/// True
+#[pyclass(name = "Response", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyResponse(Body);
+
+impl PyResponse {
+    /// Response of values at the wavenumbers.
+    fn of(name: &str, values: &Bound<'_, PyAny>, local: f64) -> PyResult<Self> {
+        let values = real_array(name, values)?;
+        let (count, shape) = (Sampled::wavenumbers().len(), values.shape().to_vec());
+        if shape != [count] {
+            return Err(PyValueError::new_err(format!(
+                "{name} must have the shape of the wavenumbers, ({count},), got shape {shape:?}"
+            )));
+        }
+        Ok(Self(Sampled::new(values.into_raw_vec_and_offset().0, local)?.into()))
+    }
+
+    /// The samples, of which every response of Python is made.
+    fn sampled(&self) -> PyResult<&Sampled> {
+        self.0.sampled().ok_or_else(|| PyTypeError::new_err("this body is no response of samples"))
+    }
+}
+
+#[pymethods]
+impl PyResponse {
+    #[new]
+    #[pyo3(signature = (function, *, local=0.0))]
+    fn new(function: &Bound<'_, PyAny>, #[pyo3(from_py_with = real)] local: f64) -> PyResult<Self> {
+        if !function.is_callable() {
+            return Err(PyTypeError::new_err(format!(
+                "function must be a function of an array of wavenumbers, got {}",
+                Repr(function)
+            )));
+        }
+        let wavenumbers = PyArray1::from_iter(function.py(), Sampled::wavenumbers());
+        Self::of("function(wavenumbers)", &function.call1((wavenumbers,))?, local)
+    }
+
+    /// Response of values, for pickles and files.
+    #[staticmethod]
+    fn _of(values: &Bound<'_, PyAny>, #[pyo3(from_py_with = real)] local: f64) -> PyResult<Self> {
+        Self::of("values", values, local)
+    }
+
+    /// Wavenumbers ``(37121,)`` [1/m] at which the function was called.
+    #[getter]
+    fn wavenumbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, Sampled::wavenumbers().collect())
+    }
+
+    /// Values of the function there [m/Pa].
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.sampled()?.values().to_vec().into())
+    }
+
+    /// Local compliance [m/Pa] beside the function.
+    #[getter]
+    fn local(&self) -> PyResult<f64> {
+        Ok(self.sampled()?.beside())
+    }
+
+    /// Limits of ``alpha u_z/p`` [1/Pa] at long and at short waves, found from the values, without the springs.
+    #[getter]
+    fn limits(&self) -> (f64, f64) {
+        let limits = self.0.asymptotes();
+        (limits.long, limits.short)
+    }
+
+    fn __repr__(&self) -> String {
+        let brief = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+        let [long, short] = <[f64; 2]>::from(self.limits()).map(brief);
+        let springs = brief(self.0.local());
+        format!("<Response: limits ({long:?}, {short:?}) 1/Pa, springs {springs:?} m/Pa>")
+    }
+
+    fn __hash__(&self) -> PyResult<u64> {
+        let sampled = self.sampled()?;
+        let mut hasher = DefaultHasher::new();
+        sampled.values().iter().for_each(|value| value.to_bits().hash(&mut hasher));
+        Ok(hasher.finish())
+    }
+
+    /// Callable and arguments that make the response again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<value::Reduced<'py>> {
+        let (py, of) = (slf.py(), slf.get());
+        let arguments = (of.values(py)?, of.local()?).into_pyobject(py)?;
+        Ok((slf.get_type().getattr("_of")?, arguments))
+    }
+}
+
+/// A body of Python.
+#[derive(FromPyObject, IntoPyObject)]
+pub(super) enum PyBody {
+    HalfSpace(PyHalfSpace),
+    Response(PyResponse),
+}
+
+impl From<&Body> for PyBody {
+    fn from(body: &Body) -> Self {
         match body.half_space() {
-            Some(layers) => Self(layers.clone()),
-            None => unreachable!("Python makes no other bodies"),
+            Some(layers) => Self::HalfSpace(PyHalfSpace(layers.clone())),
+            None => Self::Response(PyResponse(body.clone())),
+        }
+    }
+}
+
+impl From<PyBody> for Body {
+    fn from(body: PyBody) -> Self {
+        match body {
+            PyBody::HalfSpace(layers) => layers.0.into(),
+            PyBody::Response(response) => response.0,
         }
     }
 }
@@ -287,16 +433,29 @@ pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     }
 }
 
-/// Body from an argument: a half-space, or a material that fills one.
-pub(super) fn body(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
+/// Body from an argument: a half-space, a material that fills one, or a response.
+pub(super) fn body(object: &Bound<'_, PyAny>) -> PyResult<Body> {
+    if let Ok(body) = object.extract::<PyBody>() {
+        return Ok(body.into());
+    }
+    match object.extract::<PyElastic>() {
+        Ok(material) => Ok(material.0.into()),
+        Err(_) => Err(no_body("a HalfSpace, an Elastic or a Response", object)),
+    }
+}
+
+/// Half-space from an argument, or a material that fills one.
+pub(super) fn half_space(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
     if let Ok(body) = object.extract::<PyHalfSpace>() {
         return Ok(body.0);
     }
     match object.extract::<PyElastic>() {
         Ok(material) => Ok(material.0.into()),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "body and counterbody must be a HalfSpace or an Elastic, got {}",
-            Repr(object)
-        ))),
+        Err(_) => Err(no_body("a HalfSpace or an Elastic", object)),
     }
+}
+
+fn no_body(kinds: &str, object: &Bound<'_, PyAny>) -> PyErr {
+    let got = Repr(object);
+    PyTypeError::new_err(format!("body and counterbody must be {kinds}, got {got}"))
 }

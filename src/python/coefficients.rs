@@ -1,4 +1,4 @@
-//! Response of a body to loads on its surface, and planned convolutions: what `nacre._compliance` is around.
+//! Response of a body to loads on its surface, and planned convolutions: what `nacre.contact.compliance` is around.
 
 use std::sync::Arc;
 
@@ -9,11 +9,12 @@ use pyo3::prelude::*;
 
 use super::arguments::{Real, Repr, count, items, read_only, real_array, real_matrix, shaped};
 use super::background::{self, Caller};
-use super::bodies::{PyLayer, body, substrate};
+use super::bodies::{PyLayer, body, half_space, substrate};
 use super::grid::PyGrid;
 use crate::compliance::convolution::Convolution;
 use crate::compliance::influence::{self, Method, coefficients_on};
 use crate::compliance::response::{self, Body, Compliance};
+use crate::error::positive;
 use crate::model::body::HalfSpace;
 use crate::numerics::parallel::{Threads, check_memory};
 
@@ -21,13 +22,16 @@ use crate::numerics::parallel::{Threads, check_memory};
 #[pyfunction]
 pub(super) fn frequency_response<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = body)] body: Body,
     wavenumber: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut values = real_array("wavenumber", wavenumber)?;
     py.detach(|| {
         values.iter_mut().try_for_each(|alpha| {
-            *alpha = response::frequency_response(&body, *alpha)?;
+            *alpha = match body.half_space() {
+                Some(layers) => response::frequency_response(layers, *alpha)?,
+                None => body.normal(positive("wavenumber", *alpha)?) / *alpha + body.local(),
+            };
             Ok::<_, crate::Error>(())
         })
     })?;
@@ -38,7 +42,7 @@ pub(super) fn frequency_response<'py>(
 #[pyfunction]
 pub(super) fn surface_compliance<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = half_space)] body: HalfSpace,
     wavenumber: &Bound<'py, PyAny>,
 ) -> PyResult<[Bound<'py, PyAny>; 4]> {
     let wavenumbers = real_array("wavenumber", wavenumber)?;
@@ -77,7 +81,7 @@ fn method(word: &str, refinement: usize) -> PyResult<Method> {
 #[pyfunction]
 pub(super) fn influence_coefficients<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = body)] body: Body,
     grid: PyGrid,
     method: &str,
     refinement: Option<&Bound<'py, PyAny>>,
@@ -85,7 +89,7 @@ pub(super) fn influence_coefficients<'py>(
     let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
     let method = self::method(method, refinement)?;
     let coefficients = background::run(py, None, move |_: &mut Caller<()>| {
-        influence::influence_coefficients(&body, &grid.0, method)
+        influence::influence_coefficients(body, &grid.0, method)
     })??;
     Ok(coefficients.into_pyarray(py))
 }
@@ -174,7 +178,7 @@ impl PyConvolution {
     #[staticmethod]
     fn of_bodies(
         py: Python<'_>,
-        #[pyo3(from_py_with = body)] body: HalfSpace,
+        #[pyo3(from_py_with = body)] body: Body,
         grid: PyGrid,
         counterbody: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
@@ -183,10 +187,9 @@ impl PyConvolution {
         Self::plan(py, threads, move |threads| {
             let grid = grid.0;
             check_memory(grid.shape(), Convolution::memory(grid.shape()))?;
-            let mut sum = coefficients_on(&*Body::from(body), &grid, Method::Exact, threads)?;
+            let mut sum = coefficients_on(&*body, &grid, Method::Exact, threads)?;
             if let Some(counterbody) = counterbody {
-                let body = Body::from(counterbody);
-                sum += &coefficients_on(&*body, &grid, Method::Exact, threads)?;
+                sum += &coefficients_on(&*counterbody, &grid, Method::Exact, threads)?;
             }
             Ok(sum)
         })

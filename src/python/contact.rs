@@ -8,14 +8,15 @@ use pyo3::prelude::*;
 
 use super::arguments::{Given, count, read_only, real_matrix};
 use super::background::{self, Caller};
-use super::bodies::{PyHalfSpace, body};
+use super::bodies::{PyBody, body};
 use super::grid::PyGrid;
 use super::shapes::{Shape, shape};
 use super::solved::{PySolved, ReportParts, hardness, report_parts};
 use crate::compliance::response::Body;
-use crate::contact::{Case, Contact, Motion, Options, Report, Setup, Solution, solve_with};
+use crate::contact::{
+    Case, Contact, Motion, Options, Report, SMALLEST_GRID, Setup, Solution, solve_with,
+};
 use crate::error::Result;
-use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
 /// A body on a grid, planned.
@@ -27,7 +28,7 @@ impl PyPlan {
     #[new]
     fn new(
         py: Python<'_>,
-        #[pyo3(from_py_with = body)] body: HalfSpace,
+        #[pyo3(from_py_with = body)] body: Body,
         grid: PyGrid,
         counterbody: Option<&Bound<'_, PyAny>>,
         coefficients: Option<&Bound<'_, PyAny>>,
@@ -35,7 +36,7 @@ impl PyPlan {
     ) -> PyResult<Self> {
         let coefficients = coefficients.map(|given| real_matrix("coefficients", given));
         let setup = Setup {
-            counterbody: counterbody.map(self::body).transpose()?.map(Body::from),
+            counterbody: counterbody.map(self::body).transpose()?,
             coefficients: coefficients.transpose()?.map(|given| given.into_shared()),
             threads: threads.map(|given| count("threads", 1, given)).transpose()?,
         };
@@ -45,12 +46,12 @@ impl PyPlan {
         Ok(Self(Arc::new(contact)))
     }
 
-    fn body(&self) -> PyHalfSpace {
-        PyHalfSpace::of(self.0.body())
+    fn body(&self) -> PyBody {
+        self.0.body().into()
     }
 
-    fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.0.setup().counterbody.as_ref().map(PyHalfSpace::of)
+    fn counterbody(&self) -> Option<PyBody> {
+        self.0.setup().counterbody.as_ref().map(PyBody::from)
     }
 
     fn grid(&self) -> PyGrid {
@@ -186,7 +187,7 @@ fn options(given: &Given) -> PyResult<Options> {
         initial: None,
         hardness: given.get("hardness")?.map(|given| hardness(&given)).transpose()?,
         indentation: None,
-        cells: None,
+        cells: given.count("max_cells", SMALLEST_GRID)?,
     })
 }
 
@@ -194,12 +195,12 @@ fn options(given: &Given) -> PyResult<Options> {
 pub(super) fn planning(given: &Given) -> PyResult<(Body, Setup, Option<Grid>)> {
     let grid: Option<PyGrid> = given.of("grid", "a nacre.Grid")?;
     let setup = Setup {
-        counterbody: given.get("counterbody")?.as_ref().map(body).transpose()?.map(Body::from),
+        counterbody: given.get("counterbody")?.as_ref().map(body).transpose()?,
         coefficients: None,
         threads: given.count("threads", 1)?,
     };
     let body = body(&given.of::<Bound<PyAny>>("body", "a body")?)?;
-    Ok((body.into(), setup, grid.map(|grid| grid.0)))
+    Ok((body, setup, grid.map(|grid| grid.0)))
 }
 
 /// Where a contact is solved: on a plan, or on one that is made.

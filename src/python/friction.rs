@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use super::arguments::{Given, Pair, count, read_only, real_array, real_matrix, word};
 use super::background::{self, Caller};
-use super::bodies::body;
+use super::bodies::half_space;
 use super::contact::{PyPlan, motion, planning, shape_of};
 use super::data::{read, text};
 use super::shapes::Shape;
 use super::solved::PySolved;
 use crate::compliance::response::Body;
-use crate::contact::{Contact, Motion, Options, Solution, choose_grid};
+use crate::contact::{Contact, Motion, Options, SMALLEST_GRID, Solution, choose_grid};
 use crate::friction::{
     Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Rolling,
     RollingDirection, Step, TangentialMotion,
@@ -295,29 +295,34 @@ fn begun(
     let (asked, several) = asked(&shape)?;
     let contact = match plan {
         Some(plan) => Arc::clone(&plan.get().0),
-        None => planned(py, given, &shape, asked.widest())?,
+        None => planned(py, given, &shape, asked.widest(), last.as_deref())?,
     };
     let problem = Arc::new(Problem { contact, shape, asked, options });
     Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
 }
 
-/// A contact of the given bodies, on the given grid or on that which fits the shape.
+/// A contact of the given bodies: on the given grid, on that of the step before, or on one that fits the shape.
 fn planned(
     py: Python<'_>,
     given: &Given,
     shape: &Shape,
     motion: Option<Motion>,
+    last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
     let (body, setup, grid) = planning(given)?;
-    let motion = motion.ok_or_else(|| {
-        PyValueError::new_err("load or approach must be given, in the call or in the first step")
-    })?;
-    let shape = shape.clone();
+    let cells = given.count("max_cells", SMALLEST_GRID)?;
+    let grid = grid.or_else(|| last.map(|last| *last.grid()));
+    if motion.is_none() && last.is_none() {
+        let said = "load or approach must be given, in the call or in the first step";
+        return Err(PyValueError::new_err(said));
+    }
+    let (shape, motion) = (shape.clone(), motion.unwrap_or_default());
     let contact = background::run(py, None, move |caller: &mut Caller<()>| {
         let grid = match grid {
             Some(grid) => grid,
             None => {
-                let (options, ask) = (Options::default(), &mut |_: &_| caller.ask(|| ()));
+                let (options, ask) =
+                    (Options { cells, ..Options::default() }, &mut |_: &_| caller.ask(|| ()));
                 choose_grid(&shape, &body, &setup, &motion, options.watched(ask))?
             }
         };
@@ -396,12 +401,12 @@ fn cells(given: &Bound<'_, PyAny>) -> PyResult<usize> {
 #[pyfunction]
 pub(super) fn creep_coefficients(
     py: Python<'_>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = half_space)] body: HalfSpace,
     counterbody: Option<&Bound<'_, PyAny>>,
     semi_axes: Pair,
     #[pyo3(from_py_with = cells)] cells: usize,
 ) -> PyResult<String> {
-    let counterbody = counterbody.map(self::body).transpose()?.map(Body::from);
+    let counterbody = counterbody.map(half_space).transpose()?.map(Body::from);
     let Pair(axes) = semi_axes;
     let found = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());

@@ -18,6 +18,17 @@ pub(super) fn equivalent_radius(
     Ok(hertz::equivalent_radius(radius, counter_radius)?)
 }
 
+/// Principal relative radii of two surfaces in contact, and the angle of the axis of the longer one.
+#[pyfunction]
+pub(super) fn relative_radii(
+    radii: [Option<Real>; 2],
+    counter_radii: [Option<Real>; 2],
+    angle: Real,
+) -> PyResult<([f64; 2], f64)> {
+    let [radii, counter_radii] = [radii, counter_radii].map(|pair| pair.map(|r| r.map(|r| r.0)));
+    Ok(hertz::relative_radii(radii, counter_radii, angle.0)?)
+}
+
 /// Contact modulus of two bodies.
 #[pyfunction]
 pub(super) fn contact_modulus(body: PyElastic, counterbody: Option<PyElastic>) -> f64 {

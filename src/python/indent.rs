@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use super::arguments::{Given, Real, read_only, real_array, shaped, word};
 use super::background::{self, Caller};
-use super::bodies::{PyHalfSpace, body};
+use super::bodies::{PyHalfSpace, half_space};
 use crate::Result;
 use crate::compliance::response::Body;
 use crate::indent::{
@@ -121,12 +121,12 @@ type CurveParts<'py> = (
 impl PyIndentation {
     #[new]
     fn new(
-        #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+        #[pyo3(from_py_with = half_space)] body: crate::HalfSpace,
         tip: PyTip,
         counterbody: Option<&Bound<'_, PyAny>>,
         adhesion: Option<PyAdhesion>,
     ) -> PyResult<Self> {
-        let counterbody = counterbody.map(self::body).transpose()?;
+        let counterbody = counterbody.map(half_space).transpose()?;
         let bodies: Vec<Body> =
             std::iter::once(&body).chain(&counterbody).map(Body::from).collect();
         let stack = Stack::plan(&bodies)?;

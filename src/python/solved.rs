@@ -9,9 +9,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::arguments::{Given, read_only, real_array, real_matrix};
 use super::background::{self, Caller};
-use super::bodies::PyHalfSpace;
+use super::bodies::PyBody;
 use super::data::{read, text};
 use super::grid::PyGrid;
+use crate::compliance::response::Body;
 use crate::contact::{
     Balance, Discretisation, Hardness, Motion, Report, Solution, Solver, Termination, Warning,
 };
@@ -58,7 +59,7 @@ struct Told {
 }
 
 /// JSON text of a report, its grid and its bodies.
-pub(super) type ReportParts = (String, PyGrid, PyHalfSpace, Option<PyHalfSpace>);
+pub(super) type ReportParts = (String, PyGrid, PyBody, Option<PyBody>);
 
 /// The report for `nacre.types.Report`.
 pub(super) fn report_parts(report: &Report) -> ReportParts {
@@ -84,9 +85,9 @@ pub(super) fn report_parts(report: &Report) -> ReportParts {
             seconds: of.seconds,
         },
     };
-    let counterbody = report.counterbody.as_ref().map(PyHalfSpace::of);
+    let counterbody = report.counterbody.as_ref().map(PyBody::from);
     let told = text(&told).unwrap_or_default();
-    (told, PyGrid(report.grid), PyHalfSpace::of(&report.body), counterbody)
+    (told, PyGrid(report.grid), (&report.body).into(), counterbody)
 }
 
 /// Report of JSON text, a grid and bodies, checked.
@@ -112,8 +113,8 @@ fn report_of((told, grid, body, counterbody): ReportParts) -> PyResult<Report> {
         discretisation: of.discretisation,
         warnings: of.warnings,
         grid: grid.0,
-        body: body.0.into(),
-        counterbody: counterbody.map(|body| body.0.into()),
+        body: body.into(),
+        counterbody: counterbody.map(Body::from),
         motion: of.motion,
         rolling_direction: of.rolling_direction,
         tolerance: of.tolerance,
@@ -126,8 +127,8 @@ fn report_of((told, grid, body, counterbody): ReportParts) -> PyResult<Report> {
 pub(super) fn checked_report(
     told: String,
     grid: PyGrid,
-    body: PyHalfSpace,
-    counterbody: Option<PyHalfSpace>,
+    body: PyBody,
+    counterbody: Option<PyBody>,
 ) -> PyResult<ReportParts> {
     Ok(report_parts(&report_of((told, grid, body, counterbody))?))
 }

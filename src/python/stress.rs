@@ -1,4 +1,4 @@
-//! Stress below the surface: evaluated, summarised and planned for `nacre.stresses`.
+//! Stress below the surface: evaluated, summarised and planned for `nacre.contact.stresses`.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use super::arguments::{Given, Pair, Real, Repr, real_array, real_matrix};
 use super::background;
-use super::bodies::{PyHalfSpace, body};
+use super::bodies::{PyHalfSpace, half_space};
 use super::data::summary_text;
 use super::friction::PyFrictionSolved;
 use super::grid::PyGrid;
@@ -73,7 +73,7 @@ pub(super) fn stress<'py>(
 /// Fields of the stress under a pressure that is uniform over each cell; `nacre.stress`.
 #[pyfunction]
 pub(super) fn stress_under<'py>(
-    #[pyo3(from_py_with = body)] body: HalfSpace,
+    #[pyo3(from_py_with = half_space)] body: HalfSpace,
     grid: PyGrid,
     pressure: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,

@@ -9,6 +9,9 @@ use super::arguments::{array_repr, hash};
 /// Arguments of a call by name, in their order.
 pub(super) type Arguments<'py> = Vec<(&'static str, Bound<'py, PyAny>)>;
 
+/// Name of an argument that paths do not name, but the arguments of which.
+pub(super) const INNER: &str = ".";
+
 /// A value that a call of its class makes.
 pub(super) trait Value {
     /// Name of the class.
@@ -32,7 +35,7 @@ pub(super) fn repr<V: Value>(value: &V, py: Python<'_>) -> PyResult<String> {
     call_text(&format!("{}{maker}", V::NAME), &value.arguments(py)?, V::UNNAMED)
 }
 
-/// Text of a call. Arguments that say nothing, as None, are left out; the first `unnamed` have no names.
+/// Text of a call. Arguments that say nothing, as None or `smooth=True`, are left out; the first `unnamed` have no names.
 pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> PyResult<String> {
     let mut shown = Vec::new();
     for (number, (name, argument)) in arguments.iter().enumerate() {
@@ -46,7 +49,7 @@ pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> 
             argument.repr()?.to_string()
         };
         match text.as_str() {
-            "None" | "(None, None)" | "(False, False)" => {}
+            "None" | "(None, None)" | "(False, False)" | "True" => {}
             _ if number < unnamed => shown.push(text),
             _ => shown.push(format!("{name}={text}")),
         }
@@ -136,6 +139,11 @@ macro_rules! class {
 
             fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
                 value::hashed(self, py)
+            }
+
+            /// Arguments of the call that makes the value, by name: for paths.
+            fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+                pyo3::types::IntoPyDict::into_py_dict(self.arguments(py)?, py)
             }
 
             /// Callable and arguments that make the value again.

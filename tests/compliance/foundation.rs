@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
-use nacre::response::{Asymptotes, Response};
+use nacre::response::{Asymptotes, Response, Sampled};
 use nacre::{Elastic, Grid, HalfSpace, Result};
 
 use crate::messages::message;
@@ -181,6 +181,56 @@ impl Response for Sprung {
     fn local(&self) -> f64 {
         self.local
     }
+}
+
+/// The samples of a body's response.
+fn samples(body: &dyn Response) -> Vec<f64> {
+    Sampled::wavenumbers().map(|alpha| body.normal(alpha) / alpha + body.local()).collect()
+}
+
+#[test]
+fn samples_have_the_coefficients_of_their_body() -> Result<()> {
+    let soft = coated(Elastic::new(1.0, 0.3)?, 0.1, 0.05)?;
+    let rigid = HalfSpace::new(nacre::Substrate::Rigid, soft.layers().to_vec())?;
+    let bodies: [nacre::Body; 6] = [
+        pasternak(0.3).into(),
+        WINKLER.into(),
+        Elastic::new(1.0, 0.3)?.into(),
+        coated(Elastic::new(1.0, 0.3)?, 4.0, 0.5)?.into(),
+        soft.into(),
+        rigid.into(),
+    ];
+    for body in bodies {
+        let sampled = nacre::Body::from(Sampled::new(samples(&*body), 0.0)?);
+        assert_eq!(sampled, Sampled::new(samples(&*body), 0.0)?.into());
+        for grid in [Grid::new([24, 20], [24.0, 30.0])?, Grid::line(24, 30.0)?] {
+            let [found, exact] =
+                [&sampled, &body].map(|body| influence_coefficients(body, &grid, Method::Exact));
+            let (found, exact) = (found?, exact?);
+            let largest = exact[[0, 0]];
+            for (index, c) in found.indexed_iter() {
+                below!((c - exact[index]).abs() / largest, EXACT, body, index);
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn values_that_are_no_response_are_refused() {
+    let told = |values: Vec<f64>| message(Sampled::new(values, 0.0));
+    let of = |f: fn(f64) -> f64| Sampled::wavenumbers().map(f).collect::<Vec<_>>();
+    assert_eq!(told(vec![1.0; 3]), "values: expected shape [37121, 1], got [3, 1]");
+    let wrong = "the function of the wavenumber must be finite and at least 0 everywhere, and above 0 somewhere, got";
+    assert!(told(of(|_| f64::NAN)).starts_with(&format!("{wrong} NaN at 6.47")));
+    assert_eq!(told(of(|_| 0.0)), format!("{wrong} 0 at 1"));
+    assert!(told(of(|alpha| 1.0 / alpha.sqrt())).contains("must settle before 1.545"));
+    assert!(told(of(|alpha| 1.0 / alpha.powi(2))).contains("must settle before 6.47"));
+    assert!(told(of(|alpha| 1.0 + 1.0 / alpha)).contains("give the constant as local"));
+    assert_eq!(
+        message(Sampled::new(of(|_| 1.0), -1.0)),
+        "local must be finite and at least 0, got -1"
+    );
 }
 
 /// A response that says of itself whatever it is told to.

@@ -52,7 +52,7 @@ fn lands(ends: &[[f64; 2]], drops: &[f64]) -> Result<Roller> {
         drop.extend([1e-5, d, d, 1e-5]);
     }
     let inner = 1..x.len() - 1;
-    Roller::with_profile(5e-3, SampledProfile::new(&x[inner.clone()], &drop[inner])?)
+    Roller::with_profile(5e-3, SampledProfile::new(&x[inner.clone()], &drop[inner])?.straight())
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn random_shapes_are_held_as_a_whole() -> Result<()> {
                 drop.push(1e-6 * r[5 + k] + 1e-5 * u * u);
             }
         }
-        let lands = || Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?);
+        let lands = || Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?.straight());
         let away = Paraboloid::new(1e-2, 5e-3)?.shifted(1e-3 * r[9], 1e-3 * r[10] - 5e-4)?;
         let shape: Box<dyn Surface> = match case % 3 {
             0 => Box::new(Sphere::new(1e-2)?.plus(away)),

@@ -240,7 +240,7 @@ fn corners_of_a_sampled_profile_are_estimated() -> Result<()> {
         let x: Vec<f64> =
             (0..points).map(|k| half * (2.0 * k as f64 / (points - 1) as f64 - 1.0)).collect();
         let drop: Vec<f64> = x.iter().map(|x| 30e-6 * (x / half).powi(4)).collect();
-        let roller = Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?)?;
+        let roller = Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?.straight())?;
         let motion = Motion::load(2000.0).with_tilt([Some(2e-3), None]);
         let on = |cells: usize| {
             let contact = plan(steel, Grid::new([cells, 64], [10e-3, 0.4e-3])?)?;

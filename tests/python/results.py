@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 
 import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre.indent import Adhesion, Curve, Fit, Indentation, Tip, fit
+from nacre.results.listed import Listed
+from nacre.results.quantities import AXIS, Quantity
 
 DLC = nacre.Elastic(420e9, 0.25)
 LAYERED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])
@@ -87,11 +90,35 @@ INDENT: dict[str, Callable[[], nacre.indent.IndentSolution]] = {
     "sharp": indented(load=[1e-3], tip=Tip.cone(0.3)),
     "rough": indented(load=1e-4, tip=Tip.profile(RADII, np.arange(5.0) ** 2 / 1e7)),
 }
+
+
+@dataclass(frozen=True, repr=False)
+class Tried(Listed):
+    """A result that no Rust knows: everything follows from its fields and quantities."""
+
+    _QUANTITIES = (
+        Quantity("force", "a force", "N", "N/m", AXIS, "force"),
+        Quantity("shift", "a length", "m", label="shift"),
+    )
+    _TITLE = "a result that is tried"
+
+    force: tuple[float, float]
+    shift: float
+    steps: int
+    axis: Literal["x", "y"] | None
+    names: tuple[str, ...]
+    is_line: bool
+
+
+LISTED: dict[str, Callable[[], Any]] = {
+    "creep coefficients": lambda: nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
+    "tried": lambda: Tried((1.0, -2.0), 1e-9 / 3, 3, "x", ("a", "b"), False),
+}
 FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}
 
 
 @functools.cache
 def solved(kind: str) -> Any:
     """Return the result of a kind; what it warns of is saved with it."""
-    makers: dict[str, Callable[[], Any]] = {**NORMAL, **FRICTION, **INDENT, **FITS}
+    makers: dict[str, Callable[[], Any]] = {**NORMAL, **FRICTION, **INDENT, **FITS, **LISTED}
     return quiet(makers[kind])

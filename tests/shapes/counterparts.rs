@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
-use nacre::hertz::{Ellipse, Line, Point, contact_modulus, equivalent_radius};
+use nacre::hertz::{Ellipse, Line, Point, contact_modulus, equivalent_radius, relative_radii};
 use nacre::surface::Extent;
 use nacre::{
     Contact, Cylinder, Elastic, Error, Grid, HeightMap, LogarithmicProfile, Motion, Options,
@@ -108,6 +108,72 @@ fn equivalent_radii_are_those_of_the_sum_of_curvatures() -> Result<()> {
     let both = contact_modulus(&steel()?, Some(&aluminium));
     let due = 0.91 / 210e9 + (1.0 - 0.33 * 0.33) / 70e9;
     near!(1.0 / both, due, ROUNDING);
+    Ok(())
+}
+
+#[test]
+fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
+    // Semi-axes of equal cylinders crossed at an angle, over the contact radius of a ball of their radius, by the cosine of
+    // the angle: Roark's Formulas for Stress and Strain, 7th ed. (2002), table 14.1, case 4.
+    const HALF_A_DIGIT: f64 = 5e-4;
+    let table = [
+        (0.0, 1.0, 1.0),
+        (0.1, 1.070, 0.936),
+        (0.3, 1.242, 0.822),
+        (0.5, 1.486, 0.717),
+        (0.7, 1.905, 0.608),
+        (0.8, 2.292, 0.544),
+    ];
+    let cylinder = [None, Some(8e-3)];
+    let ball = Point::new(8e-3, 115e9, 100.0)?;
+    for (cosine, alpha, beta) in table {
+        let angle = f64::acos(cosine);
+        let (radii, turn) = relative_radii(cylinder, cylinder, angle)?;
+        let [a, b] = Ellipse::new(radii, 115e9, 100.0)?.semi_axes;
+        below!((a / ball.radius - alpha).abs(), HALF_A_DIGIT, cosine);
+        below!((b / ball.radius - beta).abs(), HALF_A_DIGIT, cosine);
+        // The contact lies between the two axes; at right angles it is round.
+        if cosine > 0.0 {
+            below!((turn - 0.5 * angle).abs(), ROUNDING, cosine);
+        }
+    }
+    // Aligned bodies, and bodies turned by a right angle.
+    let (ball, groove) = ([Some(5e-3); 2], [Some(-5.2e-3), Some(20e-3)]);
+    let aligned = [0, 1]
+        .map(|axis| equivalent_radius(ball[axis], groove[axis]))
+        .into_iter()
+        .collect::<Result<Vec<_>>>()?;
+    for (angle, turned) in [(0.0, 0.0), (0.5 * PI, 0.5 * PI), (-PI, 0.0)] {
+        let (radii, turn) = relative_radii(ball, groove, angle)?;
+        near!(radii[0], aligned[0], 1e-13, angle);
+        near!(radii[1], aligned[1], ROUNDING, angle);
+        below!((turn.abs() - turned).abs(), ROUNDING, angle);
+    }
+    // Gap of two bodies in any direction: that of the paraboloid, turned.
+    let (one, two, angle) = ([Some(60e-3), Some(130e-3)], [Some(80e-3), Some(200e-3)], 1.1);
+    let (radii, turn) = relative_radii(one, two, angle)?;
+    let curvature = |radii: [Option<f64>; 2], direction: f64| {
+        let [x, y] = radii.map(|radius| radius.map_or(0.0, f64::recip));
+        x * direction.cos().powi(2) + y * direction.sin().powi(2)
+    };
+    for direction in [0.0, 0.7, 1.9, 3.0] {
+        let both = curvature(one, direction) + curvature(two, direction - angle);
+        near!(curvature(radii.map(Some), direction - turn), both, ROUNDING, direction);
+    }
+    // Nearly parallel cylinders keep their digits: R′ R″ = R²/sin²φ.
+    let ([longer, shorter], _) = relative_radii(cylinder, cylinder, 1e-5)?;
+    near!(longer * shorter, (8e-3 / f64::sin(1e-5)).powi(2), ROUNDING);
+    for (one, two, angle) in [
+        (cylinder, cylinder, 0.0),
+        (cylinder, cylinder, PI),
+        (cylinder, [None, Some(-9e-3)], 0.3),
+        ([Some(0.0), None], cylinder, 0.3),
+        (cylinder, cylinder, f64::NAN),
+        (cylinder, [None, Some(f64::INFINITY)], 0.3),
+        ([Some(1e-320); 2], cylinder, 0.3),
+    ] {
+        assert!(relative_radii(one, two, angle).is_err(), "{one:?} {two:?} {angle}");
+    }
     Ok(())
 }
 

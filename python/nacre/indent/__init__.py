@@ -17,7 +17,7 @@ array([0.00021, 0.00076])
 from nacre._core import Adhesion, Tip, slope_of
 from nacre.indent import charts
 from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
-from nacre.indent.classical import Classical, classical
+from nacre.indent.classical import Classical, classical, tabor_parameter
 from nacre.indent.curves import Curve, read
 from nacre.indent.fit import Fit, fit
 from nacre.indent.solution import (
@@ -52,4 +52,5 @@ __all__ = [
     "slope_of",
     "solve",
     "suspicious_units",
+    "tabor_parameter",
 ]

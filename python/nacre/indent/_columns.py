@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._text import Column, unit_of
+from nacre._tools.text import Column, unit_of
 from nacre.indent._text import Table
 
 Array = npt.NDArray[np.float64]

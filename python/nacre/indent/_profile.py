@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
 from nacre.indent._model import Model
 
 Array = npt.NDArray[np.float64]

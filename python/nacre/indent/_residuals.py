@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
 from nacre.indent._model import NUISANCES, Model, Noise, uniform
 from nacre.indent._profile import Estimate
 

@@ -5,24 +5,24 @@ from __future__ import annotations
 import math
 import operator
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._display import aligned, table
+from nacre._tools.units import printable, written
 from nacre.indent._files import unit_of
 from nacre.indent._model import NUISANCES, OF_FORCE
 from nacre.indent._residuals import ROUNDING
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import holds
-from nacre.units import printable, written
-from nacre.values import FORMAT, checked_state, decode, encode, refusing
+from nacre.results import display, files
+from nacre.results.base import Result
+from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -38,7 +38,7 @@ GIVEN = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit:
+class Fit(Result):
     """Estimates of `fit`, how sure they are, and whether the data tell them at all."""
 
     estimates: dict[str, float]
@@ -149,10 +149,12 @@ class Fit:
     def __str__(self) -> str:
         """Return the table."""
         head, rows, notes = self._table()
-        return printable("\n".join([*aligned([head, *rows], "<"), *notes]))
+        return printable("\n".join([*display.aligned([head, *rows], "<"), *notes]))
 
     def _repr_html_(self) -> str:
-        return table(*self._table())
+        head, rows, notes = self._table()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
         rows = []
@@ -233,33 +235,20 @@ class Fit:
         ValueError
             If the file has another ending.
         """
-        from nacre.indent._files import parameter_rows, save
+        from nacre.indent._files import parameter_rows
 
-        return save(self, parameter_rows(self), path)
+        return files.save(path, files.tabular(self, parameter_rows(self)))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the fit as plain data with names, for JSON."""
-        state: dict[str, Any] = {"format": FORMAT, "nacre": core.__version__, "kind": "Fit"}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name == "curves":
-                value = [
-                    {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
-                    for c in value
-                ]
-            state[field.name] = encode(value)
-        return state
+    def _state(self) -> dict[str, Any]:
+        curves = [
+            {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
+            for c in self.curves
+        ]
+        names = [name for name in self._names() if name != "curves"]
+        return {name: encode(getattr(self, name)) for name in names} | {"curves": encode(curves)}
 
-    @staticmethod
-    def from_dict(data: Mapping[str, Any]) -> Fit:
-        """Return the fit of what `to_dict` returned.
-
-        Raises
-        ------
-        ValueError
-            If a key is missing or unknown, a value does not fit, or a newer version wrote the data.
-        """
-        state = checked_state(data, "Fit", {field.name for field in fields(Fit)})
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
         with refusing("Fit"):
             for name in ("body", "tip", "counterbody", "adhesion"):
                 state[name] = decode(state[name])
@@ -286,7 +275,7 @@ class Fit:
             }
             for name in ("free", "warnings"):
                 state[name] = tuple(state[name])
-            found = Fit(**state)
+            found = cls(**state)
             if not found._fits_together():
                 raise TypeError("its parts do not fit together")
         return found

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from nacre._text import MISSING, Column, column_of, decoded, fields_of
-from nacre._text import unit_of as unit_of
-from nacre.units import size_of
+from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of
+from nacre._tools.text import unit_of as unit_of
+from nacre._tools.units import size_of
 
 DELIMITERS = ("\t", ";", ",", " ")
 """Marks between fields, the likeliest first; a blank stands for any white space."""

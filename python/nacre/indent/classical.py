@@ -12,7 +12,7 @@ import nacre._core as core
 from nacre.indent.curves import Curve
 from nacre.indent.solution import Indentation
 
-__all__ = ["Classical", "classical", "gao_weights", "oliver_pharr"]
+__all__ = ["Classical", "classical", "gao_weights", "oliver_pharr", "tabor_parameter"]
 
 Array = npt.NDArray[np.float64]
 
@@ -22,6 +22,62 @@ UPPER = 0.4
 """Share of the largest depth from which on points count for the slope at the largest force."""
 STIFFER = 10.0
 """Ratio of base to layer from which a base counts as rigid for Dimitriadis' series."""
+
+
+def tabor_parameter(
+    radius: float,
+    modulus: float,
+    work: float,
+    *,
+    distance: float | None = None,
+    strength: float | None = None,
+) -> float:
+    """Tabor's parameter μ, which says which model of adhesion holds: JKR or DMT.
+
+    ``μ = (R w² / (E*² z0³))**(1/3)`` is the neck of the surfaces over the reach of their
+    attraction: JKR above some 5, DMT below some 0.1, Maugis's model in between (Johnson and
+    Greenwood, 1997, doi:10.1006/jcis.1997.4984).
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the sphere, or the equivalent radius of two [m].
+    modulus : float
+        E* of both bodies [Pa]; where a coating is thick compared with the contact, that of the
+        coating.
+    work : float
+        Work of adhesion [J/m²].
+    distance : float, optional
+        Equilibrium distance z0 of the surfaces [m], some 0.2 to 0.4 nm.
+    strength : float, optional
+        In place of it, the largest attraction σ0 [Pa], as of `Adhesion.maugis`: that of the
+        Lennard-Jones law, ``z0 = 16 w / (9 sqrt(3) σ0)``.
+
+    Returns
+    -------
+    float
+        Tabor's parameter. Maugis's λ is 1.157 times it.
+
+    Raises
+    ------
+    ValueError
+        If a number is not above 0, or not exactly one of distance and strength is given.
+
+    Examples
+    --------
+    >>> round(nacre.indent.tabor_parameter(10e-6, 1e6, 0.05, distance=0.3e-9), 1)
+    974.7
+    """
+    given = {"distance": distance, "strength": strength}
+    known = {name: value for name, value in given.items() if value is not None}
+    if len(known) != 1:
+        raise ValueError(f"exactly one of distance and strength must be given, got {given}")
+    for name, value in {"radius": radius, "modulus": modulus, "work": work, **known}.items():
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} must be positive and finite, got {value}")
+    reach = 16 * work / (9 * math.sqrt(3) * strength) if strength else distance
+    assert reach is not None
+    return float((radius * work**2 / (modulus**2 * reach**3)) ** (1 / 3))
 
 
 class Classical(NamedTuple):

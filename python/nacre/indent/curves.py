@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._core import plain
+from nacre._tools.units import written
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._text import tables
-from nacre.units import written
 
 Array = npt.NDArray[np.float64]
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.progress import lasting
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
 from nacre.indent._residuals import Examined, examined, likeliest
@@ -89,7 +90,8 @@ def fit(
         Whether intervals are found by profile likelihood, and other starts are tried. Otherwise
         they are linear, and only these decide what is identifiable.
     progress : callable, optional
-        Function that is called with a short text at each stage.
+        Function that is called with a short text at each stage. By default a terminal or a notebook
+        shows a bar after two seconds.
 
     Returns
     -------
@@ -165,7 +167,19 @@ def fit(
             f"data must have more points than free parameters, {len(model.names)}, got "
             f"{model.depth.size}"
         )
-    tell = progress or (lambda text: None)
+    with lasting("fit", progress) as told:
+        return _fitted(made, model, noise, starts, profile, told or (lambda text: None))
+
+
+def _fitted(
+    made: Callable[..., Model],
+    model: Model,
+    noise: str,
+    starts: Sequence[Mapping[str, float]] | None,
+    profile: bool,
+    tell: Callable[[str], object],
+) -> Fit:
+    """Return the fit of a model; `made` makes it again with another kind of noise."""
     tell("first estimate")
     start = _start(model)
     if noise == "auto":
@@ -186,7 +200,7 @@ def fit(
                 minima.append((x, chi2))
     found = examined(model, best)
     for text in found.warnings:
-        warnings.warn(text, core.NacreWarning, stacklevel=2)
+        warnings.warn(text, core.NacreWarning, stacklevel=3)
     ends: dict[str, tuple[float, float]] = {}
     if profile and not found.warnings:
         for k, unknown in enumerate(model.unknowns):

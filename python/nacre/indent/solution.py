@@ -16,14 +16,16 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._display import aligned, table
-from nacre._result import Result
-from nacre._typing import Body, Field, Matrix, Vector
-from nacre.units import INDENT_UNITS, printable, written
-from nacre.values import decode, encode, refusing
+from nacre._tools.typing import Field, Layers, Matrix, Vector
+from nacre._tools.units import printable, written
+from nacre.results import display, files
+from nacre.results.base import Result
+from nacre.results.quantities import INDENT, units
+from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 Given = Literal["load", "approach", "radius"]
 Branch = Literal["stable", "unstable"]
@@ -32,8 +34,7 @@ Numbers = float | Vector | Matrix
 
 NUMBERS = ("load", "approach", "radius", "stiffness", "outer_radius", "central_pressure")
 """Numbers of each contact that are kept."""
-COLUMNS = ("load", "approach", "radius", "stiffness", "central_pressure")
-"""Numbers of each contact that are printed."""
+UNITS = units(indents=True)
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
@@ -362,9 +363,18 @@ class IndentSolution(Result):
         ValueError
             If the file has another ending.
         """
-        from nacre.indent._files import contact_rows, save
+        from nacre.indent._files import contact_rows
 
-        return save(self, contact_rows(self), path)
+        return files.save(path, files.tabular(self, contact_rows(self)))
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the load as a function of the approach, or of one contact the pressure.
+
+        Needs ``nacre-contact[plot]``.
+        """
+        from nacre.plot import indent
+
+        return indent.contacts(self, axes)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all is equal, to the bit."""
@@ -384,10 +394,12 @@ class IndentSolution(Result):
     def __str__(self) -> str:
         """Return the table."""
         head, rows, notes = self._table()
-        return printable("\n".join([*aligned([head, *rows]), *notes]))
+        return printable("\n".join([*display.aligned([head, *rows]), *notes]))
 
     def _repr_html_(self) -> str:
-        return table(*self._table())
+        head, rows, notes = self._table()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
 
     def _range(self, name: str) -> str:
         values = np.ravel(getattr(self, name))
@@ -395,9 +407,10 @@ class IndentSolution(Result):
         return " to ".join(ends)
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
-        columns = [np.ravel(getattr(self, name)).tolist() for name in COLUMNS]
+        shown = [row for row in INDENT if row.label]
+        columns = [np.ravel(row.of(self)).tolist() for row in shown]
         rows = [
-            [said(value, name) for value, name in zip(row, COLUMNS, strict=True)]
+            [said(value, column.name) for value, column in zip(row, shown, strict=True)]
             for row in list(zip(*columns, strict=True))[:ROWS]
         ]
         notes = []
@@ -407,7 +420,7 @@ class IndentSolution(Result):
             pulled = (f"{n.rpartition('_')[2]} {said(v, n)}" for n, v in self._pulled.items())
             notes.append(f"pull-off: {', '.join(pulled)}")
         notes += [f"warning: {warning}" for warning in self.warnings]
-        return [name.replace("_", " ") for name in COLUMNS], rows, notes
+        return [row.label for row in shown], rows, notes
 
 
 IndentState = IndentSolution
@@ -487,9 +500,9 @@ class Indentation:
 
     def __new__(
         cls,
-        body: Body,
+        body: Layers,
         tip: core.Tip,
-        counterbody: Body | None = None,
+        counterbody: Layers | None = None,
         *,
         adhesion: core.Adhesion | None = None,
     ) -> Self:
@@ -657,13 +670,13 @@ class Indentation:
 
 def said(value: float, name: str) -> str:
     """Return a number of an indentation with its unit."""
-    return written(value, INDENT_UNITS[name], 4) if math.isfinite(value) else str(value)
+    return written(value, UNITS[name], 4) if math.isfinite(value) else str(value)
 
 
 def solve(
-    body: Body,
+    body: Layers,
     tip: core.Tip,
-    counterbody: Body | None = None,
+    counterbody: Layers | None = None,
     *,
     adhesion: core.Adhesion | None = None,
     load: npt.ArrayLike | None = None,

@@ -10,7 +10,7 @@ from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
 from nacre.plot.optimise import course
 from nacre.plot.relief import relief, view
-from nacre.plot.rough import distribution, load_curve, patches, spectrum
+from nacre.plot.rough import distribution, heights, load_curve, patches, spectrum
 from nacre.plot.sections import compare, section
 from nacre.plot.stress import stress_depth, stress_section
 from nacre.plot.studies import chart, curve
@@ -25,6 +25,7 @@ __all__ = [
     "curve",
     "distribution",
     "friction",
+    "heights",
     "interface_map",
     "load_curve",
     "loop",

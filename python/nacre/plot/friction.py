@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._extras import extra
-from nacre._friction_display import checked, has_friction
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
 from nacre.plot.style import lengths, new_axes, next_look, styled
-from nacre.units import Scale
+from nacre.results.base import checked, has_friction
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -20,10 +20,11 @@ with extra("plot"):
 if TYPE_CHECKING:
     import xarray
 
-    from nacre._friction_result import FrictionSolution
+    from nacre.contact.friction import FrictionSolution
 
-STICK, SLIP = "#56B4E9", "#E69F00"
-"""Colours of cells that stick and slip: blue and orange of the palette of Okabe and Ito."""
+STICK, SLIP = "#CCE6F6", "#E69F00"
+"""Colours of cells that stick and slip: orange of the palette of Okabe and Ito, and its blue, so
+light that the two differ in print without colours."""
 ARROWS = 17
 """Arrows along the longer side of the contact."""
 
@@ -56,7 +57,7 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     with styled():
         if solution.grid.is_line:
             return _line(solution, axes or new_axes(0.6, 0.4))
-        return _map(solution, axes or new_axes(0.6, 0.5))
+        return _map(solution, axes or new_axes(0.9, 0.66))
 
 
 def _check(axes: object) -> None:
@@ -92,6 +93,8 @@ def _map(solution: FrictionSolution, axes: Axes) -> Axes:
         ylim=scales[1].factor * window[1],
     )
     _legend(axes)
+    if solution.direction is not None:
+        _rolling(axes, solution.direction)
     axes.set_title(
         "arrows: traction on the body" + ("" if same else "; x and y to different scales")
     )
@@ -117,7 +120,7 @@ def _arrows(
         return
     x, y = factors[0] * solution.x[picked[0]], factors[1] * solution.y[picked[1]]
     length = step * max(f * d for f, d in zip(factors, solution.grid.spacing, strict=True))
-    axes.quiver(
+    arrows = axes.quiver(
         *(x, y, qx.T, qy.T),
         angles="xy",
         scale_units="xy",
@@ -126,6 +129,20 @@ def _arrows(
         width=0.004,
         color="black",
     )
+    label = written(largest, "Pa", 3)
+    axes.quiverkey(arrows, 1.03, 0.74, largest, label, labelpos="E", labelsep=0.1)
+
+
+def _rolling(axes: Axes, direction: str) -> None:
+    """Draw an arrow in the direction of rolling beside the picture."""
+    sign, axis = (-1 if direction[0] == "-" else 1), "xy".index(direction[1])
+    ends = np.full((2, 2), 0.0)
+    ends[:, axis] = 0.05 * sign * np.array([-1, 1])
+    start, end = ends + np.array([1.08, 0.58])
+    style = {"arrowstyle": "-|>", "color": "0.25", "linewidth": 1.8, "mutation_scale": 14}
+    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
+    axes.annotate("", end, start, arrowprops=style, annotation_clip=False, **place)
+    axes.annotate("rolls", (1.16, 0.58), va="center", annotation_clip=False, **place)
 
 
 def _line(solution: FrictionSolution, axes: Axes) -> Axes:
@@ -229,8 +246,14 @@ def loop(
     return axes
 
 
-def creep_curve(dataset: xarray.Dataset, axes: Axes | None = None, **style: Any) -> Axes:
-    """Draw the traction ratio as a function of the creepage.
+def creep_curve(
+    dataset: xarray.Dataset,
+    axes: Axes | None = None,
+    *,
+    quantity: str = "traction_ratio",
+    **style: Any,
+) -> Axes:
+    """Draw the traction ratio, a force or the torque as a function of the creepage.
 
     Parameters
     ----------
@@ -238,6 +261,8 @@ def creep_curve(dataset: xarray.Dataset, axes: Axes | None = None, **style: Any)
         Dataset of `nacre.friction.creep_curve`.
     axes
         Axes to draw into; a new figure by default.
+    quantity
+        Name of the column, such as "lateral_force" or "torque".
     **style
         Look of the curve, as for ``Axes.plot``.
 
@@ -250,12 +275,22 @@ def creep_curve(dataset: xarray.Dataset, axes: Axes | None = None, **style: Any)
     ------
     TypeError
         If `axes` are not axes.
+    ValueError
+        If there is no such column.
     """
     _check(axes)
+    if quantity not in dataset:
+        names = ", ".join(map(str, dataset.data_vars))
+        raise ValueError(f"quantity must be one of {names}, got {quantity!r}")
     with styled():
         axes = axes or new_axes(0.5, 0.4)
         look = next_look(axes) | style
-        axes.plot(1e3 * dataset.creepage, dataset.traction_ratio, marker=".", **look)
+        column = dataset[quantity]
+        scale = Scale.given(float(np.abs(column).max()), column.attrs["units"])
+        axes.plot(1e3 * dataset.creepage, scale.factor * column, marker=".", **look)
         name = dataset.creepage.attrs.get("long_name", "creepage")
-        axes.set(xlabel=f"{name} [10⁻³]", ylabel="force over friction times load")
+        label = f"{quantity.replace('_', ' ')} [{scale.unit}]"
+        if quantity == "traction_ratio":
+            label = "force over friction times load"
+        axes.set(xlabel=f"{name} [10⁻³]", ylabel=label)
     return axes

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._disk import replacing
-from nacre._extras import extra
-from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
-from nacre.units import Scale, written
+from nacre._tools.disk import replacing
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
+from nacre.plot.style import COLOURS, WIDTH, new_axes, next_look, styled
 
 with extra("plot"):
     import matplotlib.pyplot as plt
@@ -20,6 +20,7 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     from nacre.indent.fit import Fit
+    from nacre.indent.solution import IndentSolution
 
 LETTERS = 96
 """Letters of a line of a report; longer ones are wrapped."""
@@ -58,6 +59,42 @@ def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
         figure.align_ylabels()
     result: Axes = upper
     return result
+
+
+def contacts(solution: IndentSolution, axes: Axes | None = None) -> Axes:
+    """Draw the load of contacts as a function of the approach, or of one contact the pressure.
+
+    Parameters
+    ----------
+    solution
+        Contacts of an indentation.
+    axes
+        Axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    approach, load = np.ravel(solution.approach), np.ravel(solution.load)
+    if load.size > 1:
+        x, y, names = approach, load, (("approach", "m"), ("load", "N"))
+    else:
+        edge = float(np.ravel(solution.outer_radius)[0])
+        x = np.linspace(0.0, 1.1 * edge, 221)[1:]  # a sharp tip presses without limit at 0
+        y = np.ravel(solution.pressure(x))
+        names = ("distance from the axis", "m"), ("pressure", "Pa")
+    scales = [
+        Scale.of(float(np.abs(part[np.isfinite(part)]).max(initial=0.0)), unit)
+        for part, (_, unit) in zip((x, y), names, strict=True)
+    ]
+    with styled():
+        axes = axes or new_axes(0.5, 0.4)
+        look = {"marker": "."} if load.size > 1 else {}
+        axes.plot(scales[0].factor * x, scales[1].factor * y, **next_look(axes) | look)
+        labels = [f"{name} [{s.unit}]" for (name, _), s in zip(names, scales, strict=True)]
+        axes.set(xlabel=labels[0], ylabel=labels[1])
+    return axes
 
 
 def residuals(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
 from nacre.plot.style import look, new_axes, styled
 
 with extra("plot"):

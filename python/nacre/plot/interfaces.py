@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
 from nacre.plot.stress import around, body_of, colourbar
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, new_axes, outline, styled
-from nacre.stresses import Stress
-from nacre.units import Scale, written
 
 with extra("plot"):
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
+    from nacre.contact.stresses import Stress
 
 Array = npt.NDArray[np.float64]
 

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._display import numbers
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.sections import section
 from nacre.plot.style import COLOURMAP, WIDTH, lengths, new_axes, outline, styled
-from nacre.units import Scale
+from nacre.results.display import numbers
 
 with extra("plot"):
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
+
+
+LETTERS = 34
+"""Letters of a line of the table of numbers; longer ones are wrapped."""
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
@@ -70,7 +75,8 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     """Draw the pressure from above, with the outline of the contact.
 
     A contact much longer than wide is drawn out of scale, and the picture says so. The cross marks
-    where the resultant force acts.
+    where the resultant force acts. A direction in which the surfaces repeat is drawn whole; where
+    both repeat, the share of the area stands above in place of the cross.
 
     Parameters
     ----------
@@ -97,7 +103,9 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     if solution.contact_area > 0:
         contact = np.array(solution.contact_extent)
         margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
-        window = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
+        whole = np.array(grid.periodic)[:, np.newaxis]
+        around = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
+        window = np.where(whole, window, around)
     scales, same = lengths(window)
     scale = Scale.of(solution.peak_pressure, "Pa")
     with styled():
@@ -123,7 +131,8 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             ylim=scales[1].factor * window[1],
         )
         outline(axes, solution, [length.factor for length in scales])
-        if 0 < solution.contact_area:
+        repeats = all(grid.periodic)
+        if solution.contact_area > 0 and not repeats:
             at = [
                 length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
             ]
@@ -132,7 +141,8 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
                 axes.plot(*at, color=colour, linestyle="none", **style)
         title = "nothing touches"
         if solution.contact_area > 0:
-            title = "the cross marks the resultant force"
+            share = f"{100 * solution.contact_share:.3g} % of the area touches"
+            title = share if repeats else "the cross marks the resultant force"
         if same:
             axes.set_aspect("equal")
         else:
@@ -144,7 +154,11 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
 def _numbers(solution: Solution, axes: Axes) -> None:
     """Write the main numbers into axes of their own."""
     axes.set_axis_off()
-    rows = numbers(solution)
+    rows = [
+        (name if number == 0 else "", part)
+        for name, value in numbers(solution)
+        for number, part in enumerate(textwrap.wrap(value, LETTERS))
+    ]
     step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):
         height = 1 - (number + 0.5) * step

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
 from nacre.plot.style import new_axes, next_look, styled
 
 with extra("plot"):
@@ -14,7 +14,7 @@ with extra("plot"):
     from matplotlib.ticker import MaxNLocator
 
 if TYPE_CHECKING:
-    from nacre.optimise import Optimum
+    from nacre.design.optimise import Optimum
 
 
 def course(optimum: Optimum, axes: Axes | None = None) -> Axes:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, WIDTH, styled
-from nacre.units import Scale
 
 with extra("plot"):
     import matplotlib.pyplot as plt
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
 
 MOST = 120
 """Largest number of facets along one side of a relief; chosen by trial for a quick drawing."""

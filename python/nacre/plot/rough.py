@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._extras import extra
-from nacre._patches import CURVE, crosses, patch_labels
-from nacre.plot.style import COLOURS, lengths, new_axes, next_look, styled
-from nacre.units import Scale, symbol
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, symbol
+from nacre.plot.style import COLOURMAP, COLOURS, lengths, new_axes, next_look, styled
+from nacre.results.patches import CURVE, crosses, patch_labels
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -18,7 +18,51 @@ with extra("plot"):
 if TYPE_CHECKING:
     import xarray
 
-    from nacre.solution import Solution
+    from nacre._core import HeightMap
+    from nacre.contact.solution import Solution
+
+
+def heights(surface: HeightMap, axes: Axes | None = None) -> Axes:
+    """Draw the heights of a map from above, about their mean.
+
+    Parameters
+    ----------
+    surface
+        A height map.
+    axes
+        Axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> wave = 1e-6 * np.sin(2 * np.pi * np.arange(64) / 64)[:, None] * np.ones(64)
+    >>> plot.heights(nacre.HeightMap(wave, 1e-6)).get_xlabel()
+    'x [µm]'
+    """
+    values = surface.heights - surface.heights.mean()
+    sides = [
+        centre + step * count * np.array([-0.5, 0.5])
+        for centre, step, count in zip(surface.center, surface.spacing, values.shape, strict=True)
+    ]
+    (first, second), same = lengths(np.array(sides))
+    scale = Scale.of(float(np.abs(values).max()), "m")
+    with styled():
+        axes = axes or new_axes(0.6, 0.5)
+        extent = (*(first.factor * sides[0]), *(second.factor * sides[1]))
+        picture = axes.imshow(
+            scale.factor * values.T, origin="lower", extent=extent, cmap=COLOURMAP, aspect="auto"
+        )
+        axes.figure.colorbar(picture, ax=axes, label=f"height [{scale.unit}]")
+        axes.set(xlabel=f"x [{first.unit}]", ylabel=f"y [{second.unit}]")
+        axes.grid(visible=False)
+        if same:
+            axes.set_aspect("equal")
+    return axes
 
 
 def load_curve(

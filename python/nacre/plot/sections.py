@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
 from nacre.plot.style import look, new_axes, next_look, styled
-from nacre.units import UNITS, Scale, written
+from nacre.results.quantities import units
 
 with extra("plot"):
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
 
 Array = npt.NDArray[np.float64]
 Direction = Literal["x", "y"]
@@ -64,7 +65,7 @@ def section(
         axes = axes or new_axes(1.0, 0.5)
         window = _window(solution, along, quantity)
         length = Scale.of(np.abs(window).max(), "m")
-        scale = Scale.of(_shown(position, values, window).max(initial=0.0), UNITS[quantity])
+        scale = Scale.of(_shown(position, values, window).max(initial=0.0), units()[quantity])
         axes.plot(length.factor * position, scale.factor * values, **(next_look(axes) | style))
         _finish(axes, along, window, length, scale, quantity)
         if quantity != "line_load":
@@ -118,7 +119,7 @@ def compare(
     windows = np.array([_window(s, along, quantity) for s in solutions.values()])
     window = np.array([windows[:, 0].min(), windows[:, 1].max()])
     largest = max(_shown(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
-    length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, UNITS[quantity])
+    length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, units()[quantity])
     with styled():
         axes = axes or new_axes(1.0, 0.55)
         for number, (name, (position, values, _)) in enumerate(cuts.items()):

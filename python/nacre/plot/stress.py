@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._core import HalfSpace
-from nacre._extras import extra
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
-from nacre.stresses import Stress
-from nacre.units import Scale, written
 
 with extra("plot"):
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
+    from nacre.contact.stresses import Stress
 
 Array = npt.NDArray[np.float64]
 
@@ -254,6 +254,8 @@ def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
     body = solution.report.body
     if options.get("body") == "counterbody" and solution.report.counterbody is not None:
         body = solution.report.counterbody
+    if not isinstance(body, HalfSpace):
+        raise ValueError(f"stresses need a HalfSpace, got {body!r}")
     return body
 
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
-from nacre._outputs import ERROR
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
-from nacre.units import PARAMETERS, UNITS, Scale
+from nacre.results.outputs import ERROR
+from nacre.results.quantities import PARAMETERS, units
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -72,14 +73,17 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
 def curve(
     study: xarray.Dataset, quantity: str = "approach", axes: Axes | None = None, **style: Any
 ) -> Axes:
-    """Draw a quantity against the only parameter of a study: `load_curve`, `tilt_curve`.
+    """Draw a quantity against a parameter of a study: `load_curve`, `tilt_curve`.
+
+    A second parameter makes a family of curves: each value of the first one has a curve, which the
+    legend names.
 
     Error bars show the estimated error due to the size of the cells, where the study has it.
 
     Parameters
     ----------
     study
-        A Dataset of one parameter. Of a quantity along x and y, as the moment, x is drawn.
+        A Dataset of one parameter or two. Of a quantity along x and y, as the moment, x is drawn.
     quantity
         What to draw.
     axes
@@ -95,20 +99,25 @@ def curve(
     Raises
     ------
     ValueError
-        If the quantity does not depend on one parameter.
+        If the quantity does not depend on one parameter or two.
     """
-    field = _quantity(study, quantity, 1)
+    field = _quantity(study, quantity, 1, 2)
     scale = _scale(field, quantity)
     with styled():
         axes = axes or new_axes(0.6, 0.42)
-        x = _side(axes, "x", study[str(field.dims[0])])
-        line = next_look(axes) | {"marker": "o", "ms": 3} | style
+        x = _side(axes, "x", study[str(field.dims[-1])])
         errors = _errors(study, quantity)
-        if errors is None:
-            axes.plot(x, scale.factor * field.values, **line)
-        else:
-            bars = scale.factor * errors
-            axes.errorbar(x, scale.factor * field.values, bars, capsize=0, **line)
+        names = [None] if field.ndim == 1 else _named(study[str(field.dims[0])])
+        for number, name in enumerate(names):
+            line = next_look(axes) | {"marker": "o", "ms": 3, "label": name} | style
+            row = number if field.ndim == 2 else ...
+            values = scale.factor * field.values[row]
+            if errors is None:
+                axes.plot(x, values, **line)
+            else:
+                axes.errorbar(x, values, scale.factor * errors[row], capsize=0, **line)
+        if field.ndim == 2:
+            axes.legend()
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
 
@@ -133,16 +142,28 @@ def _label(axes: Axes, lines: ContourSet) -> None:
     axes.clabel(lines, fontsize=7, fmt="%.4g", manual=places)
 
 
-def _quantity(study: xarray.Dataset, quantity: str, parameters: int) -> xarray.DataArray:
+def _named(values: xarray.DataArray) -> list[str]:
+    """Return a parameter's values in words, with its name and unit."""
+    name = str(values.name).rpartition(".")[2]
+    words = values.attrs.get("long_name", name.replace("_", " "))
+    if values.dtype.kind not in "if":
+        return [f"{words} {value}" for value in values.values]
+    scale = _scale_of(values, float(np.abs(values).max()), PARAMETERS.get(name, ""))
+    numbers = (f"{scale.factor * value:.4g} {scale.unit}".rstrip() for value in values.values)
+    return [f"{words} {number}" for number in numbers]
+
+
+def _quantity(study: xarray.Dataset, quantity: str, *parameters: int) -> xarray.DataArray:
     if quantity not in study:
         names = ", ".join(str(name) for name in study.data_vars)
         raise ValueError(f"quantity must be one of {names}, got {quantity!r}")
     field = study[quantity]
     if "axis" in field.dims:
         field = field.sel(axis="x")
-    if field.ndim != parameters:
+    if field.ndim not in parameters:
         raise ValueError(
-            f"quantity must depend on {parameters} parameters here, {quantity} depends on "
+            f"quantity must depend on {' or '.join(map(str, parameters))} parameters here, "
+            f"{quantity} depends on "
             f"{', '.join(map(str, field.dims))}"
         )
     return field
@@ -158,7 +179,7 @@ def _errors(study: xarray.Dataset, quantity: str) -> npt.NDArray[np.float64] | N
 
 def _scale(field: xarray.DataArray, quantity: str) -> Scale:
     largest = float(np.nanmax(np.abs(field.values), initial=0.0))
-    return _scale_of(field, largest, UNITS.get(quantity, ""))
+    return _scale_of(field, largest, units().get(quantity, ""))
 
 
 def _scale_of(array: xarray.DataArray, largest: float, unit: str) -> Scale:

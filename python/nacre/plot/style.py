@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._extras import extra
-from nacre.units import Scale
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
 
 with extra("plot"):
     import matplotlib as mpl
@@ -18,7 +18,7 @@ with extra("plot"):
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.solution import Solution
+    from nacre.contact.solution import Solution
 
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""

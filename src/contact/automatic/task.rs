@@ -64,11 +64,8 @@ impl Task<'_> {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        Contact::plan(self.body, grid, self.setup.clone())?.solve(
-            self.shape,
-            self.motion,
-            options.watched(progress),
-        )
+        let plan = Contact::plan(self.body, grid, self.setup.clone())?;
+        plan.run(|| plan.solve_alone(self.shape, self.motion, options, progress))
     }
 
     /// The approach and the tilts, where all three are prescribed; a direction without any condition

@@ -63,6 +63,11 @@ pub enum Warning {
         /// Estimated error, relative to the peak.
         error: f64,
     },
+    /// What lies between the stations of a sampled profile makes the peak pressure uncertain.
+    Stations {
+        /// Estimated error, relative to the peak.
+        error: f64,
+    },
     /// Creepages, with spin, or a twist are not small.
     LargeMotion {
         /// Largest creepage in the contact, or twist \[rad\].
@@ -102,6 +107,7 @@ impl Warning {
             Self::LargeContact { .. } => "large contact",
             Self::OutsideGrid { .. } => "outside grid",
             Self::PeakError { .. } => "peak error",
+            Self::Stations { .. } => "stations",
             Self::LargeMotion { .. } => "large motion",
         }
     }
@@ -185,8 +191,14 @@ impl fmt::Display for Warning {
                 f,
                 "the peak pressure has an estimated error of {:.1} %: dividing the cells further does \
                  not lower it, or needs too many cells; give a finer grid around the peak, or round \
-                 edges and corners of the shape (a sampled profile has a corner at each point: give more \
-                 points)",
+                 edges and corners of the shape (a sampled profile that is straight between its stations has \
+                 a corner at each)",
+                100.0 * error
+            ),
+            Self::Stations { error } => write!(
+                f,
+                "the peak pressure has an estimated error of {:.0} % from what lies between the stations of the \
+                 profile: give more stations, the corners of true edges, or a smoothing length against noise",
                 100.0 * error
             ),
             Self::LargeMotion { size } => write!(

@@ -1,16 +1,16 @@
 //! Axial profiles of rollers: the drop d(x) of the generatrix relative to the middle of the roller.
 
-use std::f64::consts::PI;
-use std::sync::Arc;
+mod sampled;
+mod stations;
 
-use crate::error::{Error, Result, not_negative, positive, require};
+use std::f64::consts::PI;
+
+use crate::error::{Result, not_negative, positive, require};
 use crate::model::hertz::Line;
 use crate::model::surface::quadric::sagitta;
 use crate::model::surface::sagitta_slope;
 
-/// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
-/// its length a tilt changes little.
-const MARKS: usize = 1024;
+pub use sampled::SampledProfile;
 
 /// An axial profile of a roller.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,28 +83,42 @@ impl Profile {
                 numbers.map(|(name, value)| named(&format!("profile.{name}"), value)).collect()
             }
             Self::Sampled(profile) => {
-                let drops = profile.samples.iter().enumerate();
-                drops.map(|(k, [_, drop])| named(&format!("profile.drop[{k}]"), *drop)).collect()
+                let drops = profile.samples().enumerate();
+                drops.map(|(k, [_, drop])| named(&format!("profile.drop[{k}]"), drop)).collect()
             }
         }
     }
 
-    /// Derivative of [`Profile::mean_drop`], where that is finite, with respect to the number `name`; `None` for a name
-    /// that is not among the parameters.
-    pub(super) fn mean_drop_slope(&self, name: &str, a: f64, b: f64) -> Option<f64> {
+    /// Derivatives of [`Profile::mean_drop`] over `cells`, where that is finite, with respect to the number `name`; `None`
+    /// for a name that is not among the parameters.
+    pub(super) fn mean_drop_slopes(&self, name: &str, cells: &[[f64; 2]]) -> Option<Vec<f64>> {
         let [low, high] = self.ends();
-        let (from, to) = (a.max(low), b.min(high));
+        let covered = cells.iter().map(|[a, b]| [a.max(low), b.min(high)]);
         match self {
-            Self::Crowned(profile) => profile.slope(name, 0.5 * (a + b)),
+            Self::Crowned(profile) => {
+                cells.iter().map(|[a, b]| profile.slope(name, 0.5 * (a + b))).collect()
+            }
             Self::Logarithmic(profile) => {
-                let integral = profile.integral_slope(name.strip_prefix("profile.")?, from, to)?;
-                Some(integral / (to - from))
+                let name = name.strip_prefix("profile.")?;
+                let slope = |[a, b]: [f64; 2]| Some(profile.integral_slope(name, a, b)? / (b - a));
+                covered.map(slope).collect()
             }
             Self::Sampled(profile) => {
                 let number = name.strip_prefix("profile.drop[")?.strip_suffix(']')?;
-                let number: usize = number.parse().ok()?;
-                Some(profile.hat(number)?.integral(from, to) / (to - from))
+                let ([more, less], step) = profile.changed(number.parse().ok()?)?;
+                let slope = |[a, b]: [f64; 2]| {
+                    (more.integral(a, b) - less.integral(a, b)) / (2.0 * step * (b - a))
+                };
+                Some(covered.map(slope).collect())
             }
+        }
+    }
+
+    /// Other profiles that a measured one may mean.
+    pub(super) fn alternatives(&self) -> Vec<Self> {
+        match self {
+            Self::Crowned(_) | Self::Logarithmic(_) => Vec::new(),
+            Self::Sampled(profile) => profile.alternatives().into_iter().map(Self::from).collect(),
         }
     }
 
@@ -125,7 +139,7 @@ impl Profile {
         }
     }
 
-    /// Coordinates of the corners \[m\], [`MARKS`] at most; the others are convex.
+    /// Coordinates of the stations \[m\], a thousand at most.
     pub(super) fn marks(&self) -> Vec<f64> {
         match self {
             Self::Crowned(_) | Self::Logarithmic(_) => Vec::new(),
@@ -195,95 +209,6 @@ impl CrownedProfile {
             _ => None,
         }
     }
-}
-
-/// A measured profile: drops at increasing positions, with linear interpolation, and +∞ beyond.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SampledProfile {
-    /// Position and drop of each sample.
-    samples: Arc<[[f64; 2]]>,
-}
-
-impl SampledProfile {
-    /// A profile with drops `drop` \[m\] at positions `x` \[m\].
-    ///
-    /// # Errors
-    /// Unless there are at least two positions and as many drops, all are finite, and the positions
-    /// increase.
-    pub fn new(x: &[f64], drop: &[f64]) -> Result<Self> {
-        if x.len() != drop.len() || x.len() < 2 {
-            return Err(Error::Shape {
-                name: "profile: positions and drops, at least two of each",
-                expected: [x.len().max(2); 2],
-                found: [x.len(), drop.len()],
-            });
-        }
-        for (index, (x, d)) in x.iter().zip(drop).enumerate() {
-            if !(x.is_finite() && d.is_finite()) {
-                return Err(Error::NonFinite { name: "profile", index: [index, 0] });
-            }
-        }
-        if let Some(pair) = x.windows(2).find(|pair| pair[1] <= pair[0]) {
-            require("profile positions", pair[1], false, "increasing")?;
-        }
-        let samples = x.iter().zip(drop).map(|(x, drop)| [*x, *drop]);
-        Ok(Self { samples: samples.collect() })
-    }
-
-    /// Position and drop of each sample \[m\].
-    pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.samples.iter().copied()
-    }
-
-    /// The profile with a drop of 1 at one of the samples, and 0 at the others.
-    fn hat(&self, number: usize) -> Option<Self> {
-        let mut samples: Vec<[f64; 2]> = self.samples.iter().map(|[x, _]| [*x, 0.0]).collect();
-        samples.get_mut(number)?[1] = 1.0;
-        Some(Self { samples: samples.into() })
-    }
-
-    /// Positions of the samples; of very many samples, the highest of each of [`MARKS`] groups.
-    fn marks(&self) -> Vec<f64> {
-        let highest = |group: &[[f64; 2]]| {
-            let by_drop = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
-            group.iter().min_by(by_drop).map(|sample| sample[0])
-        };
-        let groups = self.samples.chunks(self.samples.len().div_ceil(MARKS));
-        groups.filter_map(highest).collect()
-    }
-
-    fn ends(&self) -> [f64; 2] {
-        [self.samples[0][0], self.samples[self.samples.len() - 1][0]]
-    }
-
-    fn drop(&self, x: f64) -> f64 {
-        let [low, high] = self.ends();
-        if !(low..=high).contains(&x) {
-            return f64::INFINITY;
-        }
-        let above = self.samples.partition_point(|s| s[0] <= x);
-        let k = above.clamp(1, self.samples.len() - 1) - 1;
-        line(self.samples[k], self.samples[k + 1], x)
-    }
-
-    /// Integral of the drop from a to b \[m²\], between the ends.
-    fn integral(&self, a: f64, b: f64) -> f64 {
-        let last = self.samples.len() - 1;
-        let first = self.samples.partition_point(|s| s[0] <= a).clamp(1, last) - 1;
-        let pieces = self.samples[first..].windows(2);
-        let pieces = pieces.take_while(|pair| pair[0][0] < b);
-        pieces
-            .map(|pair| {
-                let (from, to) = (pair[0][0].max(a), pair[1][0].min(b));
-                line(pair[0], pair[1], 0.5 * (from + to)) * (to - from)
-            })
-            .sum()
-    }
-}
-
-/// Straight line through two points (x, drop).
-fn line([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], x: f64) -> f64 {
-    d0 + (d1 - d0) / (x1 - x0) * (x - x0)
 }
 
 /// A logarithmic profile, which has a straight middle where `flat_length` > 0.

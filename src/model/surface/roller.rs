@@ -202,6 +202,11 @@ impl Surface for Roller {
         Some(ACROSS)
     }
 
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        let others = self.profile.alternatives().into_iter();
+        others.map(|profile| Box::new(Self { profile, ..self.clone() }) as Box<_>).collect()
+    }
+
     /// Radii, and the numbers of the profile: `flat_length` and `crown_radius`, `profile.amplitude`,
     /// `profile.flat_length` and `profile.end_factor`, or `profile.drop[k]`.
     fn parameters(&self) -> Vec<(String, f64)> {
@@ -225,14 +230,13 @@ impl Surface for Roller {
             }
             _ => {
                 let half = 0.5 * grid.spacing()[0];
-                let slopes: Option<Vec<f64>> = (grid.x().iter().zip(&drops))
-                    .map(|(x, drop)| match drop.is_finite() {
-                        true => self.profile.mean_drop_slope(name, x - half, x + half),
-                        false => Some(0.0),
-                    })
-                    .collect();
+                let cells: Vec<[f64; 2]> = grid.x().iter().map(|x| [x - half, x + half]).collect();
+                let slopes = self.profile.mean_drop_slopes(name, &cells);
                 let slopes = slopes.ok_or_else(|| absent(name))?;
-                Ok(sampled(grid, |i, j| slopes[i] * (1.0 - per_radius(drops[i], y[j]))))
+                Ok(sampled(grid, |i, j| match drops[i].is_finite() {
+                    true => slopes[i] * (1.0 - per_radius(drops[i], y[j])),
+                    false => 0.0,
+                }))
             }
         }
     }

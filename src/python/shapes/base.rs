@@ -4,17 +4,18 @@ use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use numpy::{IntoPyArray, PyArray2};
+use pyo3::IntoPyObjectExt;
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict, PyDict, PyList, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::model::surface::{self, Profile, Shifted, Superposition, Surface};
-use crate::python::arguments::{Real, Repr, hash};
+use crate::python::arguments::{Pair, Real, Repr, hash};
 use crate::python::grid::PyGrid;
-use crate::python::value::{Arguments, Reduced, call_text};
+use crate::python::value::{Arguments, INNER, Reduced, call_text};
 
 /// A kind of shape with a Python class of the same name, which is also data. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface + Serialize + DeserializeOwned {
@@ -87,22 +88,27 @@ macro_rules! kinds {
 
         impl Shape {
             /// Calls `f` with the surface that this is.
-            pub(super) fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
+            pub(super) fn with<'a, R>(&'a self, f: impl FnOnce(&'a dyn Surface) -> R) -> R {
                 match self {
                     $(Self::$kind(shape) => f(shape),)*
                     Self::Combined(shape) => f(shape.flat()),
                 }
             }
 
-            /// Name of the class and arguments of its constructor; none for sums and shifted shapes.
-            fn constructor<'py>(
-                &self,
-                py: Python<'py>,
-            ) -> PyResult<Option<(&'static str, Arguments<'py>)>> {
-                Ok(match self {
-                    $(Self::$kind(shape) => Some((stringify!($kind), shape.arguments(py)?)),)*
-                    Self::Combined(_) => None,
-                })
+            /// Name of the class.
+            fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => stringify!($kind),)*
+                    Self::Combined(_) => "Shape",
+                }
+            }
+
+            /// Arguments of the call that makes the shape; of a shape that is moved, that shape and its shift.
+            fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+                match self {
+                    $(Self::$kind(shape) => shape.arguments(py),)*
+                    Self::Combined(sum) => sum.arguments(py),
+                }
             }
 
             /// Object of Python.
@@ -212,6 +218,19 @@ impl Combined {
         })
     }
 
+    /// The shapes; or the one that is moved, and its shift.
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        if let [only] = self.flat().shapes() {
+            let shift = <(f64, f64)>::from(only.shift()).into_bound_py_any(py)?;
+            return Ok(vec![(INNER, only.shape().to_python(py)?), ("shift", shift)]);
+        }
+        let parts = self.flat().shapes().iter().map(|part| match is_moved(part) {
+            true => Shape::combined(vec![(part.shape().clone(), part.shift())]).to_python(py),
+            false => part.shape().to_python(py),
+        });
+        Ok(vec![("parts", PyList::new(py, parts.collect::<PyResult<Vec<_>>>()?)?.into_any())])
+    }
+
     /// Whether this is `shape` alone, not moved.
     fn is_only(&self, shape: &Shape) -> bool {
         match self.flat().shapes() {
@@ -274,10 +293,7 @@ impl Shape {
             });
             return Ok(texts.collect::<PyResult<Vec<_>>>()?.join(" + "));
         }
-        let Some((class, arguments)) = self.constructor(py)? else {
-            unreachable!("all others have a constructor");
-        };
-        call_text(class, &arguments, 0)
+        call_text(self.name(), &self.arguments(py)?, 0)
     }
 }
 
@@ -372,36 +388,35 @@ impl PyShape {
         hash(&self.0.key())
     }
 
-    /// Shapes of a sum, or the one that is moved, each with its whole shift; none of other shapes.
-    fn _parts<'py>(&self, py: Python<'py>) -> PyResult<Vec<Part<'py>>> {
-        let Shape::Combined(sum) = &self.0 else {
-            return Ok(Vec::new());
-        };
-        let parts = sum.flat().shapes().iter();
-        parts.map(|part| Ok((part.shape().to_python(py)?, part.shift().into()))).collect()
+    /// Arguments of the call that makes the shape, by name: the parts of a sum, or a shape and its shift.
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.0.arguments(py)?.into_py_dict(py)
     }
 
-    /// Sum of shapes that are moved, for pickles.
+    /// Sum of shapes, for pickles.
     #[staticmethod]
-    fn _of_parts(parts: Vec<(Bound<'_, Self>, [f64; 2])>) -> PyResult<Self> {
-        let parts = parts.into_iter().map(|(shape, shift)| (shape.get().0.clone(), shift));
-        Ok(Self(Shape::combined(parts.collect())))
+    fn _sum(parts: Vec<Bound<'_, Self>>) -> Self {
+        Self(Shape::combined(parts.iter().map(|part| (part.get().0.clone(), [0.0; 2])).collect()))
+    }
+
+    /// Shape that is moved, for pickles.
+    #[staticmethod]
+    fn _moved(shape: &Bound<'_, Self>, shift: Pair) -> PyResult<Self> {
+        shape.get().shifted(Real(shift.0[0]), Real(shift.0[1]))
     }
 
     /// Callable and arguments that make the shape again.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let (py, class) = (slf.py(), slf.get_type());
-        if let Some((_, arguments)) = slf.get().0.constructor(py)? {
-            let arguments = arguments.into_iter().map(|(_, argument)| argument);
-            return Ok((class.into_any(), PyTuple::new(py, arguments.collect::<Vec<_>>())?));
-        }
-        let parts = slf.get()._parts(py)?;
-        Ok((class.getattr("_of_parts")?, (parts,).into_pyobject(py)?))
+        let (py, class) = (slf.py(), slf.get_type().into_any());
+        let make = match &slf.get().0 {
+            Shape::Combined(sum) if sum.flat().shapes().len() == 1 => class.getattr("_moved")?,
+            Shape::Combined(_) => class.getattr("_sum")?,
+            _ => class,
+        };
+        let arguments = slf.get().0.arguments(py)?.into_iter().map(|(_, argument)| argument);
+        Ok((make, PyTuple::new(py, arguments.collect::<Vec<_>>())?))
     }
 }
-
-/// A shape and its shift.
-type Part<'py> = (Bound<'py, PyAny>, (f64, f64));
 
 /// Shape from an argument.
 pub(in crate::python) fn shape<'a, 'py>(

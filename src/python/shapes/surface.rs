@@ -35,6 +35,9 @@ impl Surface for Shape {
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
         self.with(|shape| shape.gap_derivative(name, grid))
     }
+    fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
+        self.with(Surface::alternatives)
+    }
     fn is_smooth(&self) -> bool {
         self.with(|shape| shape.is_smooth())
     }

@@ -1,0 +1,1 @@
+"""Units, texts, files and progress: nothing about contact."""

@@ -1,0 +1,125 @@
+"""Files, whole or not at all: any dataset as NetCDF, and the content of those that nacre wrote.
+
+HDF5 may hang or crash on a damaged file, beyond any signal. So a file ends in a seal, which HDF5
+ignores: a mark of its kind and the SHA-256 of all before. Only a file with a right seal is opened,
+and of it only arrays that are stored plainly, which take no more room in memory than in the file.
+A checksum is no signature: it finds damage, not malice.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._tools.extras import extra
+
+if TYPE_CHECKING:
+    import xarray
+
+STATE = "nacre_solution"
+"""Attribute that holds the rest of the state, as JSON."""
+PICTURES = (".png", ".pdf", ".svg")
+"""Endings of pictures."""
+RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"
+"""Marks of a result that `nacre.load` reads, and of a study."""
+MARK, SEAL = 16, 48
+"""Bytes of a mark, and of a mark and a digest: the last ones of a file."""
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        temporary = Path(folder) / path.with_suffix(path.suffix.lower()).name
+        yield temporary
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+
+
+def write_dataset(dataset: xarray.Dataset, path: Path, mark: bytes = RESULT) -> None:
+    """Write any dataset as NetCDF, to the bit, with a seal."""
+    with extra("files"):
+        import h5netcdf  # noqa: F401
+
+    encoding = {name: {"_FillValue": None} for name in dataset.variables}
+    # HDF5 writes to memory: on a full disk it would crash when the process ends.
+    content = dataset.to_netcdf(engine="h5netcdf", encoding=encoding)
+    with path.open("wb") as file:
+        file.write(content)
+        file.write(mark + hashlib.sha256(content).digest())
+
+
+def is_study(path: Path) -> bool:
+    """Return whether a file ends as a study does; its content is not read."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return _seal(file)[:MARK] == STUDY
+
+
+def read(path: Path, names: Collection[str]) -> tuple[str, dict[str, npt.NDArray[Any]]]:
+    """Return the state of a result as text, and those of its variables that have these names."""
+    import h5py
+
+    with path.open("rb") as file:
+        seal = _seal(file)
+        size = file.tell()
+        if seal[:MARK] == STUDY:
+            raise ValueError("it is a study, which xarray.load_dataset reads")
+        if seal[:MARK] != RESULT:
+            raise ValueError(
+                "its end is not that of a file of nacre: it is another file, or it was cut, "
+                "changed, or saved again by another program"
+            )
+        if _digest(file, size - SEAL) != seal[MARK:]:
+            raise ValueError("its content is not what was saved: it was changed or damaged")
+        file.seek(0)
+        try:
+            with h5py.File(file, "r") as content:
+                state = content.attrs[STATE]
+                found = {}
+                for name in names:
+                    if name not in content:
+                        continue
+                    if content.get(name, getclass=True, getlink=True) is not h5py.HardLink:
+                        raise ValueError(f"{name} is a link")
+                    found[name] = content[name]
+                for name, item in found.items():
+                    stored = not (item.chunks or item.external or item.is_virtual)
+                    if item.dtype.kind != "f" or not stored:
+                        raise ValueError(f"{name} must be real numbers that are stored plainly")
+                if sum(item.nbytes for item in found.values()) > size:
+                    raise ValueError("its arrays are larger than the file")
+                arrays = {name: np.asarray(item[()]) for name, item in found.items()}
+        except Exception as error:  # whatever HDF5 says of a file that it cannot read
+            raise ValueError(f"it is no result that nacre wrote: {error}") from error
+    if not isinstance(state, str):
+        raise ValueError(f"the attribute {STATE} must be a text, got {state!r:.60}")
+    return state, arrays
+
+
+def _seal(file: IO[bytes]) -> bytes:
+    """Return the last bytes of a file, and leave it at its end."""
+    file.seek(max(0, file.seek(0, os.SEEK_END) - SEAL))
+    return file.read()
+
+
+def _digest(file: IO[bytes], size: int) -> bytes:
+    """Return the SHA-256 of the beginning of a file, read in pieces."""
+    digest = hashlib.sha256()
+    file.seek(0)
+    while size > 0 and (piece := file.read(min(size, 1 << 20))):
+        digest.update(piece)
+        size -= len(piece)
+    return digest.digest()

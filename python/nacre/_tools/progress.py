@@ -1,0 +1,151 @@
+"""Progress of a study: a bar in a terminal or a notebook with ipywidgets, lines elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from importlib.util import find_spec
+from threading import Event, Thread, current_thread, main_thread
+from typing import Any
+
+from nacre._tools.extras import extra
+
+_shown: list[str] = []
+"""Work of which a bar may be there."""
+SOON = 2.0
+"""Time after which a bar shows that work goes on [s]."""
+EVERY = 60.0
+"""Shortest time between two lines in a log [s]: a night has a few hundred of them."""
+
+
+@contextmanager
+def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], None]]:
+    """Yield a function that advances the progress by one case; `found` cases need no solve."""
+    if wanted is False:
+        yield lambda: None
+        return
+    with extra("files"):
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+    console = Console(stderr=True)
+    # Without ipywidgets, rich would show a warning and an empty line in a notebook.
+    notebook = console.is_jupyter and find_spec("ipywidgets") is not None
+    if not (console.is_terminal or notebook):
+        lines = _Lines(total, found, at_once=bool(wanted))
+        yield lines.advance
+        lines.end()
+        return
+    parts = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*parts, console=console) as bar:
+        task = bar.add_task(f"solving{_found(found, total)}", total=total, completed=found)
+        yield lambda: bar.advance(task)
+
+
+@contextmanager
+def lasting(what: str, given: Any = None) -> Iterator[Any]:
+    """Yield what is called with the progress: `given`, or a bar in a terminal or a notebook.
+
+    It is called with the share that is done or with a text. Nothing is shown in the first two
+    seconds, inside of other work that is shown, in threads, or without rich.
+    """
+    watched = "ipykernel" in sys.modules or sys.stderr.isatty()
+    outermost = not _shown and current_thread() is main_thread()
+    if given is not None or not (watched and outermost) or find_spec("rich") is None:
+        yield given
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    parts = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    bar = Progress(*parts, console=Console(stderr=True), transient=True)
+    task, start = bar.add_task(what, total=None), time.monotonic()
+
+    def tell(done: float | str) -> None:
+        if isinstance(done, str):
+            bar.update(task, description=f"{what}: {done}")
+        else:
+            bar.update(task, completed=done, total=1.0)
+        if time.monotonic() - start > SOON:
+            bar.start()
+
+    _shown.append(what)
+    try:
+        yield tell
+    finally:
+        _shown.remove(what)
+        bar.stop()
+
+
+@contextmanager
+def alive() -> Iterator[None]:
+    """Write a line on standard error each minute, to show that a long solve goes on."""
+    ended, start = Event(), time.monotonic()
+
+    def write() -> None:
+        while not ended.wait(EVERY):
+            seconds = _time(time.monotonic() - start)
+            print(f"nacre: solving, {seconds} so far", file=sys.stderr, flush=True)
+
+    Thread(target=write, daemon=True).start()
+    try:
+        yield
+    finally:
+        ended.set()
+
+
+def _found(found: int, total: int) -> str:
+    return f" ({found} of {total} found in the store)" if found else ""
+
+
+class _Lines:
+    """Lines on standard error, at most one in `EVERY` seconds."""
+
+    def __init__(self, total: int, found: int, *, at_once: bool) -> None:
+        self.total, self.found, self.done = total, found, found
+        self.start = self.last = time.monotonic()
+        self.written = at_once
+        if at_once:
+            self.write()
+
+    def advance(self) -> None:
+        self.done += 1
+        if time.monotonic() - self.last >= EVERY:
+            self.written = True
+            self.write()
+
+    def end(self) -> None:
+        """Write the last line, where there were others."""
+        if self.written:
+            self.write()
+
+    def write(self) -> None:
+        self.last = time.monotonic()
+        seconds = self.last - self.start
+        text = f"nacre.sweep: {self.done} of {self.total} cases"
+        text += _found(self.found, self.total)
+        solved = self.done - self.found
+        if solved:
+            text += f", {_time(seconds)} so far"
+            if left := self.total - self.done:
+                text += f", about {_time(seconds * left / solved)} left"
+        print(text, file=sys.stderr, flush=True)
+
+
+def _time(seconds: float) -> str:
+    return str(timedelta(seconds=round(seconds)))

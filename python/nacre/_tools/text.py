@@ -1,0 +1,111 @@
+"""Text files of instruments: their encoding, the fields of a line, and names with units."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from nacre._tools.units import SIZES, size_of
+
+MISSING = frozenset(
+    "|-|--|---|*|***|?|#n/a|bad|invalid|masked|missing|n/a|na|nan|no data|none|null|void".split("|")
+)
+"""Words, in small letters, that stand for a point that was not measured."""
+
+SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s"}
+LENGTHS = {"Å": 1e-10, "micron": 1e-6, "microns": 1e-6}
+FORCES = {"gf": 9.80665e-3, "mgf": 9.80665e-6, "kgf": 9.80665}
+"""Grams-force in newtons: the gram times the standard acceleration of free fall, 9.80665 m/s²."""
+UNIT_LAST = (
+    re.compile(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]"),
+    re.compile(r"(.+?)\s*/\s*(\S+)"),
+    re.compile(r"(.+?)(?:\s*,\s*|\s+in\s+|[_\s]+)(\S+)"),
+)
+"""Names that end in a unit: ``Depth (nm)``, ``h/µm``, and ``h_nm``, ``Load, mN``, ``h in µm``."""
+LONGEST_HEADING = 200
+"""Most characters of a heading with a unit: the time that it takes grows with a power of it."""
+
+
+class Column(NamedTuple):
+    """A column's heading as the file writes it, and what it says."""
+
+    heading: str
+    """Heading as written, with the unit; empty where the file has none."""
+    name: str
+    """Name without the unit."""
+    unit: str | None
+    """Unit: in a name one of length, force or time, in a row of units any."""
+
+
+def decoded(path: Path, encoding: str | None = None) -> str:
+    """Return the text of a file in UTF-8, UTF-16 or else Windows' extension of Latin-1."""
+    content = path.read_bytes()
+    if encoding is not None:
+        try:
+            return content.decode(encoding)
+        except (LookupError, UnicodeError) as error:
+            raise ValueError(
+                f"encoding must suit {str(path)!r}, got {encoding!r}: {error}"
+            ) from None
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    # Every second byte of numbers and English in UTF-16 is zero.
+    start = content[:1000]
+    for name, zeros in (("utf-16-le", start[1::2]), ("utf-16-be", start[::2])):
+        if zeros.count(0) > 0.5 * len(zeros) > 0 and start.count(0) <= 0.5 * len(start):
+            return content.decode(name, errors="replace")
+    if 0 in start:
+        raise ValueError(
+            f"{str(path)!r} must be text, got binary data; export it as text or CSV from the "
+            f"instrument's program"
+        )
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")
+
+
+def fields_of(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line, without quotes and blanks around them."""
+    if delimiter == " ":
+        return [text.strip("\"'") for text in line.split()]
+    if '"' in line:
+        with suppress(csv.Error):  # of a field that is longer than numbers and names are
+            texts = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+            return [text.strip() for text in texts]
+    return [text.strip(" \t\xa0'") for text in line.split(delimiter)]
+
+
+def unit_of(text: str) -> tuple[str, float] | None:
+    """Return "m", "N" or "s" and the size in it of a unit such as "nm" or "uN", if it is known.
+
+    >>> unit_of("nm"), unit_of("uN"), unit_of("V")
+    (('m', 1e-09), ('N', 1e-06), None)
+    """
+    # A text in UTF-8 that was once read as Latin-1 has "Âµ".
+    text = text.strip().replace("μ", "µ").replace("Âµ", "µ")
+    text = SECONDS.get(text.lower(), text)
+    if len(text) > 1 and text.startswith("u"):
+        text = "µ" + text[1:]
+    if text == "min":
+        return "s", 60.0
+    if text.endswith("s") and text[:-1] in {"", "m", "µ"}:
+        return "s", SIZES[text[:-1]]
+    if text in LENGTHS:
+        return "m", LENGTHS[text]
+    if text in FORCES:
+        return "N", FORCES[text]
+    known = size_of(text)
+    return known if known is not None and known[0] in ("m", "N") else None
+
+
+def column_of(heading: str) -> Column:
+    for pattern in UNIT_LAST if len(heading) <= LONGEST_HEADING else ():
+        match = pattern.fullmatch(heading)
+        if match and unit_of(match[2]):
+            return Column(heading, match[1].strip(" _,"), match[2])
+    return Column(heading, heading, None)

@@ -1,0 +1,289 @@
+"""Case files: a contact or an indentation, and a study of it, in TOML.
+
+There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`; a file
+with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`.
+Materials have names. ``nacre schema`` prints the reference of all tables and keys::
+
+    units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
+
+    [materials]
+    steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for safety factors
+    dlc = { young = 420e9, poisson = 0.3, strength = 2e9 }
+
+    [shape]
+    kind = "roller"
+    radius = 5e-3
+    flat_length = 19.13e-3
+    crown_radius = 7.5
+
+    [body]
+    substrate = "steel"
+    layers = [{ material = "dlc", thickness = 40e-6 }]
+
+    [solve]
+    load = 1e3
+    eccentricity = { x = 2.87e-3 }  # free to tilt along x only
+
+    [stress]  # may be left out, or empty
+    friction = 0.1
+
+    [sweep]  # for nacre sweep
+    store = "study.nc"
+    parameters."materials.dlc.young" = [105e9, 210e9, 420e9]
+    parameters."solve.load" = { first = 100, last = 1000, count = 10, scale = "log" }
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import nacre._core as core
+from nacre._tools.extras import extra
+from nacre.results.outputs import named
+
+__all__ = ["Case", "CaseError"]
+
+with extra("cli"):
+    from pydantic import ValidationError
+
+    from nacre.case.indent import IndentCase
+    from nacre.case.reference import Place, nearest, place, table_for
+    from nacre.case.schema import MOST_VALUES, Bodies, CaseTable, Range, WrongValue, at
+
+SHOWN = 60
+"""Largest number of characters of a wrong value that an error shows."""
+LONGEST = 1000
+"""Largest number of characters of an error, whose keys may be long."""
+LARGEST = 10_000_000
+"""Largest size of a case file in bytes, which takes a few seconds to read."""
+
+
+class CaseError(ValueError):
+    """A case file that cannot be used; the message names the key and what was expected."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message if len(message) <= LONGEST else f"{message[:LONGEST]}...")
+
+
+class Case:
+    """A case file, read and checked.
+
+    Parameters
+    ----------
+    data
+        Content of the file.
+    name
+        Name of the case in errors.
+    folder
+        Folder to which its paths are relative.
+    """
+
+    def __init__(
+        self, data: Mapping[str, Any], name: str = "case", folder: Path | None = None
+    ) -> None:
+        self.name = name
+        self.folder = folder or Path()
+        try:
+            self.data = copy.deepcopy(dict(data))
+            self._table = self._checked(self.data)
+        except RecursionError:
+            raise CaseError(f"{name}: tables and lists are nested too deeply") from None
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Case:
+        """Return the case of a file; an unusable one is a `CaseError`."""
+        path = Path(path)
+        try:
+            if path.exists() and not path.is_file():
+                raise CaseError(f"{path}: must be a file")
+            if path.stat().st_size > LARGEST:
+                raise CaseError(f"{path}: must have at most {LARGEST} bytes")
+            data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        except CaseError:
+            raise
+        except UnicodeDecodeError as error:
+            raise CaseError(f"{path}: not a TOML file: its letters must be UTF-8") from error
+        except ValueError as error:
+            raise CaseError(f"{path}: not a TOML file: {error}") from error
+        except RecursionError:
+            raise CaseError(f"{path}: tables and lists are nested too deeply") from None
+        except OSError as error:
+            raise CaseError(f"{path}: {error.strerror or error}") from error
+        return cls(data, str(path), path.parent)
+
+    @property
+    def units(self) -> str:
+        """Units of the numbers, as `nacre.display_units` takes them."""
+        return self._table.units
+
+    def in_units(self, units: str) -> Case:
+        """Return the case with its numbers in other units."""
+        return Case({**self.data, "units": units}, self.name, self.folder)
+
+    @property
+    def is_indentation(self) -> bool:
+        """Whether the case is an indentation, with a tip, and no contact on a grid."""
+        return isinstance(self._table, IndentCase)
+
+    @property
+    def friction(self) -> str | None:
+        """Name of the table of friction, "slide" or "roll"; None without one."""
+        if not isinstance(self._table, CaseTable):
+            return None
+        return "slide" if self._table.slide else "roll" if self._table.roll else None
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments that the case describes.
+
+        They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`; those of
+        an indentation are of `nacre.indent.solve`.
+        """
+        table = self._table
+        try:
+            if isinstance(table, CaseTable):
+                return table.arguments(self.folder)
+            assert isinstance(table, IndentCase)
+            return table.arguments()
+        except WrongValue as error:
+            raise CaseError(f"{self.name}: {error}") from error
+
+    def stress(self) -> dict[str, Any] | None:
+        """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
+        table = self._table
+        if not isinstance(table, CaseTable) or table.stress is None:
+            return None
+        found = table.stress.keywords() | table.limits()
+        if self.friction is not None:
+            found = {name: found[name] for name in found if name not in ("friction", "direction")}
+        return found
+
+    def __call__(self, **values: Any) -> dict[str, Any]:
+        """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
+        data = self.data
+        for key, value in values.items():
+            self._check_key(key)
+            data = core.with_value(data, key, value)
+        return Case(data, self.name, self.folder).arguments()
+
+    def study(self, store: Path | None = None) -> dict[str, Any]:
+        """Return the arguments of `nacre.sweep` besides the case, with another store if given.
+
+        The store of the case must lie in the folder of the case.
+        """
+        sweep = self._table.sweep
+        if sweep is None:
+            raise CaseError(f"{self.name}: sweep: this table is missing")
+        self.arguments()  # the case as it stands must be one
+        for key in sweep.parameters:
+            self._check_key(key)
+            if not key.startswith(self._table.solved) or key.endswith(
+                (".yield_stress", ".strength")
+            ):
+                message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
+                raise CaseError(message)
+        found: dict[str, Any] = {
+            "parameters": {
+                key: values.numbers() if isinstance(values, Range) else values
+                for key, values in sweep.parameters.items()
+            }
+        }
+        if sweep.outputs is not None:
+            try:
+                with at("sweep"):
+                    named(sweep.outputs, self.is_indentation)
+            except WrongValue as error:
+                raise CaseError(f"{self.name}: {error}") from error
+            found["outputs"] = sweep.outputs
+        count = math.prod(map(len, found["parameters"].values()))
+        if count > MOST_VALUES:
+            raise CaseError(
+                f"{self.name}: sweep.parameters: must make at most {MOST_VALUES} cases, got {count}"
+            )
+        if store is None and sweep.store is not None:
+            store = self._inside(sweep.store)
+        if store is not None:
+            found["store"] = store
+        if isinstance(self._table, CaseTable) and self._table.stress is not None:
+            asked = self._table.stress.keywords()
+            if self.friction is not None:
+                asked = {"body": asked["body"]}
+            found["stress"] = asked
+        return found
+
+    def _inside(self, store: str) -> Path:
+        """Return the path of a store, which must be in the folder of the case, as its journal."""
+        path, folder = self.folder / store, self.folder.resolve()
+        try:
+            ends = [one.resolve() for one in (path, path.with_suffix(".journal"))]
+        except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
+            raise CaseError(f"{self.name}: sweep.store: {error}") from error
+        if not all(end.is_relative_to(folder) for end in ends):
+            raise CaseError(
+                f"{self.name}: sweep.store: must be in the folder of the case, got "
+                f"{_shown(store)}; nacre sweep --store takes a file anywhere"
+            )
+        return path
+
+    def _check_key(self, key: str) -> None:
+        """Raise an error unless the case has a value at a key.
+
+        A layer is named by its number, ``body.layers[0]`` or ``body.layers.0``, or by its name.
+        """
+        try:
+            core.at(self.data, key)
+        except LookupError as error:
+            solved = {t: self.data[t] for t in self._table.solved if t in self.data}
+            keys = ", ".join(nearest(key, [path for path, _ in core.numbers(solved)])[:3])
+            raise CaseError(
+                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the "
+                f"nearest are {keys}"
+            ) from error
+
+    def _checked(self, data: Mapping[str, Any]) -> Bodies:
+        try:
+            return table_for(data).model_validate(data)
+        except ValidationError as error:
+            raise CaseError(f"{self.name}: {_first(error, data)}") from None
+
+
+def _first(error: ValidationError, data: Any) -> str:
+    """Return a message about the first error: key, expected value and value found."""
+    found = error.errors(include_url=False)
+    # A misspelt key is often also a missing one; the misspelt one says more. Of the errors of
+    # alternatives, the innermost belongs to the one that was meant.
+    places = [(one, place(data, one["loc"])) for one in found]
+    misspelt = [pair for pair in places if pair[0]["type"] == "extra_forbidden"]
+    first, here = misspelt[0] if misspelt else max(places, key=lambda pair: len(pair[1].path))
+    kind = first["type"]
+    if kind == "extra_forbidden":
+        return _no_key(here, str(first["loc"][-1]))
+    if kind == "missing":
+        return f"{here.key}: this key is missing"
+    if kind == "recursion_loop":
+        return f"{'.'.join(map(str, here.path[:2]))}: tables and lists are nested too deeply"
+    if kind.startswith("union_tag") and isinstance(here.value, dict):
+        got = here.value.get("kind")
+        kinds = ", ".join(map(repr, nearest(str(got), here.kinds())))
+        said = f"got {_shown(got)}" if "kind" in here.value else "this key is missing"
+        return f"{here.key}.kind: must be one of {kinds}; {said}"
+    if kind == "value_error":
+        return f"{here.key}: {first['ctx']['error']}"
+    return f"{here.key}: must be {here.words()}, got {_shown(here.value)}"
+
+
+def _no_key(here: Place, name: str) -> str:
+    """Return a message about a key that a table cannot have, with the keys that it can have."""
+    key = f"{here.key}.{name}".removeprefix(".")
+    return f"{key}: there is no such key; the keys here are {', '.join(nearest(name, here.keys()))}"
+
+
+def _shown(value: Any) -> str:
+    """Return a value as an error shows it."""
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -1,0 +1,310 @@
+"""The commands of ``nacre``, with Typer: contacts, indentations and studies in case files."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+import nacre
+from nacre._tools.disk import PICTURES, replacing
+from nacre._tools.progress import alive
+from nacre._tools.units import system
+from nacre.case import Case, CaseError
+from nacre.case import reference as _reference
+from nacre.indent.solution import IndentSolution
+from nacre.indent.solution import solve as solve_indentation
+from nacre.results import tables
+from nacre.results.display import SLIGHT
+from nacre.results.outputs import ERROR, check_direction
+from nacre.studies import default_threads
+
+app = typer.Typer(
+    help="Elastic contact of coated bodies.",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+
+CaseFile = Annotated[
+    Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the units of the case.")]
+Units = Annotated[
+    str | None,
+    typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
+]
+ROWS = 30
+"""Largest number of cases of a study that are printed."""
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"nacre {nacre.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Elastic contact of coated bodies."""
+
+
+@app.command()
+def info() -> None:
+    """Print versions and the number of threads."""
+    print(f"nacre   {nacre.__version__}")
+    print(f"numpy   {np.__version__}")
+    print(f"threads {default_threads()}")
+
+
+@app.command()
+def solve(
+    case: CaseFile,
+    save: Annotated[
+        list[Path] | None,
+        typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
+    ] = None,
+    initial: Annotated[
+        Path | None,
+        typer.Option(
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation."
+        ),
+    ] = None,
+    units: Units = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the contact that a case file describes."""
+    described = _read_case(case, units)
+    if described.is_indentation:
+        raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
+    arguments, asked = described.arguments(), described.stress()
+    if initial is not None:
+        try:
+            arguments["initial"] = nacre.load(initial)
+        except (OSError, ValueError) as error:
+            raise typer.BadParameter(str(error), param_hint="'--initial'") from error
+    for path in save or []:
+        _check_ending(path)
+    try:
+        check_direction(arguments, **(asked or {}))
+    except ValueError as error:
+        raise CaseError(f"{case}: stress: {error}") from error
+    with nacre.display_units(described.units):
+        _solve(case, described.friction, arguments, asked, save or [], as_json)
+
+
+def _read_case(case: Path, units: str | None) -> Case:
+    """Return the case of a file, in other units if these are given."""
+    described = Case.read(case)
+    return described if units is None else described.in_units(units)
+
+
+def _solve(
+    case: Path,
+    friction: str | None,
+    arguments: dict[str, Any],
+    asked: dict[str, Any] | None,
+    save: list[Path],
+    as_json: bool,
+) -> None:
+    """Solve, save and print in the units that are set."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+        try:
+            with alive():
+                solved = getattr(nacre, friction or "solve")(**arguments)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
+        # Of a history, the last step is printed.
+        solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
+        try:
+            stress = None if asked is None else solution.stress_summary(**asked)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: stress: {error}") from error
+    steps = solved if isinstance(solved, nacre.types.History) else None
+    for path in save:
+        # The fields of ParaView's file are those of the last step.
+        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
+    if as_json:
+        extremes = {} if stress is None else {"stress": stress.to_dict()}
+        history = {"steps": [_tangential(step) for step in steps]} if steps else {}
+        print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
+    else:
+        if steps:
+            print(f"{steps}\n\nlast step")
+        print(solution if stress is None else f"{solution}\n\n{stress}")
+
+
+@app.command()
+def sweep(
+    case: CaseFile,
+    store: Annotated[
+        Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
+    ] = None,
+    save: Annotated[
+        list[Path] | None, typer.Option(help="File to write: .csv. May be repeated.")
+    ] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
+    units: Units = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the study that a case file describes, or the rest of it after a kill."""
+    described = _read_case(case, units)
+    study = described.study(store)
+    for path in save or []:
+        if path.suffix.lower() != ".csv":
+            raise CaseError(f"--save must end in .csv, got {str(path)!r}")
+    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", nacre.NacreWarning)
+        try:
+            dataset = nacre.sweep(described, retry=retry, **study)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: sweep: {error}") from error
+    for path in save or []:
+        with replacing(path) as temporary:
+            dataset.to_dataframe().to_csv(temporary)
+    failed = int((dataset.error != "").sum())
+    if as_json:
+        print(json.dumps(_plain(dataset.to_dict()), indent=2))
+    else:
+        _print_study(dataset)
+        where = f"; all in {study['store']}" if "store" in study else ""
+        for text in (str(warning.message) for warning in said):
+            if " cases failed" not in text:  # the last line says that
+                print(text)
+        print(f"{dataset.error.size} cases, {failed} failed{where}")
+    if failed:
+        raise typer.Exit(1)
+
+
+@app.command()
+def indent(
+    case: CaseFile,
+    save: Annotated[
+        list[Path] | None, typer.Option(help="File to write: .nc or .csv. May be repeated.")
+    ] = None,
+    units: Units = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
+    described = _read_case(case, units)
+    if not described.is_indentation:
+        raise CaseError(f"{case}: this case is a contact, without [tip] and [indent]: nacre solve")
+    for path in save or []:
+        if path.suffix.lower() not in (".nc", ".csv"):
+            raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
+    arguments = described.arguments()
+    with nacre.display_units(described.units), warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+        try:
+            with alive():
+                solution = solve_indentation(**arguments)
+                found = _indent_numbers(solution)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: indent: {error}") from error
+        for path in save or []:
+            solution.save(path)
+        print(json.dumps(_plain(found), indent=2) if as_json else solution)
+
+
+@app.command()
+def schema(
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON schema.")] = False,
+) -> None:
+    """Print the reference of case files: all tables and keys."""
+    print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
+
+
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
+    """Return the main numbers of friction and the named state of its report."""
+    return {row.name: value for row, value in tables.numbers(solution)} | {
+        "friction_report": {
+            name: value for name, value in solution.report.to_dict().items() if name != "kind"
+        }
+    }
+
+
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
+    """Return the main numbers and the named state of the report, with its warnings in words."""
+    if isinstance(solution, nacre.types.FrictionSolution):
+        return _numbers(solution.normal) | _tangential(solution)
+    state = solution.report.to_dict()
+    state["units"] = system().name
+    state.pop("kind")
+    numbers = {row.name: value for row, value in tables.numbers(solution)}
+    if solution.hardness is not None:
+        hardness = np.unique(solution.hardness)
+        numbers["hardness"] = hardness.item() if hardness.size == 1 else hardness[[0, -1]].tolist()
+    if solution.indentation.any():
+        numbers["indentation"] = float(solution.indentation.max())
+    else:
+        del numbers["plastic_work"]
+    return state | numbers | {"warnings": solution.report.warnings}
+
+
+def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
+    """Return the named state of an indentation, the pull-off only with adhesion."""
+    state = solution.to_dict()
+    if solution.adhesion is None:
+        del state["pull_off"]
+    else:
+        pulled = state["pull_off"].items()
+        state["pull_off"] = {name.removeprefix("pull_off_"): value for name, value in pulled}
+    return {name: value for name, value in state.items() if name not in ("format", "kind")}
+
+
+def _plain(data: Any) -> Any:
+    """Return data for JSON, which has neither NaN nor infinity: they become null."""
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    if isinstance(data, float) and not np.isfinite(data):
+        return None
+    return data
+
+
+def _check_ending(path: Path) -> None:
+    endings = {".nc", ".vtr", ".csv", *PICTURES}
+    if path.suffix.lower() not in endings:
+        message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
+        raise typer.BadParameter(message, param_hint="'--save'")
+
+
+def _cell(value: Any, error: float) -> str:
+    """Return a value of a study, with its estimated error."""
+    if not isinstance(value, float | int):
+        return str(value)
+    share = 100 * abs(error / value) if value else 0.0
+    if not 100 * SLIGHT < share < np.inf:
+        return f"{value:.5g}"
+    return f"{value:.5g} ± {share:.1g} %" if share < 9.5 else f"{value:.5g} ± {share:.0f} %"
+
+
+def _print_study(dataset: Any) -> None:
+    """Print parameters and numbers of the first cases, and the cases that failed."""
+    frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
+    rows = frame.to_dataframe().reset_index()
+    names = [str(name) for name in rows.columns if name not in ("error", "warnings")]
+    names = [name for name in names if not name.endswith(ERROR)]
+    units = {name: dataset[name].attrs.get("units") for name in names}
+    lines = [[f"{name} [{units[name]}]" if units[name] else name for name in names]]
+    for _, row in rows.head(ROWS).iterrows():
+        lines.append([_cell(row[name], row.get(name + ERROR, 0.0)) for name in names])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))
+    if len(rows) > ROWS:
+        print(f"and {len(rows) - ROWS} more cases")
+    for _, row in rows[rows["error"] != ""].iterrows():
+        print(f"failed at {', '.join(f'{n} = {row[n]}' for n in frame.coords)}: {row['error']}")

@@ -1,0 +1,231 @@
+"""The reference of case files, made from their JSON schema; and places in a case, for errors."""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from nacre.case.indent import IndentCase
+from nacre.case.schema import Bodies, CaseTable
+
+Node = dict[str, Any]
+"""A part of a JSON schema."""
+
+WIDTH = 88
+"""Width of the text of the reference."""
+UNIT = re.compile(r"\s*(\[(?:N m|N/m|Pa|m|N)\])")
+INTRODUCTION = (
+    "A case file is TOML. Numbers are in the units that the key units names, SI by default; N, m, "
+    "Pa below stand for its force, length and stress."
+)
+ITEMS = {"number": "finite numbers", "integer": "integers above 0", "string": "texts"}
+VALUES = {
+    "boolean": "true or false",
+    "integer": "an integer",
+    "number": "a finite number",
+    "object": "a table",
+    "string": "a text",
+}
+
+
+@functools.cache
+def schema() -> Node:
+    """Return the JSON schema of case files, for editors too."""
+    both: Any = CaseTable | IndentCase
+    return {"title": "case file of nacre", **TypeAdapter(both).json_schema()}
+
+
+def options(node: Node) -> Iterator[Node]:
+    """Yield the alternatives of a part, itself if there are none; references are followed."""
+    if "$ref" in node:
+        yield from options(schema()["$defs"][node["$ref"].rpartition("/")[2]])
+    elif inner := node.get("anyOf", node.get("oneOf")):
+        for one in inner:
+            yield from options(one)
+    elif node.get("type") != "null":
+        yield node
+
+
+def kind_of(table: Node) -> str | None:
+    """Return the kind of a table, where its kind decides on its keys."""
+    kind: str | None = table.get("properties", {}).get("kind", {}).get("const")
+    return kind
+
+
+def words(node: Node) -> str:
+    """Return the words for the values that a part allows."""
+    if "words" in node:
+        return str(node["words"])
+    if "oneOf" in node:
+        return "a table with the key kind"
+    if "anyOf" in node:
+        inner = [one for one in node["anyOf"] if one.get("type") != "null"]
+        return alternatives(dict.fromkeys(map(words, inner)))
+    if "$ref" in node:
+        return "a table"
+    if "enum" in node:
+        return alternatives(map(json.dumps, node["enum"]))
+    if node.get("type") == "array":
+        return _list(node)
+    if "exclusiveMinimum" in node:
+        return "an integer above 0"
+    return VALUES.get(node.get("type", ""), "any value")
+
+
+def _list(node: Node) -> str:
+    items = node["items"]
+    several = ITEMS.get(items.get("type"), "tables" if list(tables(items)) else "values")
+    if items.get("type") == "boolean":
+        return "a pair of true or false"
+    if node.get("minItems") == node.get("maxItems") == 2:
+        return f"a pair of {several}"
+    return f"a list of {several}" + (f", at most {node['maxItems']}" if "maxItems" in node else "")
+
+
+def alternatives(names: Iterable[str]) -> str:
+    """Return names with "or" before the last one."""
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last
+
+
+def nearest(name: str, names: Iterable[str]) -> list[str]:
+    """Return names, those that are most like `name` first."""
+    return sorted(names, key=lambda one: -SequenceMatcher(None, name, one).ratio())
+
+
+def tables(node: Node) -> Iterator[Node]:
+    """Yield the tables that a part allows."""
+    return (one for one in options(node) if "properties" in one)
+
+
+def sections() -> Iterator[tuple[str, Node]]:
+    """Yield title and schema of the tables of the reference, the whole files first."""
+    known = schema()["$defs"]
+
+    def kinds(table: str, key: str, title: str) -> Iterator[tuple[str, Node]]:
+        for one in tables(known[table]["properties"][key]):
+            yield f'`[{title}]` with `kind = "{kind_of(one)}"`', one
+
+    yield "Whole file of a contact", known["CaseTable"]
+    yield "Whole file of an indentation", known["IndentCase"]
+    yield "`[materials.NAME]`", known["Material"]
+    yield from kinds("CaseTable", "shape", "shape")
+    yield from kinds("RollerShape", "profile", "shape.profile")
+    yield "`[body]` and `[counterbody]`", known["Body"]
+    yield "`[[body.layers]]`", known["Layer"]
+    yield "`[grid]`", known["Grid"]
+    yield "`[solve]`", known["Solve"]
+    yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", known["Along"]
+    yield "`[slide]`", known["Slide"]
+    yield "`[[slide.steps]]`", known["Step"]
+    yield "`[slide.shift]` and `[slide.force]`", known["Along"]
+    yield "`[roll]`", known["Roll"]
+    yield "`[roll.creepage]` and `[roll.force]`", known["Rolling"]
+    yield "`[stress]`", known["Stress"]
+    yield from kinds("IndentCase", "tip", "tip")
+    yield from kinds("IndentCase", "adhesion", "adhesion")
+    yield "`[indent]`", known["Indent"]
+    yield "`[sweep]`", known["Sweep"]
+    yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', known["Range"]
+
+
+def text() -> str:
+    """Return the reference as Markdown that can be read as it is."""
+    lines = textwrap.wrap(INTRODUCTION, WIDTH)
+    for title, table in sections():
+        told = table.get("description", "")  # without docstrings there is none
+        summary = " ".join(told.split("\n\n")[0].split()).replace("``", "`")
+        lines += ["", f"## {title}", "", *textwrap.wrap(summary, WIDTH), ""]
+        required = table.get("required", [])
+        keys = [(name, node) for name, node in table["properties"].items() if name != "kind"]
+        # Keys that must be given come first, and the common ones of shapes last.
+        for name, node in sorted(keys, key=lambda key: (key[0] not in required, key[0] == "shift")):
+            said = _key(name, node, name in required)
+            lines += textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+    return "\n".join(lines)
+
+
+def _key(name: str, node: Node, required: bool) -> str:
+    """Return the item of a key: its values with their unit, its default, and its meaning."""
+    told = node.get("description", "").replace("``", "`")
+    value = words(node).removeprefix("a ").removeprefix("an ")
+    unit = UNIT.search(told)
+    default = "; required" if required else ""
+    if node.get("default") not in (None, [], {}):
+        default = f"; default `{json.dumps(node['default'])}`"
+    return f"- `{name}`: {value}{f' {unit[1]}' if unit else ''}{default}. {UNIT.sub('', told)}"
+
+
+def table_for(data: Any) -> type[Bodies]:
+    """Return the table for a case: one with a tip or a table ``indent`` is an indentation."""
+    return IndentCase if isinstance(data, dict) and {"tip", "indent"} & data.keys() else CaseTable
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place in a case: the key of a value, what it may be, and the value."""
+
+    path: tuple[int | str, ...]
+    node: Node
+    value: Any
+
+    @property
+    def key(self) -> str:
+        """Key as users write it: names with dots, numbers in brackets."""
+        said = "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in self.path)
+        return said.removeprefix(".")
+
+    def tables(self) -> list[Node]:
+        """Return the tables that the value may be; by its kind, where it has one."""
+        found = list(tables(self.node))
+        kind = self.value.get("kind") if isinstance(self.value, dict) else None
+        return [one for one in found if kind and kind_of(one) == kind] or found
+
+    def keys(self) -> list[str]:
+        """Return the keys that a table here may have."""
+        return list(dict.fromkeys(name for one in self.tables() for name in one["properties"]))
+
+    def kinds(self) -> list[str]:
+        """Return the kinds that a table here may have."""
+        return [kind for one in tables(self.node) if (kind := kind_of(one))]
+
+    def words(self) -> str:
+        """Return the words for the values that are possible here."""
+        return words(self.node)
+
+    def inside(self, part: int | str) -> Place | None:
+        """Return the place of an item or of a key of the value, if there is one."""
+        value, node = self.value, None
+        if isinstance(part, int) and isinstance(value, list):
+            lists = [one["items"] for one in options(self.node) if "items" in one]
+            # Numbers in a list are described with the list.
+            node = next((one for one in lists if list(tables(one))), None)
+            value = value[part]
+        elif isinstance(part, str) and isinstance(value, dict):
+            found = [one["properties"] for one in self.tables() if part in one["properties"]]
+            others = [one.get("additionalProperties") for one in options(self.node)]
+            if found:
+                node = found[0][part]
+            elif part in value:
+                node = next((one for one in others if one), None)
+            value = value.get(part)
+        return None if node is None else Place((*self.path, part), node, value)
+
+
+def place(data: Any, location: Iterable[int | str]) -> Place:
+    """Return the deepest place of a case that a location leads to.
+
+    A location may hold names of alternatives between its keys, which are passed over.
+    """
+    here = Place((), schema()["$defs"][table_for(data).__name__], data)
+    for part in location:
+        here = here.inside(part) or here
+    return here

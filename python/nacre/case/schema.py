@@ -1,0 +1,367 @@
+"""The schema of case files: one class for each table, with the words of its reference."""
+
+from __future__ import annotations
+
+import inspect
+import types
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Literal,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+import numpy as np
+from pydantic import Field, create_model, field_validator, model_validator
+
+import nacre
+from nacre._tools.typing import Along
+from nacre._tools.units import System
+from nacre.case.friction import AnyAlong, Roll, Slide
+from nacre.case.shapes import AnyShape
+from nacre.case.tables import TWO, Count, Counts, Flags, Number, Pair, Table, described, said
+from nacre.results.outputs import OUTPUTS
+
+CONSTANTS = described(nacre.Elastic)
+LAYER = described(nacre.Layer)
+GRID = described(nacre.Grid)
+LINE = described(nacre.Grid.line)
+SOLVE = described(nacre.solve)
+STRESS = described(nacre.Solution.stress)
+
+
+class Material(Table):
+    """An elastic material, with limits that stresses are compared with."""
+
+    young: Number = Field(description=CONSTANTS["young"])
+    poisson: Number = Field(description=CONSTANTS["poisson"])
+    yield_stress: Number | None = Field(
+        None, description="Yield stress [Pa], for safety factors of the von Mises stress."
+    )
+    strength: Number | None = Field(
+        None, description="Tensile strength [Pa], for safety factors of the tension."
+    )
+
+    def make(self) -> nacre.Elastic:
+        """Return the elastic constants."""
+        return nacre.Elastic(self.young, self.poisson)
+
+
+AnyMaterial = Annotated[
+    str | Material, said("the name of a material, or a table with young and poisson")
+]
+
+
+class Layer(Table):
+    """A layer, the interface below it, and the name that results show."""
+
+    material: AnyMaterial = Field(description=LAYER["material"])
+    thickness: Number = Field(description=LAYER["thickness"])
+    interface: Literal["bonded", "frictionless"] = Field("bonded", description=LAYER["interface"])
+    name: str | None = Field(None, description=LAYER["name"])
+
+
+Ends = Annotated[
+    list[float], TWO, said("a pair of numbers, or of -inf and inf where the body goes on")
+]
+MOST_LAYERS = 1000
+"""Largest number of layers: the time of a contact grows with it."""
+
+
+class Body(Table):
+    """A half-space: a substrate, and layers from the surface down; it may end along x."""
+
+    substrate: AnyMaterial = Field(
+        description='Material below the layers; "rigid" is a rigid base.'
+    )
+    layers: Annotated[list[Layer], Field(max_length=MOST_LAYERS)] = Field(
+        [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
+    )
+    ends: Ends | None = Field(
+        None,
+        description="Coordinates x of free ends [m], the lower one first; -inf or inf where the "
+        "body goes on, as it does at both sides by default.",
+    )
+
+
+class Grid(Table):
+    """Cells of an area, by shape and size; or strips of a line contact, by cells and width."""
+
+    shape: Counts | None = Field(None, description=GRID["shape"])
+    size: Pair | None = Field(None, description=GRID["size"])
+    center: Pair | Number | None = Field(
+        None, description="Centre [m]: a pair for an area, a number for a line. By default 0."
+    )
+    periodic: Flags | None = Field(None, description=GRID["periodic"])
+    cells: Count | None = Field(None, description=LINE["cells"])
+    width: Number | None = Field(None, description=LINE["width"])
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Grid:
+        area, line = (self.shape, self.size), (self.cells, self.width)
+        if (None in area or line != (None, None)) and (None in line or area != (None, None)):
+            raise ValueError("must have shape and size or, for a line contact, cells and width")
+        if self.periodic is not None and self.cells is not None:
+            raise ValueError("periodic must not be given for a line contact")
+        if self.center is not None and isinstance(self.center, list) != (self.cells is None):
+            asked = "a pair of numbers" if self.cells is None else "a number for a line contact"
+            raise ValueError(f"center must be {asked}, got {self.center!r}")
+        return self
+
+    def make(self) -> nacre.Grid:
+        """Return the grid."""
+        center: dict[str, Any] = {} if self.center is None else {"center": self.center}
+        if self.cells is not None:
+            return nacre.Grid.line(self.cells, self.width or 0.0, **center)
+        repeats = {} if self.periodic is None else {"periodic": tuple(self.periodic)}
+        return nacre.Grid(self.shape, self.size, **center, **repeats)  # type: ignore[arg-type]
+
+
+KNOWN = {float: Number, int: Count, Along: AnyAlong}
+"""Types that case files have for those of keywords."""
+OBJECTS = ("grid", "initial", "progress", "check")
+"""Keywords of a solve that are no numbers and no words."""
+
+
+def _checked(hint: Any) -> Any:
+    """Return the type that a case file has for a keyword; it has none for arrays."""
+    parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    parts = tuple(part for part in parts if get_origin(part) not in (Sequence, np.ndarray))
+    return Union[(*(KNOWN.get(part, part) for part in parts),)]
+
+
+def _solve() -> type[Table]:
+    """Return the table of the keywords of `nacre.solve`."""
+    hints = get_type_hints(nacre.solve)
+    keywords = inspect.signature(nacre.solve).parameters.values()
+    fields: dict[str, Any] = {
+        one.name: (
+            _checked(hints[one.name]),
+            Field(default=one.default, description=SOLVE[one.name]),
+        )
+        for one in keywords
+        if one.kind is one.KEYWORD_ONLY and one.name not in OBJECTS
+    }
+    told = "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
+    return create_model("Solve", __base__=Table, __doc__=told, **fields)
+
+
+if TYPE_CHECKING:
+    Solve = Table
+else:
+    Solve = _solve()
+
+
+class Stress(Table):
+    """The stresses that are printed and kept, as `Solution.stress_summary` has them."""
+
+    body: Literal["body", "counterbody"] = Field("body", description=STRESS["body"])
+    friction: Number = Field(0.0, description=STRESS["friction"])
+    direction: Pair | None = Field(None, description=STRESS["direction"])
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords."""
+        return {"body": self.body, "friction": self.friction} | super().keywords()
+
+
+MOST_VALUES = 100_000
+"""Largest number of cases of a study, so that a slip of the pen does not fill the memory."""
+
+
+class Range(Table):
+    """Evenly spaced values, ends included."""
+
+    first: Number = Field(description="First value.")
+    last: Number = Field(description="Last value.")
+    count: Count = Field(description=f"Number of values, at most {MOST_VALUES}.")
+    scale: Literal["linear", "log"] = Field(
+        "linear", description="Whether steps or ratios are the same."
+    )
+
+    @model_validator(mode="after")
+    def _logarithms_exist(self) -> Range:
+        if self.scale == "log" and min(self.first, self.last) <= 0:
+            raise ValueError("first and last must be above 0 on a logarithmic scale")
+        if self.count > MOST_VALUES:
+            raise ValueError(f"count must be at most {MOST_VALUES}, got {self.count}")
+        return self
+
+    def numbers(self) -> list[float]:
+        """Return the values."""
+        make = np.geomspace if self.scale == "log" else np.linspace
+        return [float(value) for value in make(self.first, self.last, self.count)]
+
+
+Values = Annotated[
+    Range | Annotated[list[Any], Field(min_length=1)],
+    said("a list of values, or a table with first, last and count"),
+]
+
+
+class Sweep(Table):
+    """A study, for ``nacre sweep``: every combination of values at some keys of the case."""
+
+    parameters: Annotated[
+        dict[str, Values], said("a table of lists, or of tables with first, last and count")
+    ] = Field(
+        description='Values by key, such as parameters."body.layers[0].thickness" = [1e-6, 2e-6].'
+    )
+    outputs: list[str] | None = Field(
+        None,
+        description="Numbers that are kept of each solution, as `nacre.sweep` has them; by default "
+        f"{', '.join(OUTPUTS)}.",
+    )
+    store: str | None = Field(
+        None, description="File for the study, .nc, in the folder of the case or below."
+    )
+
+
+class Bodies(Table):
+    """Keys that all case files have: units, materials and bodies, and a study."""
+
+    solved: ClassVar[tuple[str, ...]] = ()
+    """Tables that describe a solve, whose values a study can change."""
+
+    units: str = Field(
+        "SI",
+        description="Units of force, length and stress of all numbers in the file, and of what is "
+        'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
+    )
+    materials: Annotated[dict[str, Material], said("a table of materials")] = Field(
+        {}, description="Materials by name."
+    )
+    body: Body = Field(description="Body that the shape or the tip is pressed into.")
+    counterbody: Body | None = Field(
+        None, description="Body of the shape or the tip; rigid where it is left out."
+    )
+    sweep: Sweep | None = Field(None, description="A study of the case.")
+
+    @field_validator("units")
+    @classmethod
+    def _consistent(cls, units: str) -> str:
+        System(units)
+        return units
+
+    def bodies(self) -> dict[str, Any]:
+        """Return the bodies by name."""
+        named = (("body", self.body), ("counterbody", self.counterbody))
+        return {name: self._body(name, body) for name, body in named if body is not None}
+
+    def _body(self, name: str, body: Body) -> nacre.HalfSpace:
+        with at(f"{name}.substrate"):
+            rigid = self._is_rigid(body)
+            substrate = nacre.RIGID if rigid else self._material(body.substrate)
+        layers = []
+        for number, layer in enumerate(body.layers):
+            with at(f"{name}.layers[{number}]"):
+                with at("material"):
+                    material = self._material(layer.material)
+                layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
+        ends = None if body.ends is None else (body.ends[0], body.ends[1])
+        with at(name):
+            return nacre.HalfSpace(substrate, layers, ends=ends)
+
+    def _is_rigid(self, body: Body) -> bool:
+        return body.substrate == "rigid" and "rigid" not in self.materials
+
+    def _material(self, named: str | Material) -> nacre.Elastic:
+        if isinstance(named, str):
+            if named not in self.materials:
+                known = ", ".join(self.materials) or "none"
+                raise ValueError(f"must be one of the materials ({known}), got {named!r}")
+            with at(f"materials.{named}"):
+                return self.materials[named].make()
+        return named.make()
+
+
+class CaseTable(Bodies):
+    """Keys and tables of the case file of a contact."""
+
+    solved: ClassVar[tuple[str, ...]] = (
+        "materials",
+        "shape",
+        "body",
+        "counterbody",
+        "grid",
+        "solve",
+        "slide",
+        "roll",
+    )
+
+    shape: AnyShape = Field(description="Shape that is pressed in.")
+    grid: Grid | None = Field(None, description=SOLVE["grid"])
+    solve: Solve = Field(description="What presses, and how the contact is solved.")
+    slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
+    roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
+    stress: Stress | None = Field(
+        None, description="Stresses below the surface; the table may be empty."
+    )
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
+        with at("shape"):
+            shape = self.shape.make(folder, System(self.units).metres)
+        found: dict[str, Any] = {"shape": shape, **self.bodies()}
+        if self.grid is not None:
+            with at("grid"):
+                found["grid"] = self.grid.make()
+        return found | self.solve.keywords() | self._friction()
+
+    def _friction(self) -> dict[str, Any]:
+        """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
+        asked = self.slide or self.roll
+        if asked is None:
+            return {}
+        name = "roll" if self.slide is None else "slide"
+        if self.slide is not None and self.roll is not None:
+            raise WrongValue("roll", "must not be given beside the table slide")
+        known = inspect.signature(getattr(nacre, name)).parameters
+        if others := sorted(self.solve.model_fields_set - known.keys()):
+            raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
+        if self.stress is not None and self.stress.friction:
+            raise WrongValue(
+                "stress.friction", f"must be 0 beside the table {name}: its tractions are known"
+            )
+        return asked.keywords()
+
+    def limits(self) -> dict[str, list[float | None]]:
+        """Return yield stresses and strengths of the layers and the substrate."""
+        body = self.body if self.stress is None or self.stress.body == "body" else self.counterbody
+        if body is None:
+            return {}
+        named = [*(layer.material for layer in body.layers)]
+        named += [] if self._is_rigid(body) else [body.substrate]
+        found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
+        return {
+            name: [getattr(material, name, None) for material in found]
+            for name in ("yield_stress", "strength")
+        }
+
+
+class WrongValue(ValueError):
+    """An error about the value of a key."""
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(f"{key}: {message}")
+        self.key, self.message = key, message
+
+
+@contextmanager
+def at(key: str) -> Iterator[None]:
+    """Name the key whose value raises an error: a `WrongValue`."""
+    try:
+        yield
+    except WrongValue as error:
+        if error.key.startswith("materials."):  # a key of its own, wherever it is used
+            raise
+        raise WrongValue(f"{key}.{error.key}", error.message) from error
+    except (ArithmeticError, OSError, TypeError, ValueError) as error:
+        raise WrongValue(key, str(error)) from error

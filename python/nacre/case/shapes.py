@@ -1,0 +1,212 @@
+"""Tables of shapes in case files.
+
+The tables of most shapes and profiles are made from the signatures and docstrings in `nacre._core`.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+
+from pydantic import Field
+
+import nacre
+from nacre import rough
+from nacre.case.tables import (
+    Count,
+    Counts,
+    Flags,
+    Number,
+    Numbers,
+    Pair,
+    Table,
+    described,
+    table_of,
+)
+from nacre.hertz import relative_radii
+
+PROFILES: dict[str, Any] = {
+    "logarithmic": nacre.LogarithmicProfile,
+    "lundberg": nacre.LogarithmicProfile.lundberg,
+    "johns_gohar": nacre.LogarithmicProfile.johns_gohar,
+    "fujiwara_kawase": nacre.LogarithmicProfile.fujiwara_kawase,
+    "iso16281": nacre.LogarithmicProfile.iso16281,
+    "sampled": nacre.SampledProfile,
+}
+"""Callables that make the axial profiles of rollers, by their names in case files."""
+
+
+class Profile(Table):
+    """An axial profile of a roller."""
+
+    def make(self) -> nacre.LogarithmicProfile | nacre.SampledProfile:
+        """Return the profile."""
+        given = self.model_dump(exclude={"kind"}, exclude_none=True)
+        kind: str = self.kind  # type: ignore[attr-defined]
+        return PROFILES[kind](**given)  # type: ignore[no-any-return]
+
+
+PROFILE_TABLES = {
+    kind: table_of(
+        kind,
+        maker,
+        Profile,
+        {"x": Numbers, "drop": Numbers, "smooth": bool, "corners": Numbers},
+    )
+    for kind, maker in PROFILES.items()
+}
+
+AnyProfile: Any = Annotated[
+    Union[tuple(PROFILE_TABLES.values())],  # noqa: UP007
+    Field(discriminator="kind"),
+]
+
+
+class Shape(Table):
+    """Keys that every shape may have: a shift."""
+
+    shift: Pair | None = Field(None, description="Distances by which the shape is moved [m].")
+
+    def make(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape; files are in `folder`, and the unit of length has so many metres."""
+        shape = self.unmoved(folder, metres)
+        return shape if self.shift is None else shape.shifted(*self.shift)
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift."""
+        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        if "profile" in given:
+            given["profile"] = self.profile.make()  # type: ignore[attr-defined]
+        kind: str = self.kind  # type: ignore[attr-defined]
+        return SHAPES[kind](**given)  # type: ignore[no-any-return]
+
+
+SHAPES: dict[str, Any] = {
+    re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
+    for made in vars(nacre._core).values()
+    if isinstance(made, type)
+    and issubclass(made, nacre.types.Shape)
+    and made is not nacre.types.Shape
+}
+"""Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
+
+READ = described(nacre.HeightMap.read)
+
+
+class HeightMap(Shape):
+    """A measured surface in a file."""
+
+    kind: Literal["height_map"] = Field(description="Kind, which decides on the other keys.")
+    path: str = Field(description="File, relative to the folder of the case. " + READ["path"])
+    spacing: Number | Pair | None = Field(None, description=READ["spacing"])
+    unit: str | None = Field(None, description=READ["unit"])
+    detrend: Literal["none", "mean", "plane", "quadratic"] = Field(
+        "plane", description=READ["detrend"]
+    )
+    transpose: bool = Field(False, description=READ.get("transpose"))
+    channel: str | int | None = Field(None, description=READ["channel"])
+    periodic: Flags | None = Field(None, description=READ["periodic"])
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift, in the unit of length of the case."""
+        given = self.model_dump(exclude={"kind", "shift", "path"}, exclude_none=True)
+        if self.spacing is not None:
+            sides = self.spacing if isinstance(self.spacing, list) else [self.spacing] * 2
+            given["spacing"] = tuple(metres * side for side in sides)
+        read = nacre.HeightMap.read(folder / self.path, **given)
+        if metres == 1.0:
+            return read
+        spacing, center = ((x / metres, y / metres) for x, y in (read.spacing, read.center))
+        return nacre.HeightMap(read.heights / metres, spacing, center, read.periodic)
+
+
+RANDOM = described(rough.random_surface)
+CROSSED = described(relative_radii)
+
+
+class RandomSurface(Shape):
+    """A self-affine random surface that repeats: `nacre.rough.random_surface`."""
+
+    kind: Literal["random_surface"] = Field(description="Kind, which decides on the other keys.")
+    shape: Counts = Field(description=RANDOM["shape"])
+    size: Pair = Field(description=RANDOM["size"])
+    hurst: Number = Field(description=RANDOM["hurst"])
+    shortest: Number = Field(description=RANDOM["shortest"])
+    longest: Number = Field(description=RANDOM["longest"])
+    rms_slope: Number | None = Field(None, description=RANDOM["rms_slope"])
+    rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
+    seed: Count = Field(description=RANDOM["seed"])
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift."""
+        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        return rough.random_surface(**given)
+
+
+class Crossed(Shape):
+    """Two bodies at an angle, such as crossed cylinders: `nacre.hertz.relative_radii`.
+
+    The x axis of the contact lies along the longer of the relative radii.
+    """
+
+    kind: Literal["crossed"] = Field(description="Kind, which decides on the other keys.")
+    radius_x: Number | None = Field(
+        None, description="Radius of one body along x [m]; straight by default."
+    )
+    radius_y: Number | None = Field(
+        None, description="Radius of one body along y [m]; straight by default."
+    )
+    counter_radius_x: Number | None = Field(
+        None, description="Radius of the other body along its own x axis [m]; straight by default."
+    )
+    counter_radius_y: Number | None = Field(
+        None, description="Radius of the other body along its own y axis [m]; straight by default."
+    )
+    angle: Number = Field(description=CROSSED["angle"])
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift."""
+        counter_radii = (self.counter_radius_x, self.counter_radius_y)
+        radii, _ = relative_radii((self.radius_x, self.radius_y), counter_radii, self.angle)
+        return nacre.Paraboloid(*radii)
+
+
+class Sum(Shape):
+    """A sum of shapes: their gaps are added."""
+
+    kind: Literal["sum"] = Field(description="Kind, which decides on the other keys.")
+    parts: Annotated[list[AnyShape], Field(min_length=1)] = Field(
+        description="Shapes that are added, one at least."
+    )
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
+        """Return the shape without its shift."""
+        first, *others = (part.make(folder, metres) for part in self.parts)
+        for other in others:
+            first = first + other
+        return first
+
+
+OWN_TABLES: dict[str, type[Shape]] = {
+    "height_map": HeightMap,
+    "random_surface": RandomSurface,
+    "crossed": Crossed,
+    "sum": Sum,
+}
+TABLES: dict[str, type[Shape]] = {
+    kind: table_of(kind, made, Shape, {"profile": AnyProfile})
+    for kind, made in SHAPES.items()
+    if kind not in OWN_TABLES
+} | OWN_TABLES
+"""Tables of all shapes, by kind."""
+
+if TYPE_CHECKING:
+    AnyShape = Shape
+else:
+    AnyShape = Annotated[
+        Union[tuple(TABLES.values())],  # noqa: UP007
+        Field(discriminator="kind"),
+    ]
+
+Sum.model_rebuild()

@@ -1,0 +1,818 @@
+"""Contacts: planned, solved, and with friction."""
+
+from __future__ import annotations
+
+import copyreg
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Literal, Self
+
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.progress import lasting
+from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
+from nacre.contact.friction import FrictionReport, FrictionSolution, History
+from nacre.contact.solution import Report, Solution
+
+MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
+"""Keywords of the motion along z."""
+STEP = (*MOTION, "friction", "shift", "force", "twist", "torque")
+"""Keywords of a step of a history."""
+SHOWN = 1000
+"""Largest number of coefficients that a plan prints."""
+Progress = Callable[[Report], object]
+Told = Callable[[int, FrictionReport], object]
+"""Function that is told the number of a step and its report."""
+
+
+def solve(
+    shape: core.Shape,
+    body: Body,
+    counterbody: Body | None = None,
+    *,
+    grid: core.Grid | None = None,
+    max_cells: int | None = None,
+    threads: int | None = None,
+    load: float | None = None,
+    approach: float | None = None,
+    eccentricity: Along | None = None,
+    moment: Along | None = None,
+    tilt: Along | None = None,
+    hardness: float | Matrix | None = None,
+    tolerance: float = 1e-8,
+    max_iterations: int | None = None,
+    algorithm: Algorithm = "cascade",
+    initial: Solution | Matrix | None = None,
+    progress: Progress | None = None,
+    check: bool = True,
+) -> Solution:
+    """Press a shape into a body, in one call: choose a grid where none is given, plan, solve.
+
+    By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
+    contact, with 64 cells across its narrower width, oblong where the contact is long, and a margin
+    of a quarter of the contact on every side. The cells are divided until the estimated error of
+    the peak pressure (`Report.discretisation`) is at most 1 %; where that needs more than 2²²
+    cells, or does not lower the estimate, a warning says so.
+
+    Parameters
+    ----------
+    shape : Shape
+        Shape that is pressed in.
+    body : HalfSpace, Elastic or Response
+        Body that it is pressed into.
+    counterbody : HalfSpace, Elastic or Response, optional
+        Body that carries the shape; rigid where there is none. A roller of finite length ends on
+        both sides: ``HalfSpace(steel, ends=roller.ends)``.
+    grid : Grid, optional
+        Cells of the pressure; by default those of an `initial` solution whose surfaces have a
+        permanent indentation. An endless shape, such as a cylinder, needs a grid.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
+    threads : int, optional
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
+    load : float, optional
+        Force W that presses the bodies together [N], above 0; a force per length [N/m] on a
+        `Grid.line`. Either `load` or `approach` is given.
+    approach : float, optional
+        Distance by which the shape moves towards the body at x = y = 0 [m], from the position in
+        which the plane h = 0 of the shape lies on the surface of the body. Below 0 the bodies are
+        apart.
+    eccentricity : tuple of float or None, optional
+        Point ``(e_x, e_y)`` at which the load acts [m]. Along a direction with a number the shape
+        is free to tilt, and the tilt that balances the moment is found; along a direction with
+        None it is not, and the tilt is 0 or what `tilt` says. It needs `load`, and the point must
+        lie inside the region that can touch.
+    moment : tuple of float or None, optional
+        First moments of the pressure about x = y = 0, ``(∬ p x dA, ∬ p y dA)`` [N m]: load times
+        eccentricity, for contacts under a given approach too. None means the same as in
+        `eccentricity`.
+    tilt : tuple of float or None, optional
+        Slopes ``(s_x, s_y)`` by which the shape is turned [rad]: at positive x, a positive s_x
+        brings it nearer to the body. None stands for 0 along a direction without eccentricity or
+        moment.
+    hardness : float or array_like, optional
+        Largest pressure H that the surfaces can carry [Pa], above 0, of all cells or of each,
+        ``(nx, ny)``: cells that would carry more yield, and keep a permanent indentation
+        (`Solution.indentation`). By default they do not yield.
+    tolerance : float, optional
+        Largest `Report.residual` and `Report.overlap` of a converged solution, both relative,
+        above 0 and below 1.
+    max_iterations : int, optional
+        Iterations of one solve before it gives up; 10 000 by default.
+    algorithm : {"cascade", "polonsky-keer"}, optional
+        Preconditioned conjugate gradients on nested grids, in a window around the contact; or the
+        method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference.
+    initial : Solution or array_like, optional
+        Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution close to the one sought,
+        on the same grid, such as the previous one of a series. The result does not depend on it,
+        except that the surfaces keep the permanent indentation of a solution: a history of loads
+        goes from one to the next.
+    progress : callable, optional
+        Function that is called with a `Report` at each iteration; returning False stops, and gives
+        the unfinished solution.
+    check : bool, optional
+        Whether to raise an error if the tolerance was not met.
+
+    Returns
+    -------
+    Solution
+        Pressure, gap, displacement, approach and tilt.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, the arguments contradict each other, no grid is found, a
+        free end of a body lies within a cell, or the counterbody ends within the shape that it
+        carries.
+    ConvergenceError
+        If the tolerance was not met; the unfinished solution is its `solution`.
+
+    See Also
+    --------
+    Contact.solve : explains the degrees of freedom of the motion.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+    >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=40e-6)])
+    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+    >>> solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
+    >>> round(solution.eccentricity[0], 8)
+    0.00287
+    """
+    return _solved(locals())
+
+
+def slide(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    grid: core.Grid | None = None,
+    max_cells: int | None = None,
+    threads: int | None = None,
+    steps: Iterable[Mapping[str, Any]] | None = None,
+    load: float | None = None,
+    approach: float | None = None,
+    eccentricity: Along | None = None,
+    moment: Along | None = None,
+    tilt: Along | None = None,
+    friction: npt.ArrayLike | None = None,
+    shift: Along | None = None,
+    force: Along | None = None,
+    twist: float | None = None,
+    torque: float | None = None,
+    tolerance: float = 1e-8,
+    max_convolutions: int = 4000,
+    coupling: bool = True,
+    initial: FrictionSolution | History | None = None,
+    progress: Told | None = None,
+    check: bool = True,
+) -> Any:
+    """Press a shape into a body and move it tangentially, with friction, in one call.
+
+    It chooses a grid where none is given, plans, and solves.
+
+    Parameters
+    ----------
+    shape : Shape
+        Shape that is pressed in.
+    body : HalfSpace or Elastic
+        Body that it is pressed into.
+    counterbody : HalfSpace or Elastic, optional
+        Body that carries the shape and moves over the body; rigid where there is none.
+    grid : Grid, optional
+        Cells of pressure and traction; by default that of `solve` for the largest load.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
+    threads : int, optional
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
+    steps : iterable of mapping, optional
+        Steps of a history, each a mapping of the keywords from `load` to `torque`. Motion along z
+        and friction that a step does not give stay as in the step before; at first, they are
+        those of the call.
+    load, approach, eccentricity, moment, tilt : optional
+        Motion along z, as `Contact.solve` explains.
+    friction : float or array_like
+        Coefficient of friction, at least 0: one number, or one for each cell ``(nx, ny)``.
+    shift : tuple of float or None, optional
+        Shift ``(d_x, d_y)`` of the counterbody over the body at the end of the step [m], since
+        the first touch. None: it stays where it is, unless there is a force.
+    force : tuple of float or None, optional
+        Forces ``(∬ q_x dA, ∬ q_y dA)`` of the tractions on the body [N]; the shift along an axis
+        with a number is found.
+    twist : float, optional
+        Rotation of the counterbody over the body about the z axis [rad], since the first touch.
+    torque : float, optional
+        Torque ``∬ (x q_y - y q_x) dA`` of the tractions on the body [N m]; the twist is found.
+    tolerance : float, optional
+        Largest slip of a sticking cell, or slip across the traction, over the largest
+        displacement; also the tolerance of the pressure. Above 0 and below 1.
+    max_convolutions : int, optional
+        Tangential convolutions of a step before it gives up.
+    coupling : bool, optional
+        Whether tractions act on the pressure and pressure on the slip. Between equal bodies
+        neither is so.
+    initial : FrictionSolution or History, optional
+        State to go on from: the last step of an earlier history, on the same grid. It carries
+        tractions and shift, and no pressure, which is solved afresh. By default the surfaces have
+        not touched.
+    progress : callable, optional
+        Function that is called with the number of the step and a `FrictionReport` at each
+        convolution; returning False stops, and gives the unfinished solution, with tractions and
+        shift as before the step: with it as `initial`, the same step goes on.
+    check : bool, optional
+        Whether to raise an error if the tolerance was not met.
+
+    Returns
+    -------
+    FrictionSolution or History
+        Tractions, slip, and all of the normal contact; a list of them where there are `steps`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, friction cannot bear the force, a body has free ends or a
+        frictionless interface, or is known by its normal response alone.
+    ConvergenceError
+        If the tolerance was not met; the unfinished solution is its `solution`.
+
+    Notes
+    -----
+    Coulomb's law holds in each cell. The bodies are half-spaces, and all is quasi-static. Once a
+    history has begun, every exception that ends it, `KeyboardInterrupt` included, carries the
+    finished steps as `solutions`. With the last of them as `initial`, the history goes on to the
+    bit.
+
+    Examples
+    --------
+    A fretting loop of a ball:
+
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> steps = [{"force": (force, None)} for force in (2.0, -2.0, 2.0)]
+    >>> loop = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps)
+    >>> [round(solution.force[0], 6) for solution in loop], loop[2].dissipated > 0
+    ([2.0, -2.0, 2.0], True)
+    """
+    return _steps(core.slide, locals())
+
+
+def roll(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    grid: core.Grid | None = None,
+    max_cells: int | None = None,
+    threads: int | None = None,
+    load: float | None = None,
+    approach: float | None = None,
+    eccentricity: Along | None = None,
+    moment: Along | None = None,
+    tilt: Along | None = None,
+    friction: npt.ArrayLike | None = None,
+    creepage: Along | None = None,
+    force: Along | None = None,
+    spin: float = 0.0,
+    direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+    cells: int | None = None,
+    tolerance: float = 1e-8,
+    max_convolutions: int = 4000,
+    coupling: bool = True,
+    initial: FrictionSolution | History | None = None,
+    progress: Told | None = None,
+    check: bool = True,
+) -> Any:
+    """Press a shape into a body, which rolls, in one call.
+
+    It chooses a grid where none is given, plans, and solves.
+
+    Parameters
+    ----------
+    shape : Shape
+        Shape that is pressed in.
+    body : HalfSpace or Elastic
+        Body that it is pressed into.
+    counterbody : HalfSpace or Elastic, optional
+        Body that carries the shape; rigid where there is none.
+    grid : Grid, optional
+        Cells of pressure and traction; by default that of `solve`.
+    max_cells : int, optional
+        Largest number of cells of the grid that is chosen where none is given, at least 4096; by
+        default 2²² (4 194 304). Where the peak pressure needs more, the estimate of its error says
+        what the limit costs, and a warning too where that is more than 1 %.
+    threads : int, optional
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
+    load, approach, eccentricity, moment, tilt : optional
+        Motion along z, as `Contact.solve` explains.
+    friction : float or array_like
+        Coefficient of friction, at least 0: one number, or one for each cell ``(nx, ny)``.
+    creepage : tuple of float or None, optional
+        Creepages ``(xi, eta)`` of the counterbody over the body, along the direction of rolling e
+        and along z × e: relative velocities over the speed of rolling, which are small in the
+        linear theory: above 0.1 a warning says so. None: 0, unless there is a force.
+    force : tuple of float or None, optional
+        Forces of the tractions on the body along e and along z × e [N]; the creepage along an
+        axis with a number is found.
+    spin : float, optional
+        Relative angular velocity about the z axis over the speed of rolling [1/m].
+    direction : {"+x", "-x", "+y", "-y"}, optional
+        Direction of rolling, in which the leading edge lies; "+y" for shapes that roll across the
+        x axis, as rollers do. Other shapes need it.
+    cells : int, optional
+        Number of cells to roll from `initial` on, or from the first touch. By default the steady
+        state is found.
+    tolerance, max_convolutions, coupling, initial, progress, check : optional
+        How tractions are found, as `slide` explains.
+
+    Returns
+    -------
+    FrictionSolution or History
+        Steady state; a list with one solution for each cell rolled where `cells` is given.
+
+    Raises
+    ------
+    ValueError
+        As `slide`; and if the contact touches the edge of the grid in the direction of rolling.
+    ConvergenceError
+        If the tolerance was not met; the unfinished solution is its `solution`.
+
+    Notes
+    -----
+    Material flows against the direction of rolling. The change of displacement over a cell stands
+    for its derivative (Kalker 1990), so that forces are right to the first order of the cells.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> ball = nacre.Sphere(5e-3)
+    >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
+    >>> wheel = nacre.roll(ball, steel, steel, **pull, direction="+x")
+    >>> round(wheel.force[0], 6), wheel.creepage[0] > 0
+    (1.5, True)
+    """
+    return _steps(core.roll, locals())
+
+
+class Contact:
+    """A body on a grid, planned once: influence coefficients and their transform.
+
+    Parameters
+    ----------
+    body : HalfSpace, Elastic or Response
+        Body that the shape is pressed into.
+    grid : Grid
+        Cells of the pressure.
+    counterbody : HalfSpace, Elastic or Response, optional
+        Body that carries the shape; rigid where there is none.
+    coefficients : array_like, optional
+        Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another
+        method of `influence_coefficients`; by default the exact ones of the bodies.
+    threads : int, optional
+        Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+    MemoryError
+        If the grid does not fit into memory: a plan and a solve take up to 170 bytes a cell, with a
+        hardness 210.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
+    >>> solution = contact.solve(nacre.Sphere(5e-3), load=10.0)
+    >>> round(solution.load, 6)
+    10.0
+    """
+
+    __slots__ = ("_plan",)
+
+    _plan: core.Plan
+
+    def __new__(
+        cls,
+        body: Body,
+        grid: core.Grid,
+        counterbody: Body | None = None,
+        *,
+        coefficients: Matrix | None = None,
+        threads: int | None = None,
+    ) -> Self:
+        """Plan the contact."""
+        made = super().__new__(cls)
+        made._plan = core.Plan(body, grid, counterbody, coefficients, threads)
+        return made
+
+    @property
+    def body(self) -> Planned:
+        """Body that the shape is pressed into."""
+        return self._plan.body()
+
+    @property
+    def counterbody(self) -> Planned | None:
+        """Body that carries the shape; rigid where `None`."""
+        return self._plan.counterbody()
+
+    @property
+    def grid(self) -> core.Grid:
+        """Cells of the pressure."""
+        return self._plan.grid()
+
+    @property
+    def coefficients(self) -> Field | None:
+        """Influence coefficients ``(nx, ny)`` [m/Pa] that were given.
+
+        `None` where they are those of the bodies.
+        """
+        return self._plan.coefficients()
+
+    @property
+    def threads(self) -> int:
+        """Number of threads of the plan."""
+        return self._plan.threads()
+
+    def solve(
+        self,
+        shape: core.Shape,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        eccentricity: Along | None = None,
+        moment: Along | None = None,
+        tilt: Along | None = None,
+        hardness: float | Matrix | None = None,
+        tolerance: float = 1e-8,
+        max_iterations: int | None = None,
+        algorithm: Algorithm = "cascade",
+        initial: Solution | Matrix | None = None,
+        progress: Progress | None = None,
+        check: bool = True,
+    ) -> Solution:
+        """Press a shape into the body.
+
+        Each of the three degrees of freedom of the rigid motion is prescribed or loaded, in any
+        mixture. Exactly one of `load` and `approach` is given, and along x and along y at most one
+        of `eccentricity`, `moment` and `tilt`; with none of them the tilt is locked at 0.
+
+        Parameters
+        ----------
+        shape : Shape
+            Shape that is pressed in.
+        load, approach, eccentricity, moment, tilt : optional
+            Rigid motion, as `nacre.solve` explains.
+        hardness, tolerance, max_iterations, algorithm : optional
+            How the solution is found, as `nacre.solve` explains.
+        initial, progress, check : optional
+            Where it starts, who is told, and whether it must converge, as `nacre.solve` explains.
+
+        Returns
+        -------
+        Solution
+            Pressure, gap, displacement, approach and tilt.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range, or the arguments contradict each other.
+        ConvergenceError
+            If the tolerance was not met; the unfinished solution is its `solution`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
+        >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
+        0.0
+        """
+        return _solved(locals(), self._plan)
+
+    def solve_many(
+        self,
+        cases: Iterable[Mapping[str, Any]],
+        *,
+        hardness: float | Matrix | None = None,
+        tolerance: float = 1e-8,
+        max_iterations: int | None = None,
+        algorithm: Algorithm = "cascade",
+        progress: Callable[[int, int], object] | None = None,
+        check: bool = True,
+    ) -> list[Solution]:
+        """Solve many load cases side by side, each on a thread of its own.
+
+        Parameters
+        ----------
+        cases : iterable of mapping
+            Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
+            `approach`, `eccentricity`, `moment`, `tilt`.
+        hardness, tolerance, max_iterations, algorithm : optional
+            How the solutions are found, as `nacre.solve` explains.
+        progress : callable, optional
+            Function that is called with the number of finished cases and of all cases, at most 50
+            times a second, and at the end. Its result is ignored.
+        check : bool, optional
+            Whether to raise an error if the tolerance was not met.
+
+        Returns
+        -------
+        list of Solution
+            Solutions in the order of the cases; each has the bits that `solve` gives.
+
+        Raises
+        ------
+        TypeError
+            If a case is not a mapping of keywords of `solve`.
+        ValueError
+            If a case is out of range. A note of the error says which case it is.
+        ConvergenceError
+            If the tolerance was not met in a case.
+
+        Notes
+        -----
+        Once the solves have begun, every exception that ends them, `KeyboardInterrupt` included,
+        carries the finished ones as `solutions`: a list in the order of the cases, with `None` for
+        a case that is not finished.
+
+        Under a load, successive cases whose shape is the same object share its undeformed gap: they
+        take two thirds of the memory.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
+        >>> ball = nacre.Sphere(5e-3)
+        >>> cases = [{"shape": ball, "load": load} for load in (5.0, 10.0)]
+        >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
+        [5.0, 10.0]
+        """
+        given = locals()
+        listed = _mappings(("a case", "cases", "solve", "in case"), cases, ("shape", *MOTION))
+        outcomes, failure = self._plan.solve_many(listed, given)
+        solutions: list[Any] = []
+        for number, (case, outcome) in enumerate(zip(listed, outcomes, strict=True)):
+            solution = None
+            if isinstance(outcome, core.Solved):
+                try:
+                    solution = _finished(outcome, case["shape"], check, stacklevel=3)
+                except Exception as error:  # of the tolerance, or a warning that is one
+                    error.add_note(f"in case {number}")
+                    outcome, solution = error, getattr(error, "solution", None)
+            if isinstance(outcome, BaseException):
+                failure = failure or outcome
+            solutions.append(solution)
+        if failure is not None:
+            failure.solutions = solutions  # type: ignore[attr-defined]
+            raise failure
+        return solutions
+
+    def slide(
+        self,
+        shape: core.Shape,
+        steps: Iterable[Mapping[str, Any]] | None = None,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        eccentricity: Along | None = None,
+        moment: Along | None = None,
+        tilt: Along | None = None,
+        friction: npt.ArrayLike | None = None,
+        shift: Along | None = None,
+        force: Along | None = None,
+        twist: float | None = None,
+        torque: float | None = None,
+        tolerance: float = 1e-8,
+        max_convolutions: int = 4000,
+        coupling: bool = True,
+        initial: FrictionSolution | History | None = None,
+        progress: Told | None = None,
+        check: bool = True,
+    ) -> Any:
+        """Press a shape into the body and move it tangentially, with friction.
+
+        Parameters
+        ----------
+        shape : Shape
+            Shape that is pressed in.
+        steps, load, approach, eccentricity, moment, tilt : optional
+            Steps of a history, and motion along z, as `nacre.slide` explains.
+        friction, shift, force, twist, torque : optional
+            Friction and tangential motion, as `nacre.slide` explains.
+        tolerance, max_convolutions, coupling, initial, progress, check : optional
+            How tractions are found, as `nacre.slide` explains.
+
+        Returns
+        -------
+        FrictionSolution or History
+            Tractions, slip, and all of the normal contact; a list of them where there are `steps`.
+
+        Raises
+        ------
+        ValueError
+            As `nacre.slide`.
+        ConvergenceError
+            If the tolerance was not met; the unfinished solution is its `solution`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+        >>> ball = contact.slide(nacre.Sphere(5e-3), load=10.0, friction=0.3, force=(1.5, None))
+        >>> round(ball.force[0], 6), ball.report.full_slip
+        (1.5, False)
+        """
+        return _steps(core.slide, locals(), self._plan)
+
+    def roll(
+        self,
+        shape: core.Shape,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        eccentricity: Along | None = None,
+        moment: Along | None = None,
+        tilt: Along | None = None,
+        friction: npt.ArrayLike | None = None,
+        creepage: Along | None = None,
+        force: Along | None = None,
+        spin: float = 0.0,
+        direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+        cells: int | None = None,
+        tolerance: float = 1e-8,
+        max_convolutions: int = 4000,
+        coupling: bool = True,
+        initial: FrictionSolution | History | None = None,
+        progress: Told | None = None,
+        check: bool = True,
+    ) -> Any:
+        """Press a shape into the body, which rolls steadily, or cell by cell from a given state.
+
+        Parameters
+        ----------
+        shape : Shape
+            Shape that is pressed in.
+        load, approach, eccentricity, moment, tilt : optional
+            Motion along z, as `Contact.solve` explains.
+        friction, creepage, force, spin, direction, cells : optional
+            Friction and rolling, as `nacre.roll` explains.
+        tolerance, max_convolutions, coupling, initial, progress, check : optional
+            How tractions are found, as `nacre.slide` explains.
+
+        Returns
+        -------
+        FrictionSolution or History
+            Steady state; a list with one solution for each cell rolled where `cells` is given.
+
+        Raises
+        ------
+        ValueError
+            As `nacre.roll`.
+        ConvergenceError
+            If the tolerance was not met; the unfinished solution is its `solution`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+        >>> slip = {"load": 10.0, "friction": 0.3, "creepage": (0.02, None)}
+        >>> wheel = contact.roll(nacre.Sphere(5e-3), **slip, direction="+x")
+        >>> wheel.report.full_slip, round(wheel.force[0], 3)
+        (True, 3.0)
+        """
+        return _steps(core.roll, locals(), self._plan)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether body, grid, counterbody, given coefficients and threads are the same."""
+        return self._plan == other._plan if isinstance(other, Contact) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return the call that makes the plan."""
+        given: Any = self.coefficients
+        if given is not None and given.size <= SHOWN:
+            given = given.tolist()
+        return (
+            f"Contact({self.body!r}, {self.grid!r}, counterbody={self.counterbody!r}, "
+            f"coefficients={given!r}, threads={self._plan.asked_threads()!r})"
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return a callable and arguments with which a pickle of any protocol plans again."""
+        keywords = {"coefficients": self.coefficients, "threads": self._plan.asked_threads()}
+        given = (type(self), (self.body, self.grid, self.counterbody), keywords)
+        return copyreg.__newobj_ex__, given  # type: ignore[attr-defined]
+
+
+def _solved(given: dict[str, Any], plan: core.Plan | None = None) -> Solution:
+    """Return the solution of what a user asked for with these arguments."""
+    _check_cells(given)
+    initial, progress = given["initial"], given["progress"]
+    if isinstance(initial, FrictionSolution):
+        initial = initial.normal
+    is_solved = isinstance(initial, Solution)
+    given["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
+    if callable(progress):
+        given["progress"] = lambda *parts: progress(Report._of(parts))
+    return _finished(core.solve(given, plan), given["shape"], given["check"], stacklevel=4)
+
+
+def _finished(solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int) -> Solution:
+    """Issue the warnings of a solution, and return it if its tolerance was met."""
+    for message in solved.warnings():
+        warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
+    solution = Solution._of(solved, shape)
+    if check and (missed := solved.not_converged()) is not None:
+        error = core.ConvergenceError(missed)
+        error.solution = solution
+        raise error
+    return solution
+
+
+def _check_cells(given: Mapping[str, Any]) -> None:
+    """Raise a `ValueError` if a grid is given, and how many cells one may have that is chosen."""
+    if given.get("max_cells") is not None and given["grid"] is not None:
+        raise ValueError("max_cells must not be given beside grid: it limits a grid that is chosen")
+
+
+def _mappings(
+    words: tuple[str, str, str, str], given: Any, names: Sequence[str]
+) -> list[dict[str, Any]]:
+    """Return cases or steps as dictionaries with these keys.
+
+    The words name one of them, all, their function, and the note of an error before its number.
+    """
+    one, all_, function, note = words
+    try:
+        items = iter(given)
+    except TypeError as error:
+        raise TypeError(f"{all_} must be an iterable of mappings, got {given!r}") from error
+    listed = list(items)
+    for number, item in enumerate(listed):
+        if not isinstance(item, Mapping):
+            said = f"{one} must be a mapping of keywords of `{function}`, got {item!r}"
+        elif others := [key for key in item if key not in names]:
+            said = f"keys of {one} must be among {', '.join(names)}, got {others[0]!r}"
+        elif "shape" in names and item.get("shape") is None:
+            said = f"{one} must have a shape"
+        else:
+            continue
+        refused = TypeError(said)
+        refused.add_note(f"{note} {number}")
+        raise refused
+    return [dict(item) for item in listed]
+
+
+def _steps(
+    begin: Callable[..., core.FrictionSteps], given: dict[str, Any], plan: core.Plan | None = None
+) -> Any:
+    """Return the solutions of a function or method that a user called with these arguments.
+
+    Steps are solved one after another, and warn of what they find; an exception carries those that
+    are finished.
+    """
+    _check_cells(given)
+    progress = given["progress"]
+    if callable(progress):
+        given["progress"] = lambda number, text: progress(number, FrictionReport._made(text))
+    if isinstance(given["initial"], History) and given["initial"]:
+        given["initial"] = given["initial"][-1]
+    if isinstance(given["initial"], FrictionSolution):
+        given["initial"] = given["initial"]._solved
+    asked = None
+    if given.get("steps") is not None:
+        words = ("a step", "steps", "slide", "step")
+        asked = _mappings(words, given["steps"], STEP)
+        steps = core.slide(given, asked, plan)
+    else:
+        steps = begin(given, plan=plan)
+    count = len(asked) if asked else given.get("cells") or 1
+    solutions: list[FrictionSolution] = []
+    try:
+        with lasting("steps", progress) as tell:
+            for solved in steps:
+                solution = FrictionSolution._of(solved)
+                ended = solution.report.termination
+                for warning in solution.normal.report.warnings if ended != "stopped" else []:
+                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
+                if given["check"] and ended == "iteration limit":
+                    error = core.ConvergenceError(solved.not_converged())
+                    error.solution = solution
+                    raise error
+                solutions.append(solution)
+                if ended == "stopped":
+                    break
+                if progress is None and tell is not None:
+                    tell(len(solutions) / count)
+    except BaseException as error:
+        if steps.several:
+            error.solutions = solutions  # type: ignore[attr-defined]
+        raise
+    return History(solutions) if steps.several else solutions[0]

@@ -1,0 +1,590 @@
+"""Results of contacts with friction: one step of a history, or rolling, and its report."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.units import printable
+from nacre.contact.solution import Solution
+from nacre.contact.stresses import Stressed
+from nacre.results import display, files, tables, values
+from nacre.results.base import Result, as_text, checked, tuples
+from nacre.results.quantities import AXIS, WITH_FRICTION, Quantity
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Field = npt.NDArray[np.float64]
+
+VECTORS = ("traction", "displacement", "slip")
+"""Fields with components along x and y."""
+SLIDES, ROLLS = ("shift", "twist"), ("creepage", "spin", "direction")
+"""Numbers of the motion in sliding and in rolling."""
+
+
+@dataclass(frozen=True, repr=False)
+class FrictionReport(Result):
+    """Report of a contact with friction: its course, and how well the laws hold.
+
+    Errors are computed afresh at the end, with the operator of the whole grid.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
+    >>> ball.report.termination, ball.report.violation < 1e-8, ball.report.full_slip
+    ('converged', True, False)
+    """
+
+    _COMPILED = True
+
+    termination: Literal["running", "converged", "iteration limit", "stopped"]
+    """How the iteration ended: "converged", "iteration limit" or "stopped"; "running" in progress.
+    """
+    convolutions: int
+    """Tangential convolutions of the window of the contact, from two components to two."""
+    sweeps: int
+    """Solves of the pressure for given tractions, and of tractions for given pressure."""
+    violation: float
+    """Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
+    """
+    imbalance: float
+    """Largest error of a given force or torque, over the largest that friction can carry."""
+    excess: float
+    """Largest traction above its bound, over the largest bound."""
+    pressure_change: float
+    """Change of the pressure in the last sweep, over the peak; 0 without coupling."""
+    coupled: bool
+    """Whether tractions and pressure act on each other."""
+    full_slip: bool
+    """Whether all cells in contact slip."""
+    tolerance: float
+    """Tolerance that was asked for."""
+    seconds: float
+    """Seconds that the step took, without planning."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.termination == "converged"
+
+    def __repr__(self) -> str:
+        """Return how the iteration ended."""
+        return (
+            f"<FrictionReport: {self.termination}, {self.convolutions} convolutions, "
+            f"violation {self.violation:.1e}, imbalance {self.imbalance:.1e}>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class FrictionSolution(Result, Stressed):
+    """A contact with friction: one step of a history, or rolling.
+
+    Fields are at cell centres, and read-only. Tractions act on the body, and their opposites on
+    the counterbody. Displacements are those of the body less those of the counterbody; slip is
+    that of the counterbody over the body.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
+    >>> ball.traction.shape == (2, *ball.pressure.shape), bool(ball.stick.any())
+    (True, True)
+    """
+
+    _QUANTITIES = WITH_FRICTION
+    _TITLE = "contact of coated bodies with friction"
+
+    _solved: core.FrictionSolved
+    """Solution of the compiled module."""
+    force: tuple[float, float]
+    """Forces of the tractions on the body along x and y [N]."""
+    torque: float
+    """Torque of the tractions on the body about the origin [N m]."""
+    shift: tuple[float, float] | None
+    """Shift of the counterbody over the body since the first touch [m]; `None` in rolling."""
+    twist: float | None
+    """Twist of the counterbody over the body since the first touch [rad]; `None` in rolling."""
+    creepage: tuple[float, float] | None
+    """Creepages along the direction of rolling e and along z × e; `None` in sliding."""
+    spin: float | None
+    """Spin [1/m]; `None` in sliding."""
+    direction: Literal["+x", "-x", "+y", "-y"] | None
+    """Direction of rolling, "+x", "-x", "+y" or "-y"; `None` in sliding."""
+    dissipated: float
+    """Energy that friction dissipates in the step [J].
+
+    In rolling it is that of the distance rolled [N], the power over the speed.
+    """
+    tangential_energy: float
+    """Elastic energy of the tractions and their displacements [J]."""
+    report: FrictionReport
+    """Course of the solve, and how well the laws hold."""
+
+    @classmethod
+    def _of(cls, solved: core.FrictionSolved) -> Self:
+        """Return a solution of the compiled module."""
+        numbers = dict.fromkeys(SLIDES + ROLLS) | tuples(json.loads(solved.numbers()))
+        report = FrictionReport(**numbers.pop("report"))
+        return cls(solved, report=report, **numbers)
+
+    @functools.cached_property
+    def normal(self) -> Solution:
+        """Normal contact: pressure, gap, approach, tilt."""
+        return Solution._of(self._solved.normal())
+
+    @property
+    def pressure(self) -> Field:
+        """Pressure ``(nx, ny)`` [Pa]."""
+        return self.normal.pressure
+
+    @property
+    def grid(self) -> core.Grid:
+        """Grid."""
+        return self.normal.grid
+
+    @property
+    def x(self) -> Field:
+        """Cell centres along x, ``(nx,)`` [m]."""
+        return self.normal.x
+
+    @property
+    def y(self) -> Field:
+        """Cell centres along y, ``(ny,)`` [m]."""
+        return self.normal.y
+
+    @functools.cached_property
+    def traction(self) -> Field:
+        """Tractions on the body along x and y, ``(2, nx, ny)`` [Pa]."""
+        return self._solved.field("traction")
+
+    @functools.cached_property
+    def displacement(self) -> Field:
+        """Tangential displacements of the body relative to the counterbody, ``(2, nx, ny)`` [m]."""
+        return self._solved.field("displacement")
+
+    @functools.cached_property
+    def slip(self) -> Field:
+        """Slip of the counterbody over the body, ``(2, nx, ny)``; 0 outside the contact.
+
+        It is that in the step [m], or in rolling the slip velocity over the speed of rolling.
+        """
+        return self._solved.field("slip")
+
+    @functools.cached_property
+    def stick(self) -> npt.NDArray[np.bool_]:
+        """Whether each cell sticks, ``(nx, ny)``.
+
+        It is in contact, and its traction is below the bound.
+        """
+        return self._solved.field("stick")
+
+    @property
+    def stick_share(self) -> float:
+        """Share of the cells in contact that stick; 0 where nothing touches."""
+        return int(self.stick.sum()) / max(int((self.pressure > 0).sum()), 1)
+
+    @functools.cached_property
+    def bound(self) -> Field:
+        """Bound of the traction, friction times pressure, ``(nx, ny)`` [Pa]."""
+        return self._solved.field("bound")
+
+    @functools.cached_property
+    def friction(self) -> float | Field:
+        """Coefficient of friction: a number, or one for each cell ``(nx, ny)``."""
+        return self._solved.field("friction")
+
+    @functools.cached_property
+    def dissipation(self) -> Field:
+        """Energy that friction dissipates by area, traction times slip, ``(nx, ny)``.
+
+        It is that of the step [J/m²], or in rolling that of the distance rolled [J/m³].
+        """
+        return self._solved.field("dissipation")
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw stick and slip, with arrows of the traction; needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Axes of the picture.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are not axes.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
+        >>> ball.plot().get_xlabel()
+        'x [µm]'
+        """
+        from nacre import plot
+
+        return plot.friction(self, axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the fields, with units and the problem; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Fields on x and y; main numbers and the report as attributes.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
+        >>> dataset = ball.to_xarray()
+        >>> dataset.traction.dims, dataset.traction.units
+        (('component', 'x', 'y'), 'Pa')
+        """
+        return files.gridded(self)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+            `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is every cell;
+            ``.png``, ``.pdf`` and ``.svg`` are the picture that `plot` draws, which needs
+            ``nacre-contact[plot]``.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
+        True
+        """
+        return files.save(path, files.writers(self, self.plot))
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        return display.friction_line(self)
+
+    def __str__(self) -> str:
+        """Return a table of the main numbers."""
+        return display.text(self._rows(), self._warnings)
+
+    def _repr_html_(self) -> str:
+        picture = display.thumbnail(self.pressure)
+        return display.markup(self._rows(), self._warnings, picture)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return the numbers of the normal contact, and those of friction."""
+        normal = [row for row in display.numbers(self.normal) if row[0] != "ended"]
+        return [*normal, *display.friction_numbers(self)]
+
+    @property
+    def _warnings(self) -> list[str]:
+        return self.normal.report.warnings
+
+    def _si(self, row: Quantity) -> str:
+        """Return the SI unit of a quantity of this contact."""
+        return row.si(line=self.grid.is_line, rolls=self.direction is not None)
+
+    def _attributes(self) -> dict[str, Any]:
+        """Return what files say of the contact besides its numbers and fields."""
+        report, friction = self.report, self.friction
+        names = ("termination", "violation", "imbalance", "tolerance")
+        return {
+            **({} if self.direction is None else {"direction": self.direction}),
+            **({} if isinstance(friction, np.ndarray) else {"friction": friction}),
+            **{name: getattr(report, name) for name in names},
+            "warnings": "\n".join(self._warnings),
+        }
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return ["normal", "friction", *VECTORS, "motion", "report"]
+
+    def _state(self) -> dict[str, Any]:
+        normal = self.normal.to_dict()
+        for key in values.heading("Solution"):
+            del normal[key]
+        motion = SLIDES if self.direction is None else ROLLS
+        return {
+            "normal": normal,
+            "friction": self.friction,
+            **{name: getattr(self, name) for name in VECTORS},
+            "motion": {name: values.encode(getattr(self, name)) for name in motion},
+            "report": dataclasses.asdict(self.report),
+        }
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        if not isinstance(state["normal"], dict):
+            raise ValueError(f"normal must be a dict of named fields, got {state['normal']!r}")
+        with values.refusing(cls.__name__):
+            normal = Solution.from_dict(values.heading("Solution") | state["normal"])
+            fields = {name: state[name] for name in ("friction", *VECTORS)}
+            rest = {name: state[name] for name in ("motion", "report")}
+            told = as_text(cls.__name__, rest)
+            return cls._of(core.FrictionSolved(normal._solved, rest=told, **fields))
+
+
+class History(list[FrictionSolution]):
+    """Steps of sliding or rolling, in their order: a list, which is printed and saved as a whole.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+    >>> loop = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps)
+    >>> loop.to_xarray().traction.dims, len(loop)
+    (('step', 'component', 'x', 'y'), 2)
+    """
+
+    _QUANTITIES = WITH_FRICTION
+
+    def numbers(self) -> xarray.Dataset:
+        """Dataset of the numbers of all steps; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Load, force, torque, dissipated energy, share of the contact that sticks and others over
+            ``step``; shift and twist of sliding, creepage and spin of rolling.
+        """
+        return self._dataset({}, {})
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of all fields and numbers over ``step``; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Fields on step, x and y; numbers on step.
+        """
+        state = self.to_dict()
+        state["steps"] = [dict(step) for step in state["steps"]]
+        arrays = [files.taken(step, WITH_FRICTION) for step in state["steps"]]
+        fields: dict[str, Any] = {}
+        for row in WITH_FRICTION:
+            found = [step.get(row.name) for step in arrays]
+            if row.follows or all(values is not None for values in found):
+                fields[row.name] = [row.of(step) for step in self]
+            else:  # of some steps alone, as a coefficient of friction that becomes a field
+                for step, values in zip(state["steps"], found, strict=True):
+                    if values is not None:
+                        row.put(step, values.tolist())
+        return self._dataset(fields, state)
+
+    def _dataset(self, fields: dict[str, Any], state: dict[str, Any]) -> xarray.Dataset:
+        """Return the Dataset of the numbers, and of these fields."""
+        steps = checked(self)
+        columns: dict[str, Any] = {}
+        for row in WITH_FRICTION:
+            if row.name in fields:
+                values = np.array(fields[row.name])
+                plain = values.astype(np.int8) if values.dtype == bool else values
+                columns[row.name] = ("step", *row.dims), plain
+            elif row.dims in ((), AXIS) and row.of(steps[0]) is not None:
+                dims = ("step", "component") if row.dims else ("step",)
+                columns[row.name] = dims, np.array([row.of(step) for step in steps])
+        columns["termination"] = "step", [step.report.termination for step in steps]
+        coordinates: dict[str, Any] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
+        if fields:
+            coordinates |= {"x": steps[0].x, "y": steps[0].y}
+        units = ((row, steps[0]._si(row)) for row in WITH_FRICTION)
+        title = "history of a contact with friction"
+        rolls = {} if steps[0].direction is None else {"direction": steps[0].direction}
+        return files.dataset(title, units, columns, coordinates, state, **rolls)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the force of sliding as a function of the shift, or the last step of rolling.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Axes of the picture.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are not axes.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> loop.plot().get_xlabel()
+        'shift along x [nm]'
+        """
+        from nacre import plot
+
+        first = checked(self)[0].shift
+        if first is None:
+            return plot.friction(self[-1], axes)
+        ranges = [np.ptp([step.force[axis] for step in self]) for axis in range(2)]
+        return plot.loop(self, "xy"[int(np.argmax(ranges))], axes)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+            `nacre.load` and xarray; ``.csv`` is the numbers of each step; ``.png``, ``.pdf`` and
+            ``.svg`` are the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another, or there is no step.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(loop.save(f"{folder}/loop.nc")) == loop
+        True
+        """
+        writers = files.tabular(self, self._table())
+        return files.save(path, writers | files.pictures(self.plot))
+
+    def _table(self) -> list[list[Any]]:
+        """Return the numbers of each step, after their headings."""
+        first = checked(self)[0]
+        kept = [row for row, _ in tables.numbers(first)]
+        axes = [("x", "y") if row.dims else ("",) for row in kept]
+        heads = [
+            tables.headed(row, first, axis)
+            for row, names in zip(kept, axes, strict=True)
+            for axis in names
+        ]
+        rows = [
+            [k, *np.hstack([np.ravel(row.of(step)) for row in kept]).tolist()]
+            for k, step in enumerate(self)
+        ]
+        ends = (step.report.termination for step in self)
+        ended = [[*row, end] for row, end in zip(rows, ends, strict=True)]
+        return [["step", *heads, "termination"], *ended]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the named states of the steps, as plain data; see `FrictionSolution.to_dict`."""
+        return values.heading("History") | {"steps": [step._state() for step in self]}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Return the history whose named state `to_dict` returned, to the bit.
+
+        Parameters
+        ----------
+        data : dict
+            Named state; lists may stand for arrays, as in JSON.
+
+        Returns
+        -------
+        History
+            The steps.
+
+        Raises
+        ------
+        ValueError
+            As `FrictionSolution.from_dict`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
+        >>> loop = nacre.slide(
+        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
+        ... )
+        >>> nacre.types.History.from_dict(loop.to_dict()) == loop
+        True
+        """
+        state = values.checked_state(data, "History", ["steps"])
+        head = values.heading("FrictionSolution")
+        with values.refusing("History"):
+            return cls(FrictionSolution.from_dict(head | step) for step in state["steps"])
+
+    def __repr__(self) -> str:
+        """Return the number of steps and the last one."""
+        last = f", the last {self[-1]!r}" if self else ""
+        return f"<History of {len(self)} steps{last}>"
+
+    def __getitem__(self, place: Any) -> Any:
+        """Return a step, or the history of some of them."""
+        found = super().__getitem__(place)
+        return type(self)(found) if isinstance(place, slice) else found
+
+    def __add__(self, other: Any) -> Any:
+        """Return the history of these steps and others."""
+        return type(self)([*self, *other])
+
+    def copy(self) -> Self:
+        """Return a history of the same steps."""
+        return type(self)(self)
+
+    def __str__(self) -> str:
+        """Return a table of the steps."""
+        if not self:
+            return "a history of 0 steps"
+        return printable("\n".join(display.aligned(display.history(self), ">")))
+
+    def _repr_html_(self) -> str:
+        if not self:
+            return display.markup([["a history of 0 steps"]])
+        head, *rows = display.history(self)
+        picture = display.drawn(self.plot)
+        return display.markup(rows, picture=picture, head=head, widest=display.WIDE)
+
+
+values.RESULTS["History"] = History

@@ -1,0 +1,349 @@
+"""Derivatives of solved contacts: gradients of outputs, and changes along a direction."""
+
+from __future__ import annotations
+
+import json
+import operator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import nacre._core as core
+from nacre._tools.typing import Field, Pair
+from nacre.results.base import same
+
+Output = str | tuple[str, float] | tuple[str, Pair] | dict[str, Any]
+"""Output of a contact, as `Solution.gradient` names it."""
+
+WORDS: dict[str, Any] = {
+    "approach": "approach",
+    "tilt[0]": {"tilt": 0},
+    "tilt[1]": {"tilt": 1},
+    "load": "load",
+    "moment[0]": {"moment": 0},
+    "moment[1]": {"moment": 1},
+    "located_peak": "located_peak",
+    "cell_peak": "cell_peak",
+    "participation_area": "participation_area",
+    "area_estimate": "area_estimate",
+    "contact_area": "contact_area",
+    "contact_extent": "contact_extent",
+}
+"""Outputs that a word names, as the compiled module describes them."""
+MEASURES: dict[str, Any] = {
+    **{name: {"component": k} for k, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))},
+    "von_mises": "von_mises",
+    **{f"principal[{k}]": {"principal": k} for k in range(3)},
+    "max_shear": "max_shear",
+    "plane_shear": "plane_shear",
+}
+"""Measures of a stress."""
+PLACES = ("at", "layer", "interface")
+STRESS = ("stress", *PLACES, "depths", "sharpness", "side", "body", "friction", "direction")
+"""Keys of a stress."""
+SHARPNESS, DEPTHS = 200.0, 9
+"""Sharpness of soft maxima, and depths in a layer, where none is given: the soft maximum is below
+the largest of 1e5 values by at most 6 % of it."""
+
+
+def described(output: Output) -> tuple[str, str]:
+    """Return the name of an output, and its description for the compiled module as JSON text."""
+    if isinstance(output, str):
+        if output not in WORDS:
+            # The pressure of a cell is no smooth function of what moves the peak between cells.
+            hint = '; take "located_peak" for the peak' if output == "peak_pressure" else ""
+            raise ValueError(
+                f"output must be {_listed(WORDS)}, a pair such as "
+                f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"{hint}'
+            )
+        return output, json.dumps(WORDS[output])
+    if isinstance(output, dict):
+        return _stress(output)
+    value: Any
+    try:
+        word, value = output
+    except (TypeError, ValueError):
+        raise TypeError(f"output must be a word, a pair or a dict, got {output!r}") from None
+    if word == "pressure_norm":
+        return f"pressure_norm {float(value):g}", json.dumps({word: float(value)})
+    if word in ("pressure", "displacement", "gap"):
+        place = _numbers(word, value, 2)
+        return f"{word} at {_said(place)}", json.dumps({word: place})
+    raise ValueError(
+        'output must be ("pressure_norm", r), ("pressure", (x, y)), ("displacement", (x, y)) or '
+        f'("gap", (x, y)), got {output!r}'
+    )
+
+
+def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
+    """Return the name and the description of a stress."""
+    for key in table:
+        if key not in STRESS:
+            raise ValueError(f'keys of a stress are {", ".join(STRESS)}, got "{key}"')
+    if "stress" not in table:
+        raise ValueError('a stress must have the key "stress"')
+    word = table["stress"]
+    if word not in MEASURES:
+        raise ValueError(f'stress must be {_listed(MEASURES)}, got "{word}"')
+    given = [key for key in PLACES if key in table]
+    if len(given) != 1:
+        raise ValueError('a stress must have exactly one of the keys "at", "layer" and "interface"')
+    (key,) = given
+    where, side = table[key], table.get("side", "below")
+    sharp = {"sharpness": float(table.get("sharpness", SHARPNESS))}
+    place: dict[str, Any]
+    if key == "at":
+        point = _numbers("at", where, 3)
+        name, place = f"{word} at {_said(point)}", {"point": [point, side]}
+    elif key == "layer":
+        layer = {"layer": int(where), "depths": int(table.get("depths", DEPTHS))}
+        name, place = f"{word} in layer {where}", {"layer": layer | sharp}
+    else:
+        interface = {"interface": int(where), "side": side}
+        name, place = f"{word} at interface {where}", {"interface": interface | sharp}
+    direction = table.get("direction")
+    stress = {
+        "member": table.get("body", "body"),
+        "measure": MEASURES[word],
+        "place": place,
+        "friction": float(table.get("friction", 0.0)),
+        "direction": None if direction is None else _numbers("direction", direction, 2),
+    }
+    return name, json.dumps({"stress": stress})
+
+
+def _listed(words: Mapping[str, Any]) -> str:
+    return ", ".join(f'"{word}"' for word in words)
+
+
+def _said(numbers: list[float]) -> str:
+    return f"({', '.join(f'{number:g}' for number in numbers)})"
+
+
+def _numbers(name: str, values: Any, count: int) -> list[float]:
+    """Return so many numbers."""
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != count:
+        raise TypeError(f"{name} must be {count} numbers, got {values!r}")
+    return numbers
+
+
+@dataclass(frozen=True)
+class Made:
+    """The call of a method of `Solution` that makes a value, for pickles."""
+
+    solution: Any
+    method: str
+    arguments: tuple[Any, ...]
+    keywords: dict[str, Any]
+
+    def reduced(self) -> tuple[Any, tuple[Any, ...]]:
+        """Return a callable and arguments that make the value again."""
+        return operator.methodcaller(self.method, *self.arguments, **self.keywords), (
+            self.solution,
+        )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Gradient:
+    """Derivatives of one output of a solved contact, by the paths of the parameters.
+
+    It is a mapping: ``gradient["body.layers[0].material.young"]`` is the derivative per unit of
+    that parameter. `Solution.gradient` makes it.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> gradient = solution.gradient("approach")
+    >>> round(gradient["load"] * 10.0 / gradient.value, 2)  # δ ~ W^(2/3)
+    0.67
+    >>> list(gradient)[:2]
+    ['body.substrate.young', 'body.substrate.poisson']
+    """
+
+    output: str
+    """Name of the output."""
+    value: float
+    """Value of the output."""
+    _values: dict[str, float]
+    """Derivatives by path."""
+    margin: float
+    """How far the contact is from one of other cells, where derivatives jump.
+
+    It is the smaller of the least pressure in contact over the peak, and of the least gap outside
+    over the largest displacement. It falls with the square of the cells and is usually about 1e-5.
+    """
+    warnings: list[str]
+    """What makes the derivatives doubtful: a list of sentences, usually empty."""
+    gap: Field
+    """Derivative with respect to the undeformed gap of each cell, ``(nx, ny)``.
+
+    Heights count ``-gap``.
+    """
+    _linear: core.Linear
+    """Linearisation of the compiled module, for steps that are asked for later."""
+    _made: Made
+    """Call that made it."""
+
+    @cached_property
+    def valid_step(self) -> dict[str, float]:
+        """Largest change of each parameter, of either sign, for which the contact keeps its cells.
+
+        To first order: no pressure, and no gap up to two cells around the contact, changes its
+        sign. Each step takes a linear solve when it is first asked for.
+        """
+        paths = [path for path in self._values if path != "friction"]
+        return dict(zip(paths, self._linear.valid_steps(paths), strict=True))
+
+    def keys(self) -> list[str]:
+        """Return the paths of the parameters."""
+        return list(self._values)
+
+    def values(self) -> list[float]:
+        """Return the derivatives, in the order of the paths."""
+        return list(self._values.values())
+
+    def items(self) -> list[tuple[str, float]]:
+        """Return paths and derivatives."""
+        return list(self._values.items())
+
+    def __getitem__(self, path: str) -> float:
+        """Return the derivative with respect to a parameter."""
+        try:
+            return self._values[path]
+        except KeyError:
+            raise KeyError(f'"{path}" is none of {", ".join(self._values)}') from None
+
+    def __contains__(self, path: object) -> bool:
+        """Return whether there is a derivative with respect to a parameter."""
+        return path in self._values
+
+    def __len__(self) -> int:
+        """Return the number of parameters."""
+        return len(self._values)
+
+    def __iter__(self) -> Iterator[str]:
+        """Return an iterator of the paths."""
+        return iter(self._values)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all derivatives are equal, to the bit."""
+        if not isinstance(other, Gradient):
+            return NotImplemented
+        names = ("output", "value", "_values", "margin", "warnings", "gap")
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return the output with its value and derivatives."""
+        items = ", ".join(f"{path}: {value:.6e}" for path, value in self.items())
+        return f"Gradient({self.output} = {self.value:.6e}, {{{items}}})"
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Return the call that makes the gradient again."""
+        return self._made.reduced()
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Direction:
+    """Change of a solved contact along a direction of parameters; `Solution.jvp` makes it.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> change = solution.jvp({"load": 1.0})
+    >>> round(change.approach * 10.0 / solution.approach, 2)
+    0.67
+    """
+
+    pressure: Field
+    """Change of the pressure ``(nx, ny)``; 0 outside the contact."""
+    approach: float
+    """Change of the approach."""
+    tilt: Pair
+    """Change of the tilts."""
+    valid_step: float
+    """Largest step along the direction for which the contact keeps its cells to first order.
+
+    Steps may have either sign.
+    """
+    _made: Made
+    """Call that made it."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all changes are equal, to the bit."""
+        if not isinstance(other, Direction):
+            return NotImplemented
+        names = ("pressure", "approach", "tilt", "valid_step")
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return the changes of the motion."""
+        return (
+            f"Direction(approach={self.approach:.6e}, "
+            f"tilt=({self.tilt[0]:.6e}, {self.tilt[1]:.6e}), valid_step={self.valid_step:.3e})"
+        )
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Return the call that makes the change again."""
+        return self._made.reduced()
+
+
+def gradients(
+    solution: Any,
+    method: str,
+    outputs: Sequence[Any],
+    told: Sequence[tuple[str, Any]],
+    wrt: Sequence[str] | None,
+    **options: Any,
+) -> list[Gradient]:
+    """Return the gradients that a method of the solution makes of outputs, which are told apart.
+
+    Parameters
+    ----------
+    solution
+        Solution, whose shape stands for one that the options do not give.
+    method, outputs
+        Name of the method, and what it was given.
+    told
+        Name of each output, and its description or its weights of the pressures.
+    wrt
+        Paths of the parameters, or None for all.
+    options
+        Shape and tolerance.
+    """
+    linear, keywords = linearised(solution, **options)
+    found = linear.gradients([output for _, output in told], wrt)
+    return [
+        Gradient(
+            name,
+            value,
+            dict(values),
+            margin,
+            warnings,
+            gap,
+            linear,
+            Made(solution, method, (output, wrt), keywords),
+        )
+        for output, (name, _), (value, values, margin, warnings, gap) in zip(
+            outputs, told, found, strict=True
+        )
+    ]
+
+
+def linearised(
+    solution: Any, shape: core.Shape | None, tolerance: float
+) -> tuple[core.Linear, dict[str, Any]]:
+    """Return the linearisation of a solution, and its options with the shape that is known."""
+    shape = solution._shape if shape is None else shape
+    linear = core.Linear(solution._solved, shape, tolerance)
+    return linear, {"shape": shape, "tolerance": tolerance}

@@ -1,0 +1,855 @@
+"""Solved contacts, and the reports of how they were solved."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, overload
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
+from nacre.contact.gradient import (
+    Direction,
+    Gradient,
+    Made,
+    Output,
+    described,
+    gradients,
+    linearised,
+)
+from nacre.contact.stresses import Stressed
+from nacre.results import display, files, tables, values, vtk
+from nacre.results.base import Result, as_text, tuples
+from nacre.results.quantities import CONTACT, Quantity
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Parts = tuple[str, core.Grid, Planned, Planned | None]
+"""JSON text of a report, its grid and its bodies."""
+
+BODIES: dict[str, Any] = {
+    "grid": core.Grid,
+    "body": Planned,
+    "counterbody": Planned | None,
+}
+"""Classes of what stands beside the numbers of a report."""
+NESTED = {
+    "balance": ("force", "moment"),
+    "motion": ("load", "approach", "eccentricity", "moment", "tilt"),
+}
+"""Tables in the state of a report, each with its keys."""
+OPTIONAL = ("hardness", "indentation", "coefficients")
+"""Fields in the state of a solution that has them."""
+ENDLESS = ("residual", "overlap")
+"""Numbers of a report that may be infinite, of which JSON has none."""
+
+
+class Numbers(TypedDict):
+    """Numbers of a solution, as the compiled module tells them."""
+
+    load: float
+    eccentricity: Pair
+    moment: Pair
+    approach: float
+    tilt: Pair
+    contact_area: float
+    contact_extent: tuple[Pair, Pair]
+    peak_pressure: float
+    peak_position: Pair
+    central_pressure: float
+    plastic_work: float
+
+
+@dataclass(frozen=True, repr=False)
+class Report(Result):
+    """Report of a solve: how the solution came about and how good it is, computed at the end.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
+    >>> report.termination, report.residual < 1e-8, report.warnings
+    ('converged', True, [])
+    """
+
+    _TOLD = ("free_ends", "warning_kinds", "_told")
+    _LATER = ("rolling_direction",)
+
+    termination: Ending
+    """End of the iteration: "converged", "iteration limit" or "stopped"; "running" before it."""
+    solver: Literal["preconditioned", "active-set", "polonsky-keer"] | None
+    """Iteration that produced the solution: "preconditioned", "active-set" or "polonsky-keer".
+
+    The algorithm "cascade" starts with the first and falls back to the others. `None` where it is
+    not known: before the end.
+    """
+    iterations: int
+    """Iterations done."""
+    convolutions: float
+    """Work done, in convolutions of the whole grid."""
+    residual: float
+    """Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch.
+
+    Where the local displacement is less than u, as on a substrate much softer than its coating, it
+    takes the place of u.
+    """
+    overlap: float
+    """Largest overlap ``max(-g, 0) / max(u)`` of the cells that can touch.
+
+    Where the local displacement is less than the largest u, it takes its place.
+    """
+    balance: tuple[float, float, float]
+    """Mismatch of the force, relative to W, and of the moments along x and y, to W × half a side.
+    """
+    discretisation: dict[str, float | None] | None
+    """Errors due to the size of the cells, estimated from coarser grids.
+
+    The keys are ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; a prescribed quantity
+    has the error 0. The peak pressure has none, `None`, where the pressure is singular: at a sharp
+    edge of the shape, or where the grid cuts the contact; a warning says so. `None` altogether
+    where no coarser grid was solved: on small grids, from a given pressure, by another algorithm,
+    where surfaces yield, or without convergence.
+    """
+    free_ends: dict[str, bool | float | None] | None
+    """How free ends of the bodies are counted; `None` where there are none.
+
+    ``plates`` says whether a body has two ends, and is taken as a plate. ``error`` is the largest
+    error of the displacement, relative to it, that was measured for such bodies, for bare plates
+    that of the pressure too, larger for lengths below a quarter of the grid's width; `None` for
+    layers whose moduli differ by a factor of more than 10.
+    """
+    warnings: list[str]
+    """Warnings about the solution; each was also issued as a `nacre.NacreWarning`."""
+    warning_kinds: list[str]
+    """Kinds of the warnings, without their numbers: words by which warnings are counted.
+
+    They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
+    "coarse spots", "large contact", "outside grid", "peak error" and "stations".
+    """
+    grid: core.Grid
+    """Grid of the solve."""
+    body: Planned
+    """Body that the shape was pressed into."""
+    counterbody: Planned | None
+    """Body that carries the shape; rigid where `None`."""
+    motion: dict[str, Any]
+    """Motion that was asked for, as keywords of `Contact.solve`: load or approach, and the tilts.
+    """
+    rolling_direction: Pair | None
+    """Unit vector ``(x, y)`` along which the shape rolls.
+
+    It is across the axis of a roller, and y in line contact. Friction acts along it where no
+    `direction` is given. `None` where the shape has no such direction, or it is not known, as in
+    files of earlier versions.
+    """
+    tolerance: float
+    """Tolerance that was asked for."""
+    seconds: float
+    """Seconds that the solve took, without planning."""
+    _told: str
+    """What the compiled module tells of the report, as JSON text."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.termination == "converged"
+
+    @classmethod
+    def _of(cls, parts: Parts) -> Self:
+        """Return the report of the parts that the compiled module hands over."""
+        text, *bodies = parts
+        told = json.loads(text)
+        state = cls._data(told)
+        balance, motion = state["balance"], tuples(state["motion"])
+        found = {
+            "balance": (balance["force"], *balance["moment"]),
+            "free_ends": told["free_ends"],
+            "warnings": told["messages"],
+            "warning_kinds": [warning["kind"] for warning in state["warnings"]],
+            "motion": {k: v for k, v in motion.items() if v not in (None, (None, None))},
+            "rolling_direction": tuples(state["rolling_direction"]),
+        }
+        return cls(**state | found | dict(zip(BODIES, bodies, strict=True)), _told=text)
+
+    @staticmethod
+    def _data(told: dict[str, Any]) -> dict[str, Any]:
+        """Return the state, but for grid and bodies, in what the compiled module tells."""
+        data: dict[str, Any] = told["data"]
+        return data | {name: math.inf for name in ENDLESS if data[name] is None}
+
+    def _state(self) -> dict[str, Any]:
+        bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
+        return self._data(json.loads(self._told)) | bodies
+
+    @classmethod
+    def _parts(cls, data: Any) -> Parts:
+        """Return the parts of a report with this state."""
+        if not isinstance(data, Mapping):
+            raise ValueError(f"report must be a dict of named fields, got {data!r}")
+        state = values.named("report", data, cls._names(), cls._LATER)
+        made: Any = []
+        for name, kind in BODIES.items():
+            given = state.pop(name)
+            if not isinstance(value := values.decode(given), kind):
+                raise ValueError(f'report: the value of the key "{name}" does not fit: {given!r}')
+            made.append(value)
+        for name, keys in NESTED.items():
+            if isinstance(state[name], Mapping):
+                state[name] = values.named(name, state[name], keys)
+        state |= {name: None for name in ENDLESS if state[name] == math.inf}
+        return as_text("Report", state), *made
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        return cls._of(core.checked_report(*cls._parts(state)))
+
+    def __repr__(self) -> str:
+        """Return how the solve ended."""
+        return (
+            f"<Report: {self.termination} after {self.iterations} iterations, "
+            f"{self.convolutions:.1f} convolutions, {self.seconds:.3f} s; "
+            f"residual {self.residual:.1e}, overlap {self.overlap:.1e}; "
+            f"{len(self.warnings)} warnings>"
+        )
+
+
+@dataclass(frozen=True, repr=False, init=False)
+class Solution(Result, Stressed):
+    """A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> solution.pressure.shape == solution.in_contact.shape == (solution.x.size, solution.y.size)
+    True
+    """
+
+    _LATER = OPTIONAL
+    _QUANTITIES = CONTACT
+    _TITLE = "contact of coated bodies"
+
+    _solved: core.Solved
+    """Solution of the compiled module."""
+    _shape: core.Shape | None = field(compare=False)
+    """Shape that the contact was solved with; None where it is not known, as from a file."""
+
+    def __init__(self) -> None:
+        raise TypeError("a Solution is not made by hand: nacre.solve returns it")
+
+    @classmethod
+    def _of(cls, solved: core.Solved, shape: core.Shape | None = None) -> Self:
+        """Return a solution of the compiled module."""
+        made = object.__new__(cls)
+        made.__dict__.update(_solved=solved, _shape=shape)
+        return made
+
+    @cached_property
+    def _numbers(self) -> Numbers:
+        numbers: Numbers = tuples(self._solved.numbers())
+        return numbers
+
+    @cached_property
+    def grid(self) -> core.Grid:
+        """Grid."""
+        return self._solved.grid()
+
+    @cached_property
+    def pressure(self) -> Field:
+        """Pressure [Pa], at least 0."""
+        return self._solved.field("pressure")
+
+    @cached_property
+    def gap(self) -> Field:
+        """Gap [m]: 0 in contact, within the tolerance, and +inf where the shape cannot touch."""
+        return self._solved.field("gap")
+
+    @cached_property
+    def displacement(self) -> Field:
+        """Normal displacement of both bodies together [m], positive into them."""
+        return self._solved.field("displacement")
+
+    @cached_property
+    def hardness(self) -> float | Field | None:
+        """Largest pressure that the surfaces can carry [Pa], of all cells or of each.
+
+        `None` where they do not yield.
+        """
+        return self._solved.field("hardness")
+
+    @cached_property
+    def indentation(self) -> Field:
+        """Permanent indentation of the surfaces [m], at least 0; the gap contains it.
+
+        It includes that of the solutions before.
+        """
+        found = self._solved.field("indentation")
+        if found is None:
+            found = np.zeros(self.grid.shape)
+            found.setflags(write=False)
+        return found
+
+    @cached_property
+    def coefficients(self) -> Field | None:
+        """Influence coefficients ``(nx, ny)`` [m/Pa] that the contact was given.
+
+        `None` where they are those of the bodies.
+        """
+        return self._solved.field("coefficients")
+
+    @property
+    def plastic_work(self) -> float:
+        """Energy that the permanent indentation has taken [J], ``sum H w dA``.
+
+        It is 0 without hardness.
+        """
+        return self._numbers["plastic_work"]
+
+    @property
+    def elastic_energy(self) -> float:
+        """Elastic energy of the normal displacement of both bodies [J], ``½ sum p u dA``.
+
+        Where the approach has a datum, as in line contact, the displacement and the energy have it,
+        too.
+        """
+        size, shape = self.grid.size, self.grid.shape
+        cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
+        return 0.5 * cell * float(np.vdot(self.pressure, self.displacement))
+
+    @cached_property
+    def in_contact(self) -> npt.NDArray[np.bool_]:
+        """Whether each cell is in contact: its pressure is above 0."""
+        return self._solved.field("in_contact")
+
+    @property
+    def x(self) -> Field:
+        """Cell centres along x, ``(nx,)`` [m]."""
+        return self.grid.x
+
+    @property
+    def y(self) -> Field:
+        """Cell centres along y, ``(ny,)`` [m]."""
+        return self.grid.y
+
+    @property
+    def load(self) -> float:
+        """Normal force [N]."""
+        return self._numbers["load"]
+
+    @property
+    def eccentricity(self) -> Pair:
+        """Point where the force acts, ``(e_x, e_y)`` [m]; the origin where there is no force."""
+        return self._numbers["eccentricity"]
+
+    @property
+    def moment(self) -> Pair:
+        """First moments of the pressure about the origin [N m]."""
+        return self._numbers["moment"]
+
+    @property
+    def approach(self) -> float:
+        """Approach of the origin [m]."""
+        return self._numbers["approach"]
+
+    @property
+    def tilt(self) -> Pair:
+        """Slopes ``(s_x, s_y)``."""
+        return self._numbers["tilt"]
+
+    @property
+    def contact_area(self) -> float:
+        """Area of the cells in contact [m^2]."""
+        return self._numbers["contact_area"]
+
+    @property
+    def contact_share(self) -> float:
+        """Share of the grid that is in contact; of a periodic surface, that of its area."""
+        return int(self.in_contact.sum()) / self.in_contact.size
+
+    @property
+    def contact_extent(self) -> tuple[Pair, Pair]:
+        """Ends of the contact ``((x0, x1), (y0, y1))`` [m], accurate to a fraction of a cell."""
+        return self._numbers["contact_extent"]
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure of a cell [Pa]."""
+        return self._numbers["peak_pressure"]
+
+    @property
+    def peak_position(self) -> Pair:
+        """Centre of the cell of the largest pressure [m].
+
+        Of several, it is that of the deepest indentation.
+        """
+        return self._numbers["peak_position"]
+
+    @property
+    def central_pressure(self) -> float:
+        """Pressure at the origin [Pa], by cubic interpolation; 0 off the grid."""
+        return self._numbers["central_pressure"]
+
+    @cached_property
+    def line_load(self) -> Field:
+        """Force per length along x, ``(nx,)`` [N/m]."""
+        return self._solved.field("line_load")
+
+    @cached_property
+    def report(self) -> Report:
+        """Report: how the solution came about, and how good it is."""
+        return Report._of(self._solved.report())
+
+    def stiffness(self) -> Field:
+        """Exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.
+
+        The columns are the derivatives of the discrete contact with respect to the approach [m]
+        and the slopes ``s_x`` and ``s_y``. The matrix is symmetric. The second row is the couple
+        about y, to which force at positive x contributes positively. All elements are 0 where
+        nothing touches.
+
+        Returns
+        -------
+        numpy.ndarray
+            Stiffness in N/m, N and N m.
+
+        Raises
+        ------
+        MemoryError
+            If the influence coefficients do not fit.
+
+        Examples
+        --------
+        For a sphere on a half-space, dW/dδ = 2 E* a:
+
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> radius = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus) ** (1 / 3)
+        >>> stiffness = float(solution.stiffness()[0, 0])
+        >>> round(stiffness / (2 * steel.plane_strain_modulus * radius), 2)
+        1.0
+        """
+        return self._solved.stiffness()
+
+    @overload
+    def gradient(
+        self,
+        output: Output,
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: core.Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Gradient: ...
+    @overload
+    def gradient(
+        self,
+        output: list[Output],
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: core.Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> list[Gradient]: ...
+    def gradient(
+        self,
+        output: Output | list[Output],
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: core.Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Gradient | list[Gradient]:
+        """Differentiate an output with respect to all parameters of the contact.
+
+        Derivatives are those of the discrete contact with its cells, exact within the tolerance of
+        one linear solve for each output. Compared with the continuum they are in error by some 2e-4
+        with 64 cells along the radius of the contact, see :doc:`/theory/gradients`.
+
+        Parameters
+        ----------
+        output : str, tuple, dict or list
+            ``"approach"``, ``"tilt[0]"``, ``"tilt[1]"``, ``"load"``, ``"moment[0]"``,
+            ``"moment[1]"``, ``"located_peak"``, ``"cell_peak"``, ``"participation_area"`` or
+            ``"area_estimate"``; ``("pressure_norm", r)``, ``("pressure", (x, y))``,
+            ``("displacement", (x, y))`` or ``("gap", (x, y))``; a dict of a stress, with
+            ``stress`` (``"xx"`` to ``"xz"``, ``"von_mises"``, ``"principal[0]"``,
+            ``"max_shear"``, ``"plane_shear"``), one of ``at=(x, y, z)``, ``layer`` and
+            ``interface``, and ``depths``, ``sharpness``, ``side``, ``body``, ``friction`` and
+            ``direction``; or a list of these.
+        wrt : list of str, optional
+            Paths of the parameters, such as ``"body.layers[0].material.young"``,
+            ``"shape.radius"`` or ``"load"``; all by default.
+        shape : Shape, optional
+            Shape that the contact was solved with, which a solution from a file does not know.
+        tolerance : float, optional
+            Residual of the linear solves, relative to their right-hand sides.
+
+        Returns
+        -------
+        Gradient or list of Gradient
+            Derivatives by path, and with respect to the gap of each cell.
+
+        Raises
+        ------
+        ValueError
+            If the output, a parameter or the solution has no derivative; the message says what to
+            take instead.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> ball = nacre.Sphere(5e-3)
+        >>> solution = nacre.solve(ball, steel, load=10.0)
+        >>> peak = solution.gradient("located_peak")
+        >>> round(peak["shape.radius"] * 5e-3 / peak.value, 2)  # p0 ~ R^(-2/3)
+        -0.67
+        """
+        outputs = output if isinstance(output, list) else [output]
+        told = [described(one) for one in outputs]
+        options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
+        found = gradients(self, "gradient", outputs, told, wrt, **options)
+        return found if isinstance(output, list) else found[0]
+
+    def jvp(
+        self,
+        directions: dict[str, float] | None = None,
+        gap: Matrix | None = None,
+        *,
+        shape: core.Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Direction:
+        """Change of the solution along a direction of parameters.
+
+        Parameters
+        ----------
+        directions : dict, optional
+            Rates of the parameters, by path.
+        gap : array_like, optional
+            Rate of the undeformed gap ``(nx, ny)``.
+        shape : Shape, optional
+            Shape that the contact was solved with, which a solution from a file does not know.
+        tolerance : float, optional
+            Residual of the linear solve, relative to its right-hand side.
+
+        Returns
+        -------
+        Direction
+            Changes of pressure, approach and tilt, and the step for which the contact keeps its
+            cells.
+
+        Raises
+        ------
+        ValueError
+            If a parameter or the solution has no derivative.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> change = solution.jvp({"load": 1.0})
+        >>> round(float(change.pressure.sum() / solution.pressure.sum()), 6)
+        0.1
+        """
+        if not isinstance(directions, dict | None):
+            raise TypeError("directions must be a dict of paths and their rates")
+        linear, keywords = linearised(self, shape, tolerance)
+        change = linear.jvp(list((directions or {}).items()), gap)
+        return Direction(*change, Made(self, "jvp", (directions, gap), keywords))
+
+    def vjp(
+        self,
+        cotangent: Matrix,
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: core.Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Gradient:
+        """Differentiate ``(cotangent * pressure).sum()``: a cotangent times the Jacobian.
+
+        Parameters
+        ----------
+        cotangent : array_like
+            Weights of the pressures ``(nx, ny)``.
+        wrt : list of str, optional
+            Paths of the parameters; all by default.
+        shape : Shape, optional
+            Shape that the contact was solved with, which a solution from a file does not know.
+        tolerance : float, optional
+            Residual of the linear solve, relative to its right-hand side.
+
+        Returns
+        -------
+        Gradient
+            Derivatives by path, and with respect to the gap of each cell.
+
+        Raises
+        ------
+        ValueError
+            If a parameter or the solution has no derivative.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> total = solution.vjp(solution.pressure * 0.0 + 1.0, ["load"])
+        >>> round(total["load"] * 10.0 / total.value, 6)
+        1.0
+        """
+        options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
+        told = [("weighted pressure", cotangent)]
+        return gradients(self, "vjp", [cotangent], told, wrt, **options)[0]
+
+    def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+        """Draw map, sections and main numbers; needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes or dict of them, optional
+            Axes to draw into: a dict with any of the names "map", "x", "y" and "numbers", as
+            ``subplot_mosaic`` makes it, or one for the map; a new figure by default.
+
+        Returns
+        -------
+        dict of matplotlib.axes.Axes
+            The axes, by name.
+
+        Raises
+        ------
+        ValueError
+            If there is no part of that name.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> sorted(solution.plot())
+        ['map', 'numbers', 'x', 'y']
+        """
+        from nacre import plot
+
+        return plot.overview(self, axes)
+
+    def plot_3d(self, axes: Any = None, *, interactive: bool = False) -> Any:
+        """Draw the pressure as a relief; needs ``nacre-contact[plot]``.
+
+        A relief that can be turned needs ``nacre-contact[view]``.
+
+        Parameters
+        ----------
+        axes : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+            Axes to draw into; a new figure by default.
+        interactive : bool, optional
+            Whether to open a window of PyVista's instead.
+
+        Returns
+        -------
+        mpl_toolkits.mplot3d.axes3d.Axes3D or pyvista.Plotter
+            The axes, or the plotter.
+
+        Raises
+        ------
+        ValueError
+            If the grid is one of strips, `Grid.line`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).plot_3d().get_zlabel()
+        'pressure [GPa]'
+        """
+        from nacre import plot
+
+        return plot.view(self) if interactive else plot.relief(self, axes)
+
+    def plot_section(
+        self,
+        along: Literal["x", "y"] = "x",
+        *,
+        at: float | None = None,
+        quantity: Literal[
+            "pressure", "gap", "displacement", "indentation", "line_load"
+        ] = "pressure",
+        axes: Axes | None = None,
+    ) -> Axes:
+        """Draw a quantity along x or y; needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        along : {"x", "y"}, optional
+            Direction of the section.
+        at : float, optional
+            Position of the section in the other direction [m]; through the largest pressure by
+            default.
+        quantity : {"pressure", "gap", "displacement", "indentation", "line_load"}, optional
+            Quantity to draw.
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ValueError
+            If there is no such direction or quantity, or the position is off the grid.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).plot_section("y").get_xlabel()
+        'y [µm]'
+        """
+        from nacre import plot
+
+        return plot.section(self, along, at, quantity, axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the fields, with units and the whole problem; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Fields on x and y; main numbers, bodies, motion and options as attributes.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> dataset = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).to_xarray()
+        >>> sorted(dataset.data_vars), dataset.pressure.units
+        (['displacement', 'gap', 'line_load', 'pressure'], 'Pa')
+        """
+        return files.gridded(self)
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        depths: float | Vector | None = None,
+        whole: bool = False,
+        **options: Any,
+    ) -> Path:
+        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+            `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is the sections
+            along x and y through the largest pressure; ``.png``, ``.pdf`` and ``.svg`` are the
+            picture that `plot` draws, which needs ``nacre-contact[plot]``.
+        depths : float or array_like, optional
+            Depths below the surface [m], each above the last. The ``.vtr`` then holds pressure and
+            gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
+            ``tension`` (the largest principal stress) at points below the cell centres. A depth on
+            an interface occurs twice, above and below it.
+        whole : bool, optional
+            Whether the ``.csv`` holds every cell, in place of the two sections, after a block of
+            comments ``# name: value`` with the most important numbers.
+        options : optional
+            Keywords of `stress`, with depths only: ``body``, ``friction``, ``direction``,
+            ``residual``, ``threads``, and ``displacement``, which adds a vector of that name.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another, the depths do not increase, depths are given for another file
+            than ``.vtr`` or `whole` for another than ``.csv``, or `stress` would raise.
+        TypeError
+            If there is no such option.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(solution.save(f"{folder}/ball.nc")) == solution
+        True
+        """
+        writers = files.writers(self, lambda: next(iter(self.plot().values())))
+        if not whole:
+            writers[".csv"] = lambda file: tables.write_sections(self, file)
+        if depths is None and options:
+            names = ", ".join(sorted(options))
+            raise TypeError(f"{names}: without depths there are no such options")
+        for given, ending, name in (
+            (depths is not None, ".vtr", "depths are"),
+            (whole, ".csv", "whole is"),
+        ):
+            if given and Path(path).suffix.lower() in {*writers} - {ending}:
+                raise ValueError(f"path must end in {ending} where {name} given, got {str(path)!r}")
+        if depths is not None:
+            writers[".vtr"] = lambda file: vtk.write_stress(self, file, depths, options)
+        return files.save(path, writers)
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        return display.line(self)
+
+    def __str__(self) -> str:
+        """Return a table of the main numbers."""
+        return display.text(display.numbers(self), self._warnings)
+
+    def _repr_html_(self) -> str:
+        picture = display.thumbnail(self.pressure)
+        return display.markup(display.numbers(self), self._warnings, picture)
+
+    @property
+    def _warnings(self) -> list[str]:
+        return self.report.warnings
+
+    def _si(self, row: Quantity) -> str:
+        """Return the SI unit of a quantity of this contact."""
+        return row.si(line=self.grid.is_line)
+
+    def _attributes(self) -> dict[str, Any]:
+        """Return what files say of the contact besides its numbers and fields."""
+        report, parts = self.report, ("body", "counterbody", "grid", "motion", "discretisation")
+        return {
+            **{name: json.dumps(values.encode(getattr(report, name))) for name in parts},
+            "tolerance": report.tolerance,
+            "termination": report.termination,
+            "solver": report.solver or "unknown",
+            "residual": report.residual,
+            "overlap": report.overlap,
+            "balance": np.array(report.balance),
+            "iterations": report.iterations,
+            "warnings": "\n".join(report.warnings),
+        }
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return ["pressure", "gap", "displacement", "approach", "tilt", *OPTIONAL, "report"]
+
+    def _state(self) -> dict[str, Any]:
+        optional = {name: self._solved.field(name) for name in OPTIONAL}
+        return {
+            **{name: getattr(self, name) for name in ("pressure", "gap", "displacement")},
+            "approach": self.approach,
+            "tilt": list(self.tilt),
+            **{name: value for name, value in optional.items() if value is not None},
+            "report": self.report._state(),
+        }
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        position = {name: state.pop(name) for name in ("approach", "tilt")}
+        parts = Report._parts(state.pop("report"))
+        with values.refusing(cls.__name__):
+            return cls._of(core.Solved(state, as_text(cls.__name__, position), parts))

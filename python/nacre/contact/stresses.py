@@ -1,0 +1,880 @@
+"""Stress below the surface: fields, their extremes, and plans that evaluate them."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.progress import lasting
+from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
+from nacre.results import display, files, values
+from nacre.results.base import Result, same
+from nacre.results.quantities import EXTREMES
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = npt.NDArray[np.float64]
+Depths = float | Sequence[float] | Real
+Peak = tuple[float, tuple[float, float, float]]
+"""Value, and point (x, y, z) where it occurs."""
+Progress = Callable[[float], object]
+
+FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
+"""Safety factors that stand with extremes."""
+AXES = ("z", "x", "y")
+"""Axes of a field, in their order."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Stress(Result):
+    """Stress below the surface, and displacement where it was asked for.
+
+    A field has an axis for depth, x and y unless that one was given as a number: ``(nz, nx, ny)``
+    for several depths, ``(nx, ny)`` at one depth, ``(nz, nx)`` on the section ``y = const``.
+    Tension is positive; at the surface ``zz`` is minus the pressure. Beyond a free end of the body
+    there is no material: fields are NaN.
+
+    Examples
+    --------
+    Below a sphere the largest shear is 0.31 of the peak pressure, at 0.48 contact radii:
+
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> radius = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus) ** (1 / 3)
+    >>> field = solution.stress(np.linspace(0.3, 0.7, 9) * radius, y=0.0)
+    >>> value, (x, y, z) = field.peak("max_shear")
+    >>> round(value / solution.peak_pressure, 2), round(z / radius, 1)
+    (0.31, 0.5)
+    """
+
+    _TOLD = ("warnings",)
+    _LATER = ("uncertainty",)
+
+    z: Array
+    """Depths ``(nz,)`` [m]."""
+    x: Array
+    """Coordinates along x ``(nx,)`` [m]."""
+    y: Array
+    """Coordinates along y ``(ny,)`` [m]."""
+    axes: tuple[str, ...]
+    """Axes of the fields: those of "z", "x" and "y" that were not given as a number."""
+    body: core.HalfSpace
+    """Body in which the stress is."""
+    side: Side
+    """Side of an interface, for depths that lie on one: "above" or "below"."""
+    friction: tuple[float, float]
+    """Traction divided by pressure, ``(x, y)``: the coefficient of friction times its direction."""
+    uncertainty: Array | None
+    """Estimated error of the components at each depth ``(nz,)`` [Pa], due to the size of the cells.
+
+    It belongs to the worst place of a depth, of those that were evaluated: at the edge of the
+    contact as a rule. The errors of the pressure itself add to it, which tractions at the surface
+    have. Where it is not small compared with the stress, the cells do not resolve the depth, or the
+    layer: take smaller cells. `None` for `nacre.stress`, whose pressure is given as uniform over
+    cells, and in files of earlier versions.
+    """
+    components: dict[str, Array]
+    """Components ``xx`` to ``xz`` by name [Pa], each ``(nz, nx, ny)`` whatever the `axes`."""
+    displacement: dict[str, Array] | None
+    """Displacements ``ux`` to ``uz`` likewise [m]; None without ``displacement=True``."""
+    warnings: list[str]
+    """Warnings about depths that the cells do not resolve, each also issued as `NacreWarning`."""
+
+    @property
+    def xx(self) -> Array:
+        """Normal stress along x [Pa]."""
+        return self._shaped(self.components["xx"])
+
+    @property
+    def yy(self) -> Array:
+        """Normal stress along y [Pa]."""
+        return self._shaped(self.components["yy"])
+
+    @property
+    def zz(self) -> Array:
+        """Normal stress along z [Pa]."""
+        return self._shaped(self.components["zz"])
+
+    @property
+    def xy(self) -> Array:
+        """Shear stress in the plane of the surface [Pa]."""
+        return self._shaped(self.components["xy"])
+
+    @property
+    def yz(self) -> Array:
+        """Shear stress along y on planes z = const [Pa]."""
+        return self._shaped(self.components["yz"])
+
+    @property
+    def xz(self) -> Array:
+        """Shear stress along x on planes z = const [Pa]."""
+        return self._shaped(self.components["xz"])
+
+    @property
+    def ux(self) -> Array:
+        """Displacement along x [m]; with ``displacement=True`` only."""
+        return self._displacement("ux")
+
+    @property
+    def uy(self) -> Array:
+        """Displacement along y [m]; with ``displacement=True`` only."""
+        return self._displacement("uy")
+
+    @property
+    def uz(self) -> Array:
+        """Displacement into the body [m]; with ``displacement=True`` only."""
+        return self._displacement("uz")
+
+    @cached_property
+    def von_mises(self) -> Array:
+        """Von Mises' equivalent stress [Pa]."""
+        return self._invariants("von_mises")[0]
+
+    @cached_property
+    def tresca(self) -> Array:
+        """Tresca's equivalent stress: the largest principal stress less the smallest [Pa]."""
+        return self._invariants("tresca")[0]
+
+    @cached_property
+    def max_shear(self) -> Array:
+        """Largest shear stress on any plane: half of Tresca's equivalent stress [Pa]."""
+        return self._invariants("max_shear")[0]
+
+    @cached_property
+    def principal(self) -> list[Array]:
+        """Three principal stresses, the largest first [Pa]."""
+        return self._invariants("principal")
+
+    def peak(self, field: str = "von_mises") -> Peak:
+        """Largest value of a field, and its point.
+
+        Parameters
+        ----------
+        field : str, optional
+            Name of the field: a component, ``"von_mises"``, ``"tresca"``, ``"max_shear"``, or
+            ``"tension"``, the largest principal stress.
+
+        Returns
+        -------
+        tuple
+            Value [Pa] and point ``(x, y, z)`` [m].
+
+        Raises
+        ------
+        ValueError
+            If there is no such field, or no depth was evaluated.
+
+        Examples
+        --------
+        >>> field = nacre.stress(nacre.Elastic(1.0, 0.3), nacre.Grid((2, 2), (2.0, 2.0)),
+        ...                      np.ones((2, 2)), 1.0)
+        >>> value, (x, y, z) = field.peak("von_mises")
+        >>> z
+        1.0
+        """
+        if field == "tension":
+            values = self.principal[0]
+        elif field in self.components or field in ("von_mises", "tresca", "max_shear"):
+            values = getattr(self, field)
+        else:
+            raise ValueError(
+                'field must be a component, "von_mises", "tresca", "max_shear" or "tension", '
+                f'got "{field}"'
+            )
+        values = values.reshape(self.z.size, self.x.size, self.y.size)
+        if np.isnan(values).all():
+            raise ValueError(
+                "the field must hold at least one depth and point in the body, got none"
+            )
+        k, i, j = np.unravel_index(np.nanargmax(values), values.shape)
+        return float(values[k, i, j]), (float(self.x[i]), float(self.y[j]), float(self.z[k]))
+
+    def _shaped(self, field: Array) -> Array:
+        """Return a field without the axes that were given as numbers."""
+        return field.squeeze(tuple(k for k, axis in enumerate(AXES) if axis not in self.axes))
+
+    def _displacement(self, name: str) -> Array:
+        if self.displacement is None:
+            raise AttributeError(
+                "displacements were not evaluated: ask for them with displacement=True"
+            )
+        return self._shaped(self.displacement[name])
+
+    def _invariants(self, name: str) -> list[Array]:
+        return [self._shaped(one) for one in core.stress_invariants(self.__dict__, name)]
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        try:
+            return cls(**core.checked_stress(state | {"body": values.decode(state["body"])}))
+        except TypeError as error:
+            raise ValueError(f"Stress: {error}") from error
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal; NaN is equal to NaN."""
+        if not isinstance(other, Stress):
+            return NotImplemented
+        return same(self._state(), other._state())
+
+    def __repr__(self) -> str:
+        """Return where the stress is, and how well it is known."""
+        places = ", ".join(
+            f"{name} {_range(getattr(self, axis))}"
+            for name, axis in (("depths", "z"), ("x", "x"), ("y", "y"))
+        )
+        errors = ""
+        if self.uncertainty is not None:
+            largest = np.fmax.reduce(self.uncertainty, initial=0.0)
+            errors = f", uncertain by up to {_short(largest, 1)} Pa"
+        return f"<Stress: {places}, side '{self.side}'{errors}>"
+
+
+def _range(coordinates: Array) -> str:
+    """Return the number of coordinates and their ends, in words."""
+    if coordinates.size == 0:
+        return "none"
+    first, last = _short(coordinates[0], 6), _short(coordinates[-1], 6)
+    return f"{coordinates.size} from {first} to {last}"
+
+
+def _short(value: float, digits: int) -> str:
+    """Return a number with an exponent as short as can be."""
+    digit, _, exponent = f"{value:.{digits}e}".partition("e")
+    return f"{digit}e{int(exponent)}" if exponent else digit
+
+
+class _Extremes(Result):
+    """Peaks, and their errors by name; in plain data an error stands with its peak."""
+
+    _COMPILED = True
+    _TOLD = ("uncertainty",)
+    _PEAKS: ClassVar[tuple[str, ...]]
+
+    uncertainty: dict[str, float]
+
+    @classmethod
+    def _made(cls, text: str) -> Self:
+        return cls._read(json.loads(text))
+
+    @classmethod
+    def _read(cls, data: dict[str, Any]) -> Self:
+        """Return the extremes that data of the compiled module describe."""
+        told = {name: data[name] for name in cls._PEAKS if data[name] is not None}
+        errors = {name: peak["uncertainty"] for name, peak in told.items()}
+        peaks = {name: (peak["value"], tuple(peak["at"])) for name, peak in told.items()}
+        known = {name: error for name, error in errors.items() if error is not None}
+        return cls(**data | peaks | {"uncertainty": known})
+
+    def _state(self) -> dict[str, Any]:
+        state = super()._state()
+        for name in self._PEAKS:
+            if state[name] is not None:
+                value, place = state[name]
+                error = self.uncertainty.get(name)
+                state[name] = {"value": value, "at": place, "uncertainty": error}
+        return state
+
+
+@dataclass(frozen=True, repr=False)
+class LayerStress(_Extremes):
+    """Extremes of the stress in one layer, or in the substrate.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+    >>> (substrate,) = solution.stress_summary().layers
+    >>> value, (x, y, z) = substrate.von_mises
+    >>> round(value / solution.peak_pressure, 1), substrate.yield_safety_factor
+    (0.6, None)
+    """
+
+    _PEAKS = ("von_mises", "tension", "max_shear")
+
+    layer: int
+    """Number of the layer, from 0 at the surface; the substrate comes after the last layer."""
+    name: str | None
+    """Name of the layer; None where it has none."""
+    depths: tuple[float, float]
+    """Depths of the two faces [m]; the lower one is infinite for the substrate."""
+    von_mises: Peak
+    """Largest von Mises stress [Pa], and its point [m]."""
+    tension: Peak
+    """Largest principal stress [Pa], tension where it is positive, and its point [m]."""
+    max_shear: Peak
+    """Largest shear stress on any plane [Pa], and its point [m]."""
+    yield_safety_factor: float | None
+    """Yield stress divided by the largest von Mises stress; None without a yield stress."""
+    strength_safety_factor: float | None
+    """Strength divided by the largest tension; None without a strength, or without tension."""
+    uncertainty: dict[str, float]
+    """Estimated errors of the values [Pa], by name, due to the size of the cells.
+
+    Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
+    See `Stress.uncertainty`.
+    """
+
+    @classmethod
+    def _read(cls, data: dict[str, Any]) -> Self:
+        top, bottom = data["depths"]
+        return super()._read(data | {"depths": (top, np.inf if bottom is None else bottom)})
+
+    def __repr__(self) -> str:
+        """Return von Mises' stress and the tension, in the units that are set."""
+        return display.layer_line(self)
+
+
+@dataclass(frozen=True, repr=False)
+class InterfaceStress(_Extremes):
+    """Extremes of the tractions at one interface.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0, grid=grid)
+    >>> (interface,) = solution.stress_summary().interfaces
+    >>> interface.depth, bool(interface.shear[0] > 0.0)
+    (2e-05, True)
+    """
+
+    _PEAKS = ("tension", "compression", "shear", "jump")
+
+    interface: int
+    """Number of the interface, from 0 below the first layer."""
+    depth: float
+    """Depth of the interface [m]."""
+    tension: Peak
+    """Largest normal traction [Pa], tension where it is positive, and its point [m]."""
+    compression: Peak
+    """Smallest normal traction [Pa], and its point [m]."""
+    shear: Peak
+    """Largest shear traction [Pa], and its point [m]."""
+    jump: Peak | None
+    """Largest jump of the in-plane stress [Pa], and its point [m]; None on a rigid base."""
+    uncertainty: dict[str, float]
+    """Estimated errors of the values [Pa], by name, due to the size of the cells.
+
+    Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
+    See `Stress.uncertainty`.
+    """
+
+    def __repr__(self) -> str:
+        """Return shear and tension, in the units that are set."""
+        return display.interface_line(self)
+
+
+@dataclass(frozen=True, repr=False)
+class StressSummary(Result):
+    """Extremes of the stress in each layer and at each interface.
+
+    Printing it shows a table, and so does a notebook. Each value comes with its point
+    ``(x, y, z)``, which is a cell centre.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0, grid=grid)
+    >>> summary = solution.stress_summary(yield_stress={"substrate": 2e9})
+    >>> coating, substrate = summary.layers
+    >>> bool(coating.tension[0] > 0.0 and substrate.yield_safety_factor > 1.0)
+    True
+    """
+
+    _COMPILED = True
+    _TOLD = ("warnings",)
+
+    layers: list[LayerStress]
+    """Extremes in the layers from the surface down, and in the substrate."""
+    interfaces: list[InterfaceStress]
+    """Extremes at the interfaces from the surface down."""
+    finished: bool
+    """Whether all depths were evaluated; False where a callback stopped the evaluation."""
+    warnings: list[str]
+    """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
+
+    @classmethod
+    def _made(cls, text: str) -> Self:
+        data = json.loads(text)
+        data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
+        data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
+        return cls(**data)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
+
+        ``to_xarray().to_dataframe()`` is the table for pandas.
+
+        Returns
+        -------
+        xarray.Dataset
+            Part and name of each extreme, value, uncertainty, position and safety factor over
+            ``row``; NaN where there is none.
+        """
+        heads, *rows = self._rows()
+        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        table = [(row, row.unit) for row in EXTREMES]
+        said = {name: str(value) for name, value in self._comments().items()}
+        title = "extremes of the stress"
+        return files.dataset(title, table, variables, {}, self.to_dict(), **said)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, or ``.csv`` for the table.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+        >>> summary = solution.stress_summary()
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
+        True
+        """
+        return files.save(path, files.tabular(self, self._rows(), **self._comments()))
+
+    def _comments(self) -> dict[str, Any]:
+        """Return what stands beside the table."""
+        warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
+        return {"finished": self.finished, **warnings}
+
+    def _rows(self) -> list[tuple[Any, ...]]:
+        """Return the rows of the table, the heading first."""
+        rows: list[tuple[Any, ...]] = [tuple(row.name for row in EXTREMES)]
+        parts: list[LayerStress | InterfaceStress] = [*self.layers, *self.interfaces]
+        for part in parts:
+            for name in part._PEAKS:
+                if (peak := getattr(part, name)) is None:
+                    continue
+                value, place = peak
+                error = part.uncertainty.get(name, np.nan)
+                factor = getattr(part, FACTORS.get(name, ""), None)
+                limit = np.nan if factor is None else factor
+                rows.append((display.part(part), name, value, error, *place, limit))
+        return rows
+
+    def __str__(self) -> str:
+        """Return a table, in the units that are set."""
+        return display.stresses(self)
+
+    def _repr_html_(self) -> str:
+        return display.stresses_markup(self)
+
+    def __repr__(self) -> str:
+        """Return how much the summary holds."""
+        return f"<StressSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces>"
+
+
+@dataclass(frozen=True, repr=False)
+class StressPlan:
+    """A plan of the stress in one body of a solved contact: made once, evaluated many times.
+
+    `Solution.stress_plan` makes it. An evaluation has the bits of `Solution.stress` and of
+    `Solution.stress_summary`, without the time that these take to plan.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> plan = solution.stress_plan()
+    >>> peaks = [
+    ...     plan.stress(10e-6, friction=mu, direction=(1, 0)).peak()[0] for mu in (0.0, 0.3)
+    ... ]
+    >>> peaks[0] < peaks[1]
+    True
+    """
+
+    _plan: core.StressPlan = field(compare=False)
+    """Plan of the compiled module."""
+    _solution: Any
+    """Solution, which is pickled in place of the plan."""
+    _member: Member
+    """Body of the solution."""
+    _threads: int | None
+    """Number of threads that was asked for."""
+
+    @property
+    def body(self) -> core.HalfSpace:
+        """Body in which the stress is."""
+        return self._plan.body
+
+    def stress(
+        self,
+        z: Depths,
+        *,
+        side: Side = "below",
+        x: float | None = None,
+        y: float | None = None,
+        displacement: bool = False,
+        friction: float = 0.0,
+        direction: Direction | None = None,
+        residual: ByLayer | None = None,
+        progress: Progress | None = None,
+    ) -> Stress:
+        """Stress below the surface, at any depth; see `Solution.stress`.
+
+        Parameters
+        ----------
+        z : float or array_like
+            Depths into the body, at least 0 [m].
+        side, x, y, displacement, friction, direction, residual, progress : optional
+            As in `Solution.stress`.
+
+        Returns
+        -------
+        Stress
+            Components, invariants and displacement.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range.
+        MemoryError
+            If the fields do not fit.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> solution.stress_plan().stress(10e-6) == solution.stress(10e-6)
+        True
+        """
+        return _warned(Stress(**core.stress(self._plan, z, locals())))
+
+    def summary(
+        self,
+        *,
+        yield_stress: ByLayer | None = None,
+        strength: ByLayer | None = None,
+        friction: float = 0.0,
+        direction: Direction | None = None,
+        residual: ByLayer | None = None,
+        progress: Progress | None = None,
+    ) -> StressSummary:
+        """Extremes in each layer and at each interface; see `Solution.stress_summary`.
+
+        Parameters
+        ----------
+        yield_stress, strength, friction, direction, residual, progress : optional
+            As in `Solution.stress_summary`, with its bar.
+
+        Returns
+        -------
+        StressSummary
+            Peaks and their points; printing it shows a table.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range.
+        MemoryError
+            If the grid does not fit.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+        >>> plan = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid).stress_plan()
+        >>> summary = plan.summary(yield_stress={"substrate": 1.8e9})
+        >>> bool(summary.layers[0].yield_safety_factor > 1.0)
+        True
+        """
+        with lasting("stresses", progress) as progress:
+            return _warned(StressSummary._made(core.stress_summary(self._plan, locals())))
+
+    def __repr__(self) -> str:
+        """Return which body the plan is of."""
+        return f"<StressPlan of the {self._member}>"
+
+    def __reduce__(self) -> tuple[Any, tuple[Member, int | None]]:
+        """Return the method of the solution that makes the plan again, and its arguments."""
+        return self._solution.stress_plan, (self._member, self._threads)
+
+
+class Stressed:
+    """Stresses below a solved contact, with or without friction."""
+
+    _solved: Any
+
+    def stress(
+        self,
+        z: Depths,
+        *,
+        body: Member = "body",
+        side: Side = "below",
+        x: float | None = None,
+        y: float | None = None,
+        displacement: bool = False,
+        friction: float = 0.0,
+        direction: Direction | None = None,
+        residual: ByLayer | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Stress:
+        """Stress below the surface, at any depth of either body.
+
+        Parameters
+        ----------
+        z : float or array_like
+            Depths into the body, at least 0 [m].
+        body : {"body", "counterbody"}, optional
+            Body in which stress is evaluated. In the counterbody z points into that body, and x and
+            y stay the same.
+        side : {"below", "above"}, optional
+            Side of an interface, for a depth that lies on one.
+        x, y : float, optional
+            Place of a vertical section. With one of them, the fields are kept on the line
+            ``x = const`` or ``y = const`` at every depth, by linear interpolation between cell
+            centres and free ends; with both, at a point.
+        displacement : bool, optional
+            Whether displacements are evaluated too.
+        friction : float, optional
+            Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where
+            the tractions are known, of `nacre.slide` and `nacre.roll`.
+        direction : tuple of float, optional
+            Direction ``(x, y)`` of the traction on the body, of any length; the traction on the
+            counterbody is opposite. By default the direction in which the shape rolls,
+            `Report.rolling_direction`: across the axis of a roller or cylinder, and across the
+            strips of a line contact. For other shapes it must be given where `friction` is above 0.
+        residual : dict or sequence, optional
+            Residual stress [Pa], equal along x and y, that is added in a layer. A dict maps layers
+            to it, by number (0 at the surface) or name, and ``"substrate"``; a sequence holds it
+            from the surface down.
+        threads : int, optional
+            Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
+        progress : callable, optional
+            Function that is called with the part of the work that is done, from 0 to 1; returning
+            False stops, and gives the depths that are done.
+
+        Returns
+        -------
+        Stress
+            Components, invariants and displacement.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range, or the counterbody is rigid.
+        MemoryError
+            If the fields do not fit.
+
+        Notes
+        -----
+        The pressure varies within cells: inside the contact with the slopes and curvatures that
+        neighbouring cells give, near a smooth edge as a square root. `nacre.stress` takes the
+        pressure as uniform over a cell; within some cells of the surface the two differ. The
+        tractions of `nacre.slide` and `nacre.roll` are uniform over cells.
+
+        Friction does not change the pressure. That is exact where the bodies are alike or
+        incompressible, and a good approximation where the friction is small: the neglected coupling
+        changes the pressure by the order of ``friction * (1 - 2 nu) / (2 - 2 nu)``.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
+        >>> above = solution.stress(body.interfaces[0], side="above")
+        >>> below = solution.stress(body.interfaces[0])
+        >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
+        (True, False)
+        """
+        return _warned(Stress(**core.stress(self._solved, z, locals())))
+
+    def stress_summary(
+        self,
+        *,
+        body: Member = "body",
+        yield_stress: ByLayer | None = None,
+        strength: ByLayer | None = None,
+        friction: float = 0.0,
+        direction: Direction | None = None,
+        residual: ByLayer | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> StressSummary:
+        """Extremes of the stress in each layer and at each interface, and safety factors.
+
+        Stress is evaluated on the faces of the layers and at some 18 depths inside each, spread
+        over its thickness and over the width of the contact. Peaks inside are then refined by
+        parabolas through three depths.
+
+        Parameters
+        ----------
+        body : {"body", "counterbody"}, optional
+            Body in which stress is evaluated.
+        yield_stress : dict or sequence, optional
+            Yield stress [Pa] of layers. A dict maps layers to it, by number (0 at the surface) or
+            name, and ``"substrate"``; a sequence holds it from the surface down, with None where it
+            is not known.
+        strength : dict or sequence, optional
+            Tensile strength [Pa] of layers, likewise.
+        friction, direction, residual, threads, progress : optional
+            As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
+            seconds.
+
+        Returns
+        -------
+        StressSummary
+            Peaks and their points; printing it shows a table.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range, or the counterbody is rigid.
+        MemoryError
+            If the grid does not fit.
+
+        Notes
+        -----
+        The pressure varies within cells, as in `stress`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+        >>> summary = solution.stress_summary(yield_stress={"substrate": 1.8e9})
+        >>> bool(summary.layers[0].yield_safety_factor > 1.0)
+        True
+        """
+        with lasting("stresses", progress) as progress:
+            return _warned(StressSummary._made(core.stress_summary(self._solved, locals())))
+
+    def stress_plan(self, body: Member = "body", threads: int | None = None) -> StressPlan:
+        """Plan of the stress in one body, to be evaluated any number of times.
+
+        Parameters
+        ----------
+        body : {"body", "counterbody"}, optional
+            Body in which stress is evaluated.
+        threads : int, optional
+            Number of threads of the plan; by default as for `Contact`.
+
+        Returns
+        -------
+        StressPlan
+            Plan, which keeps the solution alive.
+
+        Raises
+        ------
+        ValueError
+            If there is no such body, the counterbody is rigid, or `threads` is below 1.
+        MemoryError
+            If the grid does not fit.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+        >>> plan = solution.stress_plan()
+        >>> [plan.stress(z, friction=0.1, direction=(1, 0)).friction for z in (10e-6, 20e-6)]
+        [(0.1, 0.0), (0.1, 0.0)]
+        """
+        return StressPlan(core.stress_plan(self._solved, locals()), self, body, threads)
+
+
+def stress(
+    body: core.HalfSpace | core.Elastic,
+    grid: core.Grid,
+    pressure: Real | Sequence[Sequence[float] | Real],
+    z: Depths,
+    *,
+    side: Side = "below",
+    x: float | None = None,
+    y: float | None = None,
+    displacement: bool = False,
+    friction: float = 0.0,
+    direction: Direction | None = None,
+    residual: ByLayer | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Stress:
+    """Stress of a body under a pressure, at any depth.
+
+    Parameters
+    ----------
+    body : HalfSpace or Elastic
+        Body under the pressure; its free ends are counted, but not in the stress of friction.
+    grid : Grid
+        Cells of the pressure.
+    pressure : array_like
+        Pressure ``(nx, ny)`` on the cells [Pa], uniform over each.
+    z : float or array_like
+        Depths, at least 0 [m].
+    side, x, y, displacement, friction, direction, residual, threads, progress : optional
+        As in `Solution.stress`.
+
+    Returns
+    -------
+    Stress
+        Components, invariants and displacement.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+    MemoryError
+        If the fields do not fit.
+
+    Notes
+    -----
+    The pressure is uniform over a cell. `Solution.stress` uses the pressure within cells of a
+    solved contact, and is more accurate within some cells of the surface. Friction does not change
+    the pressure, as there.
+
+    Examples
+    --------
+    The normal stress under a uniformly loaded square, at the surface minus the pressure:
+
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid(shape=(65, 65), size=(2e-3, 2e-3))
+    >>> field = nacre.stress(steel, grid, np.full((65, 65), 1e9), [0.0, 0.5e-3], y=0.0)
+    >>> field.zz.shape
+    (2, 65)
+    >>> bool(abs(field.zz[0, 32] + 1e9) < 1.0)
+    True
+    """
+    return Stress(**core.stress_under(body, grid, pressure, z, locals()))
+
+
+Told = TypeVar("Told", Stress, StressSummary)
+
+
+def _warned(result: Told) -> Told:
+    """Issue the warnings of a result, at the line that called its function; return the result."""
+    for message in result.warnings:
+        warnings.warn(message, core.NacreWarning, stacklevel=3)
+    return result

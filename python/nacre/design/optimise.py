@@ -1,0 +1,283 @@
+"""Optimisation of a contact with exact derivatives: `nacre.design.optimise`."""
+
+from __future__ import annotations
+
+import math
+import sys
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import nacre._core as core
+from nacre._tools.extras import extra
+from nacre._tools.progress import lasting
+from nacre.contact.solution import Solution
+from nacre.design.parameters import Bounds, scales_of
+from nacre.design.problem import Array, Build, Enough, Problem
+from nacre.results import display
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Limits = Sequence[tuple[Any, float]]
+
+RESTARTS = 3
+"""Fresh starts where the last search ended, until one gains less than the tolerance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """What `nacre.design.optimise` found; `print` shows a report.
+
+    Attributes
+    ----------
+    values : dict
+        Parameters by name, at the best point that respects the limits.
+    objective : float
+        Objective there.
+    limits : tuple
+        Outputs that are limited, each with its limit and its value in each case.
+    course : dict of numpy.ndarray
+        Table with a row for the start and for each iteration: ``solves``, ``objective``, ``excess``
+        (largest share by which a limit is exceeded, negative where none is), each parameter.
+    solutions : list of Solution
+        Solution of each case.
+    solves : int
+        Number of solves; each derivative of an output counts as one.
+    termination : str
+        ``"converged"``, ``"line search"`` (no step along the gradient improves, as where cells join
+        and leave the contact) or ``"solve limit"``.
+    warnings : list of str
+        Warnings of the solutions and of the gradients at the optimum.
+    """
+
+    values: dict[str, float]
+    objective: float
+    limits: tuple[tuple[Any, float, tuple[float, ...]], ...]
+    course: dict[str, Array]
+    solutions: list[Solution]
+    solves: int
+    termination: str
+    warnings: list[str]
+
+    @property
+    def excess(self) -> float:
+        """Largest share by which a limit is exceeded; negative where none is."""
+        return max((max(v) / limit - 1.0 for _, limit, v in self.limits), default=-math.inf)
+
+    def _table(self) -> tuple[list[list[str]], list[str]]:
+        """Return the rows of the table, the heading first, and lines below."""
+        first = {name: column[0] for name, column in self.course.items()}
+        found = {"objective": self.objective, **self.values}
+        rows = [["", "start", "optimum", "change"]]
+        for name, value in found.items():
+            start = first[name]
+            change = f"{100 * (value / start - 1):+.1f} %" if start else ""
+            rows.append([name, f"{start:.5g}", f"{value:.5g}", change])
+        lines = []
+        for output, limit, reached in self.limits:
+            share = 100 * max(reached) / limit
+            lines.append(f"limit {limit:.5g} on {output}: {max(reached):.5g}, {share:.1f} % of it")
+        iterations = len(self.course["objective"]) - 1
+        lines.append(f"{self.termination}: {iterations} iterations, {self.solves} solves")
+        return rows, [*lines, *(f"warning: {line}" for line in self.warnings)]
+
+    def __str__(self) -> str:
+        """Return a report."""
+        rows, lines = self._table()
+        table = [f"{row[0]:32}{row[1]:>14}{row[2]:>14}{row[3]:>10}" for row in rows]
+        return "\n".join([*table, *lines])
+
+    def _repr_html_(self) -> str:
+        (head, *rows), lines = self._table()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, lines, widest=display.WIDE)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the course; see `nacre.plot.course`."""
+        from nacre.plot.optimise import course
+
+        return course(self, axes)
+
+
+def optimise(
+    build: Build,
+    start: Mapping[str, float],
+    *,
+    objective: Any,
+    cases: Sequence[Mapping[str, Any]],
+    bounds: Bounds | None = None,
+    constraints: Limits = (),
+    across: float = 16.0,
+    grid: core.Grid | Sequence[core.Grid] | None = None,
+    tolerance: float = 1e-4,
+    max_solves: int = 1000,
+    progress: Callable[[dict[str, float]], object] | bool | None = None,
+) -> Optimum:
+    """Parameters of a contact that minimise an output; needs ``nacre-contact[design]``.
+
+    SciPy minimises: L-BFGS-B without constraints, SLSQP with them. The derivatives are exact ones
+    of the discrete contact, from `Solution.gradient`; those of shapes and bodies with respect to
+    parameters of your own are differences of gaps and numbers, which need no solve. Positive
+    parameters are varied by their logarithms, and others by shares of their start, or of the width
+    between their bounds.
+
+    Parameters
+    ----------
+    build : callable or mapping
+        Function that takes the parameters by name and returns arguments of `nacre.solve`. Or those
+        arguments, in which parameters are named by path: ``"body.layers[0].thickness"``.
+    start : mapping
+        Parameters by name, with the values to start from.
+    objective : str, tuple or dict
+        Output that is minimised, as in `Solution.gradient`. Take one that is smooth:
+        ``("pressure_norm", 16)``, or a stress in a layer or at an interface.
+    cases : sequence of mappings
+        Further arguments of `nacre.solve`: loads, tilts. All are solved at each step.
+    bounds : mapping, optional
+        Least and greatest values by name; None where there is none. Without, a positive parameter
+        stays within a factor of 100.
+    constraints : sequence of pairs, optional
+        Outputs with their upper limits, positive numbers, which hold in each case.
+    across : float, optional
+        Exponent of the power mean of the objective over the cases: 1 is the mean, and a large one
+        nearly the largest. With the exponent of a ``pressure_norm``, it is the norm over the cells
+        of all cases.
+    grid : Grid or sequence of Grid, optional
+        Cells. Of several grids, each begins where the last one ended. By default, grids are
+        chosen for each case at the start, and again at the optimum of the first.
+    tolerance : float, optional
+        Relative change of the objective at which the search ends. Slopes feel the cells: below
+        1e-5, a search may not end.
+    max_solves : int, optional
+        Number of solves after which the search ends; a derivative of an output counts as a solve.
+    progress : callable or bool, optional
+        Function that gets each row of the course; True, for a line of each on standard error; or
+        False, for nothing. By default a terminal or a notebook shows a bar after two seconds.
+
+    Returns
+    -------
+    Optimum
+        The best point with its solutions, and the course.
+
+    Raises
+    ------
+    ValueError
+        If an argument, an output or a parameter cannot be used.
+    TypeError
+        If an argument is of the wrong kind.
+
+    Examples
+    --------
+    A ball under a given load has the lower a peak, the larger it is:
+
+    >>> from nacre import design
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> best = design.optimise(
+    ...     {"shape": nacre.Sphere(5e-3), "body": steel},
+    ...     {"shape.radius": 5e-3},
+    ...     objective="located_peak",
+    ...     cases=[{"load": 10.0}],
+    ...     bounds={"shape.radius": (1e-3, 8e-3)},
+    ...     grid=nacre.Grid((32, 32), (3e-4, 3e-4)),
+    ... )
+    >>> best.values
+    {'shape.radius': 0.008}
+    """
+    with extra("design"):
+        from scipy.optimize import minimize
+    if not tolerance > 0:
+        raise ValueError(f"tolerance must be above 0, got {tolerance!r}")
+    scales = scales_of(start, bounds or {})
+    problem = Problem(build, scales, objective, _cases(cases), _limits(constraints), across)
+    problem.most, problem.tolerance = max_solves, tolerance
+    if not isinstance(grid, core.Grid | Sequence | None) or grid == ():
+        raise TypeError(f"grid must be a Grid or a sequence of them, got {grid!r}")
+    grids: Sequence[core.Grid | None] = (
+        [grid] if isinstance(grid, core.Grid) else grid or [None, None]
+    )
+    x = np.array([scale.x(start[scale.name]) for scale in scales])
+    box = [(scale.low, scale.high) for scale in scales]
+    options: dict[str, Any] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
+    if constraints:
+        slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
+        options["constraints"] = [{"type": "ineq", **slack}]
+    sides = np.array(box, dtype=np.float64).T  # None becomes NaN
+    sides = np.where(np.isnan(sides), [[-np.inf], [np.inf]], sides)
+    least = tolerance / 10
+    termination = "converged"
+    rows: list[dict[str, float]] = []
+
+    def keep(x: Array) -> None:
+        point = problem.at(x)
+        row = {"solves": float(problem.solves), "objective": point.value * problem.unit}
+        row |= {"excess": -float(point.slack.min(initial=math.inf)), **problem.named(x)}
+        if rows and row == rows[-1]:
+            return
+        rows.append(row)
+        if progress is True:
+            text = ", ".join(f"{name} {value:.5g}" for name, value in row.items())
+            print(f"nacre.design.optimise: {text}", file=sys.stderr, flush=True)
+        elif callable(progress):
+            progress(row)
+        elif tell is not None:
+            tell(f"{problem.solves} solves, objective {row['objective']:.5g}")
+
+    with lasting("optimum", progress) as tell, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
+        try:
+            for stage in grids:
+                problem.begin(x, stage)
+                if not rows:
+                    keep(x)
+                for _ in range(1 + RESTARTS):
+                    before = problem.at(x).value
+                    # The first step of both methods is the slope: it is made as long as 1.
+                    slope = problem.at(x).slope
+                    steepest = float(np.abs(np.clip(x - slope, *sides) - x).max())
+                    factor = max(1.0, 1.0 / max(steepest, least))
+                    ends = {"ftol": least}
+                    ends |= {"ftol": factor * least} if constraints else {"gtol": factor * least}
+                    found = minimize(
+                        lambda x, factor=factor: problem.scaled(x, factor),
+                        x,
+                        jac=True,
+                        bounds=box,
+                        callback=keep,
+                        options=ends,
+                        **options,
+                    )
+                    x = problem.best().x
+                    termination = "converged" if found.success else "line search"
+                    if before - problem.at(x).value < tolerance:
+                        break
+        except Enough:
+            termination = "solve limit"
+    point = problem.best()
+    table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    reached = point.outputs[:, 1:].T.tolist()
+    limits = [(*pair, tuple(r)) for pair, r in zip(problem.limits, reached, strict=True)]
+    slopes = dict(zip(problem.named(x), point.slope, strict=True))
+    told = [line for solution in point.solutions for line in solution.report.warnings]
+    told = list(dict.fromkeys([*told, *point.warnings]))
+    told += [f"{s.name} does not change the objective there" for s in scales if not slopes[s.name]]
+    best = problem.named(point.x), point.value * problem.unit, tuple(limits), table
+    return Optimum(*best, point.solutions, problem.solves, termination, told)
+
+
+def _cases(cases: Any) -> list[dict[str, Any]]:
+    if isinstance(cases, Mapping | str) or not isinstance(cases, Sequence) or not cases:
+        raise TypeError(f"cases must be a sequence of one mapping or more, got {cases!r}")
+    return [dict(case) for case in cases]
+
+
+def _limits(constraints: Any) -> list[tuple[Any, float]]:
+    for pair in constraints:
+        if not isinstance(pair, tuple | list) or len(pair) != 2:
+            raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")
+        if not (isinstance(pair[1], int | float) and 0 < pair[1] < math.inf):
+            raise ValueError(f"the limit of {pair[0]!r} must be positive, got {pair[1]!r}")
+    return [(output, float(limit)) for output, limit in constraints]

@@ -1,0 +1,1 @@
+"""What follows from results: numbers in words, tables, files, plain data."""

@@ -1,0 +1,212 @@
+"""What all results have in common: plain data, equality, pickles.
+
+A result is a frozen dataclass. What the compiled module computes it hands over as JSON text, with
+bodies, grids and arrays apart, and checks again where it is read from a file. The fields of other
+results are checked by their annotations.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterable, Mapping
+from types import NoneType
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+import nacre._core as core
+from nacre.results import values
+from nacre.results.quantities import Quantity
+
+if TYPE_CHECKING:
+    from nacre.contact.friction import FrictionSolution
+
+
+def tuples(value: Any) -> Any:
+    """Return plain data with tuples in place of lists."""
+    if isinstance(value, list):
+        return tuple(tuples(item) for item in value)
+    if isinstance(value, dict):
+        return {key: tuples(item) for key, item in value.items()}
+    return value
+
+
+def _plain(value: Any) -> Any:
+    """Return a field as plain data: arrays stay, and a result in it is its fields."""
+    if isinstance(value, np.ndarray):
+        return value
+    if isinstance(value, Result):
+        return value._state()
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return values.encode(value)
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    return type(one) is type(other) and bool(one == other)
+
+
+def has_friction(solution: object) -> bool:
+    """Return whether this is a contact with friction."""
+    return type(solution) is values.RESULTS.get("FrictionSolution")
+
+
+def checked(solutions: object) -> list[FrictionSolution]:
+    """Return solutions as a list, with one of them at least, and all of one kind.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution.
+    ValueError
+        If there is none, or some slide and some roll, or some are line contacts.
+    """
+    found: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
+    if not all(map(has_friction, found)):
+        raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
+    if not found:
+        raise ValueError("solutions must hold at least one solution, got none")
+    if len({(s.shift is None, s.grid.is_line) for s in found}) > 1:
+        raise ValueError(
+            "solutions must all slide or all roll, in line contact or not, got some of each"
+        )
+    if len({(s.grid.shape, s.grid.size, s.grid.center) for s in found}) > 1:
+        raise ValueError("solutions must be on one grid, got some on others")
+    return found
+
+
+def _finite(value: Any) -> Any:
+    """Return plain data with None in place of infinite numbers, of which JSON has none."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def as_text(kind: str, state: dict[str, Any], *, infinite: bool = False) -> str:
+    """Return the state of a kind of result as JSON text, or raise a `ValueError`.
+
+    JSON has no infinite numbers: they are refused, or null where they may be.
+    """
+    fields = []
+    for key, value in (_finite(state) if infinite else state).items():
+        try:
+            fields.append(f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}")
+        except (TypeError, ValueError) as error:
+            said = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
+            raise ValueError(said) from error
+    return "{" + ", ".join(fields) + "}"
+
+
+def _fitted(kind: Any, value: Any) -> Any:
+    """Return plain data as a value of the type of a field, or raise a `TypeError`."""
+    made, parts = get_origin(kind), get_args(kind)
+    if NoneType in parts and made is not tuple:  # a type or None
+        return None if value is None else _fitted(parts[0], value)
+    if made is Literal and any(same(value, word) for word in parts):
+        return value
+    if made is tuple and isinstance(value, list | tuple):
+        kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
+        if len(kinds) == len(value):
+            return tuple(map(_fitted, kinds, value))
+    if kind is float and type(value) is int:
+        return float(value)
+    if kind in (bool, int, float, str) and type(value) is kind:
+        return value
+    raise TypeError(f"{value!r} is no {kind}")
+
+
+class Result:
+    """Base of results: each is a dataclass whose fields are its state."""
+
+    _QUANTITIES: ClassVar[tuple[Quantity, ...]] = ()
+    """Rows of the table of quantities that the result has."""
+    _COMPILED: ClassVar[bool] = False
+    """Whether the compiled module makes the result, and checks its state."""
+    _TOLD: ClassVar[tuple[str, ...]] = ()
+    """Fields that are no part of the state, but follow from it."""
+    _LATER: ClassVar[tuple[str, ...]] = ()
+    """Fields that states of format 1 did not have at first; without them they are None."""
+
+    def __init_subclass__(cls) -> None:
+        """Make the class known to files and studies by its name."""
+        if not cls.__name__.startswith("_"):
+            values.RESULTS[cls.__name__] = cls
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        """Return the names in the state."""
+        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+        return [field.name for field in fields if field.name not in cls._TOLD]
+
+    @classmethod
+    def _made(cls, text: str) -> Self:
+        """Return the result that JSON text of the compiled module describes."""
+        return cls(**tuples(json.loads(text)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
+
+        Returns
+        -------
+        dict
+            Fields by name. ``format`` is the number of the format, ``nacre`` the version that
+            wrote it and ``kind`` the class. Bodies and grids stand in it as the calls that make
+            them.
+        """
+        return values.heading(type(self).__name__) | self._state()
+
+    def _state(self) -> dict[str, Any]:
+        """Return the state as plain data."""
+        return {name: _plain(getattr(self, name)) for name in self._names()}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Value whose named state `to_dict` returned, to the bit.
+
+        Parameters
+        ----------
+        data : dict
+            Named state; lists may stand for arrays, as in JSON.
+
+        Returns
+        -------
+        object
+            Value of this class.
+
+        Raises
+        ------
+        ValueError
+            If the format is newer than this version, or a key is missing, unknown or holds a
+            wrong value.
+        """
+        return cls._restored(values.checked_state(data, cls.__name__, cls._names(), cls._LATER))
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        """Return the result with these fields, checked."""
+        name = cls.__name__
+        if cls._COMPILED:
+            return cls._made(core.checked(name, as_text(name, state, infinite=True)))
+        kinds, fields = get_type_hints(cls), {}
+        for key, value in state.items():
+            try:
+                fields[key] = _fitted(kinds[key], value)
+            except TypeError as error:
+                said = f'{name}: the value of the key "{key}" does not fit: {value!r}'
+                raise ValueError(said) from error
+        return cls(**fields)
+
+    def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
+        """Return the function and the state that make the result again."""
+        return values.decode, (self.to_dict(),)

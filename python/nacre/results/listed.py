@@ -1,0 +1,91 @@
+"""Results that are a list of numbers: printed, in a notebook and in files by their quantities."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from nacre._tools.units import printable, written
+from nacre.results import display, files
+from nacre.results.base import Result
+from nacre.results.quantities import AXIS, Quantity
+from nacre.results.tables import headed
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Listed(Result):
+    """Base of results whose table has a row for each of their quantities.
+
+    The dataclass needs ``repr=False``, and `_QUANTITIES` and `_TITLE`.
+    """
+
+    _TITLE: ClassVar[str]
+    """What the result is, in files."""
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the numbers, with units; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Numbers by name.
+        """
+        table = [(row, self._si(row)) for row in self._QUANTITIES]
+        variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._QUANTITIES}
+        return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, or ``.csv`` for the numbers, in one row.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+        """
+        cells: list[tuple[str, Any]] = []
+        for row in self._QUANTITIES:
+            values = np.ravel(row.of(self)).tolist()
+            names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
+            heads = [headed(row, self, name) for name in (names if row.dims else [""])]
+            cells += zip(heads, values, strict=True)
+        return files.save(path, files.tabular(self, zip(*cells, strict=True)))
+
+    def _si(self, row: Quantity) -> str:
+        """Return the SI unit of a quantity of this result; that in a line contact may differ."""
+        return row.si()
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the quantities that are printed, with units."""
+        return [
+            (row.label, (display.pair if row.dims else written)(row.of(self), self._si(row)))
+            for row in self._QUANTITIES
+            if row.label
+        ]
+
+    def __repr__(self) -> str:
+        """Return the table in a line."""
+        rows = ", ".join(" ".join(row) for row in self._rows())
+        return printable(f"<{type(self).__name__}: {rows}>")
+
+    def __str__(self) -> str:
+        """Return a table."""
+        return display.text(self._rows(), [])
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows())

@@ -1,0 +1,177 @@
+"""Outputs of a study: the numbers that it keeps of each solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nacre.results.quantities import AXIS, CONTACT, FRICTION, INDENT
+
+if TYPE_CHECKING:
+    from nacre.contact.friction import FrictionSolution
+    from nacre.contact.solution import Solution
+    from nacre.contact.stresses import StressSummary
+    from nacre.indent.solution import IndentSolution
+
+Output = str | Callable[[Any], Any]
+
+OUTPUTS = (
+    "load",
+    "approach",
+    "tilt",
+    "eccentricity",
+    "peak_pressure",
+    "peak_position",
+    "contact_area",
+)
+"""Outputs of a contact by default."""
+INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
+"""Outputs of an indentation by default."""
+
+NUMBERS = [row.name for row in CONTACT]
+"""Quantities of a solution."""
+OF_FRICTION = {row.name: row for row in FRICTION if row.dims in ((), AXIS)}
+"""Numbers of a contact with friction."""
+OF_INDENT = [row.name for row in INDENT]
+"""Numbers of an indentation."""
+AXES = {row.name for row in (*CONTACT, *FRICTION) if row.dims == AXIS}
+"""Outputs with a value along x and one along y."""
+
+STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
+    "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
+    "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
+    "max_shear": lambda summary: [layer.max_shear[0] for layer in summary.layers],
+    "coating_tension": lambda summary: [
+        layer.tension[0] for layer in summary.layers if np.isfinite(layer.depths[1])
+    ],
+    "interface_shear": lambda summary: [face.shear[0] for face in summary.interfaces],
+    "interface_tension": lambda summary: [face.tension[0] for face in summary.interfaces],
+}
+"""Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
+
+ESTIMATED = ("peak_pressure", "approach", "load")
+"""Outputs whose errors due to the size of the cells are estimated."""
+ERROR = "_discretisation"
+"""Ending of the name under which such an error stands beside its output."""
+
+
+def named(
+    outputs: Sequence[Output] | Mapping[str, Output], indents: bool | None = None
+) -> dict[str, Output]:
+    """Return outputs by name, checked: those of an indentation, of a contact, or of both."""
+    if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
+        raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
+    if isinstance(outputs, Mapping):
+        items = [(str(name), output) for name, output in outputs.items()]
+    else:
+        items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
+    told = {
+        False: f"attributes of Solution that hold numbers ({', '.join(sorted(NUMBERS))}), or of "
+        f"FrictionSolution ({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
+        True: "attributes of nacre.indent.IndentSolution that hold numbers "
+        f"({', '.join(OF_INDENT)})",
+    }
+    known = {False: {*NUMBERS, *OF_FRICTION, *STRESSES}, True: {*OF_INDENT}}
+    kinds = [True, False] if indents is None else [indents]
+    for name, output in items:
+        if not (any(output in known[kind] for kind in kinds) or callable(output)):
+            said = ", ".join(told[kind] for kind in kinds)
+            raise ValueError(f"outputs must be {said}, or functions, got {output!r}")
+        if name in ("error", "warnings"):
+            raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
+    found = dict(items)
+    if not found or len(found) != len(items):
+        names = [name for name, _ in items]
+        raise ValueError(f"outputs must be at least one, under different names, got {names}")
+    return found
+
+
+def indented(solution: IndentSolution, outputs: Mapping[str, Output]) -> dict[str, Any]:
+    """Return the outputs of an indentation as plain numbers."""
+    found: dict[str, Any] = {}
+    for name, output in outputs.items():
+        if isinstance(output, str) and output not in OF_INDENT:
+            raise ValueError(f"the output {output} is not one of an indentation")
+        value = getattr(solution, output) if isinstance(output, str) else output(solution)
+        found[name] = np.asarray(value, dtype=np.float64).tolist()
+    return found
+
+
+def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str]:
+    """Return the names of the errors of outputs, each with the quantity that has this error."""
+    return {
+        name + ERROR: output
+        for name, output in outputs.items()
+        if isinstance(output, str) and output in ESTIMATED and name + ERROR not in taken
+    }
+
+
+def evaluated(
+    solution: Solution | FrictionSolution,
+    outputs: Mapping[str, Output],
+    stress: Mapping[str, Any],
+    unresolved: list[str],
+) -> dict[str, Any]:
+    """Return the outputs of a solution as plain numbers; the stresses are summed up once.
+
+    The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
+    stresses that the cells do not resolve are added to `unresolved`.
+    """
+    summary = None
+    found: dict[str, Any] = {}
+    for name, output in outputs.items():
+        if not isinstance(output, str):
+            value = output(solution)
+        elif output in STRESSES:
+            if summary is None:
+                summary = solution.stress_summary(**stress)
+                unresolved += summary.warnings
+            value = max(STRESSES[output](summary), default=np.nan)
+        else:
+            value = _number(solution, output)
+        found[name] = np.asarray(value, dtype=np.float64).tolist()
+    normal: Any = getattr(solution, "normal", solution)
+    estimates = normal.report.discretisation or {}
+    for name, quantity in errors(outputs, outputs).items():
+        estimate = estimates.get(quantity)
+        found[name] = np.nan if estimate is None else float(estimate)
+    return found
+
+
+def _number(solution: Any, name: str) -> Any:
+    """Return an attribute of a solution, or of the normal contact of one with friction."""
+    if name in OF_INDENT and name not in NUMBERS:
+        raise ValueError(f"the output {name} needs an indentation, a case with a tip")
+    normal = getattr(solution, "normal", None)
+    if normal is None:
+        if name in OF_FRICTION:
+            raise ValueError(f"the output {name} needs friction in the case")
+        return getattr(solution, name)
+    if name not in OF_FRICTION:
+        return getattr(normal, name)
+    value = OF_FRICTION[name].of(solution)
+    if value is None:
+        raise ValueError(
+            f"the output {name} is not one of {'rolling' if rolls(solution) else 'sliding'}"
+        )
+    return value
+
+
+def rolls(solution: FrictionSolution) -> bool:
+    """Return whether a solution is one of rolling."""
+    return solution.shift is None
+
+
+def check_direction(
+    arguments: Mapping[str, Any], friction: float = 0.0, direction: object = None, **_: object
+) -> None:
+    """Raise a `ValueError` before a solve whose stresses need a direction of friction."""
+    grid, shape = arguments.get("grid"), arguments.get("shape")
+    rolls = getattr(grid, "is_line", False) or getattr(shape, "rolling_direction", None)
+    if friction > 0 and direction is None and not rolls:
+        raise ValueError(
+            "direction must be given where friction is above 0: only rollers, cylinders and line "
+            "contacts have a rolling direction to take instead; (1, 0) is along x"
+        )

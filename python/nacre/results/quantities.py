@@ -1,0 +1,238 @@
+"""The quantities of results: one table.
+
+Files, tables, printed forms, JSON, outputs of studies, labels and units follow from it. To add a
+quantity, give the result an attribute of its name, and add a row here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Any
+
+AXIS = ("axis",)
+"""Dimensions of a number along x and one along y."""
+TAKEN = object()
+"""In place of a value that is taken out of a state."""
+CELLS, VECTOR = ("x", "y"), ("component", "x", "y")
+"""Dimensions of a field, and of one with components along x and y."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A row of the table."""
+
+    name: str
+    """Name in files, outputs and JSON."""
+    words: str
+    """What it is."""
+    unit: str = ""
+    """SI unit; "" where it has none."""
+    line: str | None = None
+    """SI unit in line contact, where it is another: loads, areas and energies are per length."""
+    dims: tuple[str, ...] = ()
+    """Dimensions; a number has none."""
+    label: str = ""
+    """Heading of its row in printed tables; "" where it is not printed."""
+    path: str = ""
+    """Attribute of the result, with dots; the name by default."""
+    follows: bool = False
+    """Whether files hold the field although it follows from the others."""
+    rolling: tuple[str, str] | None = None
+    """SI units in rolling, and in rolling line contact, where they are others."""
+
+    @property
+    def is_field(self) -> bool:
+        """Whether it has a value for each cell."""
+        return self.dims[-2:] == CELLS
+
+    def of(self, result: Any) -> Any:
+        """Return the value in a result."""
+        return reduce(getattr, (self.path or self.name).split("."), result)
+
+    def within(self, state: Mapping[str, Any]) -> Any:
+        """Return the value in the state of a result, or None."""
+        *places, name = (self.path or self.name).split(".")
+        return reduce(lambda inner, place: inner[place], places, state).get(name)
+
+    def put(self, state: dict[str, Any], value: Any) -> None:
+        """Put a value into the state of a result; `TAKEN` takes it out."""
+        *places, name = (self.path or self.name).split(".")
+        for place in places:
+            state[place] = state = dict(state[place])
+        state[name] = value
+        if value is TAKEN:
+            del state[name]
+
+    def si(self, *, line: bool = False, rolls: bool = False) -> str:
+        """Return the SI unit in a contact of this kind."""
+        if rolls and self.rolling is not None:
+            return self.rolling[line]
+        return self.line if line and self.line is not None else self.unit
+
+
+CONTACT = (
+    Quantity("load", "normal force", "N", "N/m", label="load"),
+    Quantity("eccentricity", "point where the force acts", "m", dims=AXIS, label="acts at"),
+    Quantity("moment", "first moments of the pressure", "N m", "N", AXIS, "moment"),
+    Quantity("approach", "approach of the origin", "m", label="approach"),
+    Quantity("tilt", "slopes", dims=AXIS, label="tilt"),
+    Quantity("peak_pressure", "largest pressure of a cell", "Pa", label="peak pressure"),
+    Quantity("peak_position", "centre of that cell", "m", dims=AXIS, label="at"),
+    Quantity("contact_extent", "ends of the contact", "m", dims=("axis", "end"), label="contact"),
+    Quantity("contact_area", "area in contact", "m²", "m", label="area"),
+    Quantity("contact_share", "share of the grid in contact", label="share"),
+    Quantity("central_pressure", "pressure at the origin", "Pa"),
+    Quantity("elastic_energy", "elastic energy of the bodies", "J", "J/m"),
+    Quantity("plastic_work", "energy that the permanent indentation has taken", "J", "J/m"),
+    Quantity("pressure", "pressure", "Pa", dims=CELLS),
+    Quantity("gap", "gap; infinite where the shape cannot touch", "m", dims=CELLS),
+    Quantity("displacement", "normal displacement of both bodies together", "m", dims=CELLS),
+    Quantity(
+        "hardness", "largest pressure that the surfaces can carry", "Pa", None, CELLS, "hardness"
+    ),
+    Quantity("indentation", "permanent indentation", "m", None, CELLS, "indentation"),
+    Quantity("in_contact", "whether a cell is in contact", dims=CELLS),
+    Quantity("line_load", "force per length along x", "N/m", dims=("x",), follows=True),
+    Quantity(
+        "coefficients",
+        "influence coefficients that the contact was given",
+        "m/Pa",
+        dims=("offset_x", "offset_y"),
+    ),
+    Quantity("x", "x of the cell centre", "m", dims=("x",)),
+    Quantity("y", "y of the cell centre", "m", dims=("y",)),
+)
+"""Quantities of a normal contact, numbers first, in the order in which they are printed."""
+
+FRICTION = (
+    Quantity("force", "force of the tractions on the body", "N", "N/m", AXIS, "force"),
+    Quantity("torque", "torque of the tractions about the origin", "N m", "N", label="torque"),
+    Quantity("shift", "shift of the counterbody over the body", "m", dims=AXIS, label="shift"),
+    Quantity("twist", "twist of the counterbody over the body", "rad", label="twist"),
+    Quantity("creepage", "creepages along and across", dims=AXIS, label="creepage"),
+    Quantity("spin", "spin", "1/m", label="spin"),
+    Quantity(
+        "dissipated",
+        "energy that friction dissipates",
+        "J",
+        "J/m",
+        label="dissipated",
+        rolling=("J/m", "J/m²"),
+    ),
+    Quantity("tangential_energy", "elastic energy of the tractions", "J", "J/m"),
+    Quantity("stick_share", "share of the contact that sticks"),
+    Quantity("convolutions", "convolutions of the solve", path="report.convolutions"),
+    Quantity("traction", "traction on the body", "Pa", dims=VECTOR),
+    Quantity("displacement", "displacement of the body less counterbody", "m", dims=VECTOR),
+    Quantity(
+        "slip", "slip in the step; over the way in rolling", "m", None, VECTOR, rolling=("", "")
+    ),
+    Quantity("stick", "whether a cell sticks", dims=CELLS, follows=True),
+    Quantity("friction", "coefficient of friction", dims=CELLS),
+)
+"""Quantities of a contact with friction, numbers first, in the order in which they are printed."""
+
+CREEP = (
+    Quantity("c11", "coefficient of the longitudinal creepage"),
+    Quantity("c22", "coefficient of the lateral creepage"),
+    Quantity("c23", "coefficient of the spin in the lateral force"),
+    Quantity("c33", "coefficient of the spin in the torque"),
+    Quantity("errors", "estimated errors of c11, c22, c23 and c33", dims=("coefficient",)),
+    Quantity("shear", "shear modulus", "Pa"),
+    Quantity("semi_axes", "semi-axes along and across rolling", "m", dims=("semi_axis",)),
+)
+"""Kalker's coefficients."""
+
+NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
+NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
+"""Quantities of the normal contact that one with friction has too, and their names there."""
+WITH_FRICTION = (
+    *(
+        replace(row, name=NORMAL[row.name], path=f"normal.{row.name}", label="")
+        for row in CONTACT
+        if row.name in NORMAL
+    ),
+    *FRICTION,
+)
+"""All quantities of a contact with friction."""
+
+STRESS = tuple(
+    Quantity(name, words, "Pa")
+    for name, words in {
+        "von_mises": "largest von Mises stress",
+        "tension": "largest principal stress",
+        "max_shear": "largest shear stress",
+        "coating_tension": "largest principal stress in a layer",
+        "interface_shear": "largest shear stress at an interface",
+        "interface_tension": "largest tension at an interface",
+    }.items()
+)
+"""Extremes of the stress that studies keep."""
+
+EXTREMES = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the extreme"),
+    Quantity("value", "largest value", "Pa"),
+    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or strength over the value"),
+)
+"""Columns of the table of a stress summary."""
+
+INDENT = (
+    Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),
+    Quantity("approach", "approach", "m", label="approach"),
+    Quantity("radius", "contact radius", "m", label="radius"),
+    Quantity("stiffness", "stiffness of this contact area", "N/m", label="stiffness"),
+    Quantity("outer_radius", "radius up to which the surfaces attract each other", "m"),
+    Quantity("central_pressure", "pressure on the axis", "Pa", label="central pressure"),
+    Quantity("pull_off_load", "load of the last stable contact of a tip that is pulled", "N"),
+    Quantity("pull_off_approach", "approach of that contact", "m"),
+    Quantity("pull_off_radius", "radius of that contact", "m"),
+)
+"""Quantities of an indentation."""
+
+FIT = (
+    Quantity("depth", "depth as measured", "m"),
+    Quantity("force", "force as measured", "N"),
+    Quantity("load", "load of the model", "N"),
+    Quantity("approach", "depth without nuisances", "m"),
+    Quantity("residual", "residual"),
+)
+"""Quantities at the points of the curves of a fit."""
+
+PARAMETERS = {
+    "load": "N",
+    "approach": "m",
+    "eccentricity": "m",
+    "moment": "N m",
+    "tilt": "rad",
+    "twist": "rad",
+    "torque": "N m",
+    "young": "Pa",
+    "thickness": "m",
+    "radius": "m",
+    "crown_radius": "m",
+    "flat_length": "m",
+    "depth": "m",
+    "hardness": "Pa",
+    "work": "N/m",
+    "flat": "m",
+    "strength": "Pa",
+    "contact_point": "m",
+    "drift": "m/s",
+    "compliance": "m/N",
+    "force_offset": "N",
+    "force_slope": "N/m",
+}
+"""SI units of parameters of studies and fits, by the last part of their names."""
+
+
+def units(*, line: bool = False, rolls: bool = False, indents: bool = False) -> dict[str, str]:
+    """Return the SI units of the quantities of a kind of result, by their names."""
+    rows = INDENT if indents else (*FRICTION, *CONTACT, *STRESS)
+    return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

@@ -1,0 +1,100 @@
+"""CSV files of results, for spreadsheets: rows after a block of comments ``# name: value``."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.units import symbol
+from nacre.results.quantities import VECTOR, Quantity
+
+Array = npt.NDArray[np.float64]
+
+SOURCE = f"nacre {core.__version__}"
+"""What wrote a file."""
+
+
+def numbers(result: Any) -> Iterator[tuple[Quantity, Any]]:
+    """Yield the numbers of a contact, those that it has, with their rows of the table."""
+    for row in result._QUANTITIES:
+        is_number = not row.dims or row.dims[0] == "axis"
+        if is_number and (value := row.of(result)) is not None:
+            yield row, value
+
+
+def fields(result: Any) -> dict[Quantity, Array]:
+    """Return the fields of a contact that tables and pictures show, by their rows of the table."""
+    state, found = result.to_dict(), {}
+    for row in result._QUANTITIES:
+        if row.is_field and (row.follows or isinstance(row.within(state), np.ndarray)):
+            found[row] = row.of(result)
+    return found
+
+
+def headed(row: Quantity, result: Any, axis: str = "") -> str:
+    """Return the heading of a quantity, with the unit that is set."""
+    unit = symbol(result._si(row))
+    name = f"{row.name} {axis}".rstrip().replace("_", " ")
+    return f"{name} [{unit}]" if unit else name
+
+
+def columns(result: Any) -> dict[str, Array]:
+    """Return a column for each field of a contact, two of a vector, by their headings."""
+    found = {}
+    for row, values in fields(result).items():
+        parts = zip("xy", values, strict=True) if row.dims == VECTOR else [("", values)]
+        for axis, part in parts:
+            found[headed(row, result, axis)] = part.astype(int) if part.dtype == bool else part
+    return found
+
+
+def write_rows(path: Path, rows: Iterable[Iterable[Any]], **comments: Any) -> None:
+    """Write rows, the heading first, after comments."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        file.writelines(f"# {name}: {value}\n" for name, value in comments.items())
+        csv.writer(file).writerows(rows)
+
+
+def write_sections(result: Any, path: Path) -> None:
+    """Write the sections along x and along y through the largest pressure."""
+    i, j = np.unravel_index(np.argmax(result.pressure), result.pressure.shape)
+    _write(result, path, {"x": (slice(None), j), "y": (i, slice(None))})
+
+
+def write_cells(result: Any, path: Path) -> None:
+    """Write every cell, after a block of comments with the numbers."""
+    grid = result.grid
+    comments = {
+        "source": SOURCE,
+        "cells": "{} x {}, y varies fastest".format(*grid.shape),
+        f"spacing [{symbol('m')}]": "{} {}".format(*grid.spacing),
+        **{headed(row, result): _plain(value) for row, value in numbers(result)},
+        **{name: said for name, said in result._attributes().items() if name != "warnings"},
+        **{f"warning {k}": text for k, text in enumerate(result._warnings, start=1)},
+    }
+    _write(result, path, {"": (slice(None), slice(None))}, **comments)
+
+
+def _write(result: Any, path: Path, parts: Mapping[str, Any], **comments: Any) -> None:
+    """Write parts of the grid, each with its name in a column of its own if it has one."""
+    x, y = np.meshgrid(result.x, result.y, indexing="ij")
+    named = {f"{name} [{symbol('m')}]": side for name, side in (("x", x), ("y", y))}
+    table = named | columns(result)
+
+    def rows() -> Iterator[list[Any]]:
+        for name, part in parts.items():
+            values = (np.ravel(column[part]).tolist() for column in table.values())
+            yield from ([name, *row] if name else list(row) for row in zip(*values, strict=True))
+
+    head = [*(["along"] if "x" in parts else []), *table]
+    write_rows(path, [head, *rows()], **comments)
+
+
+def _plain(value: Any) -> str:
+    return " ".join(str(number) for number in np.ravel(value).tolist())

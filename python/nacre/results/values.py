@@ -1,0 +1,274 @@
+"""Values of nacre as plain data, exactly: for files, and to tell one case from another.
+
+A material, layer, body, grid, profile or shape becomes its constructor call:
+``{"Sphere": {"radius": 0.005}}``; so do tips and adhesion, ``{"Tip.cone": {"slope": 0.3}}``.
+Numbers keep every bit. A result, such as a solution, becomes the
+dictionary that its `to_dict` returns.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import inspect
+import operator
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+import nacre._core as core
+
+FORMAT = 1
+"""Number of the format in which states are written."""
+
+FIELDS: dict[type, tuple[str, ...]] = {
+    kind: tuple(inspect.signature(kind).parameters)
+    for kind in vars(core).values()
+    if isinstance(kind, type)
+    and kind is not core.Shape
+    and issubclass(
+        kind,
+        core.Elastic
+        | core.Layer
+        | core.HalfSpace
+        | core.LogarithmicProfile
+        | core.SampledProfile
+        | core.Shape,
+    )
+}
+"""Arguments of each class's constructor, which are attributes of the same names."""
+MADE: dict[str, Any] = {
+    f"{kind.__name__}.{name}": getattr(kind, name)
+    for kind in (core.Tip, core.Adhesion)
+    for name, member in vars(kind).items()
+    if isinstance(member, staticmethod) and not name.startswith("_")
+}
+"""Static methods that make tips and adhesion, by their names in data."""
+
+
+def _positional(make: Any) -> tuple[str, ...]:
+    """Return the names of positional arguments; those by keyword alone say the same otherwise."""
+    parameters = inspect.signature(make).parameters.values()
+    return tuple(one.name for one in parameters if one.kind is not one.KEYWORD_ONLY)
+
+
+CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
+    **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
+    **{name: (make, _positional(make)) for name, make in MADE.items()},
+    "Response": (core.Response._of, ("values", "local")),
+    "Grid.line": (core.Grid.line, ("cells", "width", "center")),
+    "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
+}
+"""Callables by their names in data, each with its arguments."""
+LATER = {
+    *("name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"),
+    *("corners", "smoothing"),
+}
+"""Arguments that format 1 had not at first. Where they say nothing they are left out: older data
+are still read, and older studies found again. Versions that do not know them refuse them by
+name."""
+ABSENT = (None, (None, None), (False, False))
+"""Values of those arguments that say nothing; the second one is of ends."""
+RESULTS: dict[str, Any] = {}
+"""Classes of results by their names."""
+BEGUN = ("traction", "displacement", "friction", "motion")
+"""Fields of a contact with friction on which a history depends that goes on from it."""
+
+
+def encode(value: Any, *, digest: bool = False) -> Any:
+    """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
+
+    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure or
+    what a history needs to go on, which is enough to compare. A value that is neither one of
+    nacre's nor plain is a `TypeError`.
+    """
+
+    def of(value: Any) -> Any:
+        if value is None or isinstance(value, bool | str):
+            return value
+        if isinstance(value, int | np.integer):
+            return int(value)
+        if isinstance(value, float | np.floating):
+            return float(value)
+        if type(value) is RESULTS.get("History"):
+            return of(value.to_dict())
+        if isinstance(value, tuple | list):
+            return [of(item) for item in value]
+        if isinstance(value, Mapping):
+            return {str(key): of(item) for key, item in value.items()}
+        if isinstance(value, np.ndarray):
+            if not digest:
+                return value.tolist()
+            array = np.ascontiguousarray(value, dtype=np.float64)
+            return {"array": [list(array.shape), hashlib.sha256(array.tobytes()).hexdigest()]}
+        if isinstance(value, core.Rigid):
+            return "rigid"
+        if digest and type(value) is RESULTS.get("Solution"):
+            return {"Solution": of(value.pressure)}
+        if digest and type(value) is RESULTS.get("FrictionSolution"):
+            state, normal = value.to_dict(), value.normal
+            begun = {name: of(state[name]) for name in BEGUN}
+            begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
+            return {"FrictionSolution": begun}
+        if RESULTS.get(type(value).__name__) is type(value):
+            return of(value.to_dict())
+        if isinstance(value, core.Response):
+            return {"Response": {"values": of(value.values), "local": value.local}}
+        if hasattr(value, "_arguments"):
+            return called(value, value._arguments())
+        raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
+
+    def called(value: Any, arguments: dict[str, Any]) -> dict[str, Any]:
+        if "parts" in arguments:
+            return {"sum": of(arguments["parts"])}
+        if "." in arguments:
+            return {"shifted": [of(arguments["."]), *arguments["shift"]]}
+        name, maker = type(value).__name__, value.__reduce__()[0].__name__
+        kept = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
+        return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": kept}
+
+    return of(value)
+
+
+def heading(kind: str) -> dict[str, Any]:
+    """Return the head of the plain data of a result: format, version and kind."""
+    return {"format": FORMAT, "nacre": core.__version__, "kind": kind}
+
+
+def checked_state(
+    data: Mapping[str, Any], kind: str, names: Collection[str], later: Collection[str] = ()
+) -> dict[str, Any]:
+    """Return the fields of a result's plain data, which must be of this kind and have these names.
+
+    Those of `later` may be missing, and are None then. Raises `ValueError` where the data are
+    otherwise, or the format is unknown.
+    """
+    if not isinstance(data, Mapping):
+        raise ValueError(f"{kind} must be a dict of named fields, got {data!r}")
+    state = dict(data)
+    for key in ("format", "nacre", "kind"):
+        if key not in state:
+            raise ValueError(f'{kind}: the key "{key}" is missing')
+    check_format(state.pop("format"), writer := state.pop("nacre"), f"this {kind}")
+    if not isinstance(writer, str):
+        raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
+    if (found := state.pop("kind")) != kind:
+        raise ValueError(f'the key "kind" must be "{kind}", got "{found}"')
+    return named(kind, state, names, later)
+
+
+def named(
+    place: str, data: Mapping[str, Any], names: Collection[str], later: Collection[str] = ()
+) -> dict[str, Any]:
+    """Return data with these names and no others; those of `later` may be missing, and are None."""
+    state = dict.fromkeys(later) | dict(data)
+    for key in names:
+        if key not in state:
+            raise ValueError(f'{place}: the key "{key}" is missing')
+    for key in state:
+        if key not in names:
+            raise ValueError(f"{place}: the key {key!r} is unknown")
+    return state
+
+
+def check_format(written: object, writer: object, what: str) -> None:
+    """Raise a `ValueError` if `what` has a format that this version does not know."""
+    if type(written) is not int or not 1 <= written <= FORMAT:
+        raise ValueError(
+            f"{what} has format {written}, written by nacre {writer}; nacre {core.__version__} "
+            f"reads formats from 1 to {FORMAT}: another version may read it"
+        )
+
+
+@contextmanager
+def refusing(kind: str) -> Iterator[None]:
+    """Make a `ValueError` of the errors that data raise which do not describe a value of a kind."""
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError) as error:
+        said = f"{type(error).__name__}: {error}"
+        raise ValueError(f"the data do not describe a {kind}: {said}") from error
+
+
+def decode(data: Any) -> Any:
+    """Return the value that `encode` made into `data`; lists become tuples.
+
+    Raises `ValueError` where a key is missing or unknown, or holds a value that does not fit.
+    """
+    try:
+        return _decoded(data)
+    except RecursionError as error:
+        raise ValueError("the data must not be nested this deeply") from error
+
+
+def _decoded(data: Any) -> Any:
+    if isinstance(data, list):
+        return tuple(_decoded(item) for item in data)
+    if data == "rigid":
+        return core.RIGID
+    if not isinstance(data, dict):
+        return data
+    if {"format", "nacre", "kind"} <= data.keys():
+        return result_class(data["kind"]).from_dict(data)
+    if len(data) == 1:
+        ((name, content),) = data.items()
+        if name == "sum":
+            return functools.reduce(operator.add, _sum(content))
+        if name == "shifted":
+            shape, x, y = _shifted(content)
+            try:
+                return shape.shifted(x, y)
+            except TypeError as error:
+                raise ValueError(f"{name}: {error}") from error
+        if name in CALLS:
+            return _made(name, *CALLS[name], content)
+    return {key: _decoded(item) for key, item in data.items()}
+
+
+def result_class(kind: object) -> Any:
+    """Return the class of results of this name; that of an indentation may have to be imported."""
+    if kind in ("IndentSolution", "Fit"):
+        import_module("nacre.indent")
+    if not isinstance(kind, str) or kind not in RESULTS:
+        raise ValueError(f"the key 'kind' must name a result of nacre, got {kind!r}")
+    return RESULTS[kind]
+
+
+def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
+    """Call `make` with named arguments, all of them and no others."""
+    if not isinstance(content, dict):
+        raise ValueError(f"{name} must be a dict of named fields, got {content!r}")
+    for key in expected:
+        if key not in content and key not in LATER:
+            raise ValueError(f"{name}: the key {key!r} is missing")
+    for key in content:
+        if key not in expected:
+            raise ValueError(f"{name}: the key {key!r} is unknown")
+    try:
+        return make(**_decoded(content))
+    except (TypeError, OverflowError) as error:
+        raise ValueError(f"{name}: {error}") from error
+
+
+def _sum(content: Any) -> tuple[core.Shape, ...]:
+    """Return the shapes of a sum, one at least."""
+    if not isinstance(content, list) or not content:
+        raise ValueError(f"sum must be a list of one shape or more, got {content!r}")
+    shapes: tuple[Any, ...] = _decoded(content)
+    for shape in shapes:
+        if not isinstance(shape, core.Shape):
+            raise ValueError(f"sum must hold shapes, got {shape!r}")
+    return shapes
+
+
+def _shifted(content: Any) -> tuple[Any, ...]:
+    """Return a shape and its shifts along x and y."""
+    if not isinstance(content, list) or len(content) != 3:
+        raise ValueError(f"shifted must be a list of a shape and two numbers, got {content!r}")
+    shape, x, y = _decoded(content)
+    if not isinstance(shape, core.Shape):
+        raise ValueError(f"shifted must hold a shape, got {shape!r}")
+    return shape, x, y

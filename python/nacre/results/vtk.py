@@ -1,0 +1,109 @@
+"""VTK files with rectilinear grids, for ParaView: the surface, and the stresses below it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.extras import extra
+from nacre.results.quantities import VECTOR
+from nacre.results.tables import fields
+
+if TYPE_CHECKING:
+    from nacre.contact.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
+OPTIONS = ("body", "friction", "direction", "residual", "displacement", "threads")
+"""Keywords of `Solution.stress` that `Solution.save` takes."""
+TOLERANCE = 1e-12
+"""Relative distance below which a depth lies on an interface, as in `Solution.stress`."""
+
+
+def write_surface(result: Any, path: Path) -> None:
+    """Write the fields of a contact as the cells of a plane."""
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    grid = result.grid
+    edges = [
+        c + side * (np.arange(cells + 1) / cells - 0.5)
+        for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
+    ]
+
+    def cell_data(field: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        plain = field.astype(np.int8) if field.dtype == bool else field
+        return np.asfortranarray(plain[..., np.newaxis])
+
+    cells: dict[str, Any] = {}
+    for row, values in fields(result).items():
+        if row.dims == VECTOR:
+            parts = [cell_data(part) for part in values]
+            cells[row.name] = (*parts, np.zeros_like(parts[0]))
+        else:
+            cells[row.name] = cell_data(values)
+    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
+
+
+def write_stress(
+    solution: Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+) -> None:
+    """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
+
+    A depth on an interface has two planes of points, above and below the interface.
+    """
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    if unknown := set(options) - set(OPTIONS):
+        known = ", ".join(OPTIONS)
+        raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
+    depths = np.asarray(core.plain("depths", depths), dtype=np.float64)
+    z, planes = _planes(solution, np.atleast_1d(depths), options)
+    shape = (*solution.pressure.shape, z.size)
+    points: dict[str, Any] = {
+        name: np.asfortranarray(np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape))
+        for name in ("pressure", "gap")
+    }
+    points |= {f"stress_{name}": planes[name] for name in COMPONENTS}
+    points |= {name: planes[name] for name in ("von_mises", "max_shear", "tension")}
+    if "ux" in planes:
+        points["displacement"] = tuple(planes[name] for name in ("ux", "uy", "uz"))
+    gridToVTK(str(path.with_suffix("")), solution.x, solution.y, z, pointData=points)
+
+
+def _planes(
+    solution: Solution, depths: Array, options: Mapping[str, Any]
+) -> tuple[Array, dict[str, Array]]:
+    """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
+    if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():
+        raise ValueError(f"depths must be at least one, each above the last, got {depths.tolist()}")
+    planned = {name: value for name, value in options.items() if name in ("body", "threads")}
+    plan = solution.stress_plan(**planned)
+    on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in plan.body.interfaces]
+    above = np.any(on, axis=0) if on else np.full(depths.shape, False)
+    # A rigid base has no side below.
+    rigid = isinstance(plan.body.substrate, core.Rigid)
+    below = ~on[-1] if rigid else np.full(depths.shape, True)
+    asked = {name: value for name, value in options.items() if name not in planned}
+    parts = []
+    if above.any():
+        parts.append(plan.stress(depths[above], side="above", **asked))
+    if below.any():
+        parts.append(plan.stress(depths[below], side="below", **asked))
+    z = np.concatenate([part.z for part in parts])
+    order = np.argsort(z, kind="stable")  # the side above comes first
+    names = [*COMPONENTS, "von_mises", "max_shear"]
+    names += ["ux", "uy", "uz"] if options.get("displacement") else []
+    planes = {name: [getattr(part, name) for part in parts] for name in names}
+    planes["tension"] = [part.principal[0] for part in parts]
+    return z[order], {
+        name: np.asfortranarray(np.concatenate(fields)[order].transpose(1, 2, 0))
+        for name, fields in planes.items()
+    }

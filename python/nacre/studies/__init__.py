@@ -1,0 +1,407 @@
+"""Studies: many solves over any parameters, to one Dataset, resumable."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Event, Lock, Thread
+from typing import TYPE_CHECKING, Any
+
+import nacre._core as core
+from nacre._tools.extras import extra
+from nacre._tools.paths import put
+from nacre._tools.progress import shown
+from nacre.contact import roll, slide, solve
+from nacre.contact.solution import Solution
+from nacre.results.outputs import (
+    INDENTED,
+    OUTPUTS,
+    STRESSES,
+    Output,
+    check_direction,
+    evaluated,
+    indented,
+    named,
+    rolls,
+)
+from nacre.studies.dataset import assembled, counted, laid_out
+from nacre.studies.identity import identified, key_of
+from nacre.studies.journal import Journal, Record
+
+if TYPE_CHECKING:
+    import xarray
+
+    from nacre.contact.friction import FrictionSolution
+
+Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+
+ARGUMENTS = frozenset(inspect.signature(solve).parameters)
+SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
+ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
+"""Arguments of contacts with friction besides those of `nacre.solve`."""
+INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
+"""Arguments of `nacre.indent.solve`."""
+
+
+def sweep(
+    case: Case,
+    parameters: Mapping[str, Any],
+    *,
+    outputs: Sequence[Output] | Mapping[str, Output] | None = None,
+    stress: Mapping[str, Any] | None = None,
+    store: str | os.PathLike[str] | None = None,
+    version: str | int | None = None,
+    executor: Executor | None = None,
+    progress: bool | None = None,
+    retry: bool = False,
+) -> xarray.Dataset:
+    """Study that solves every combination of parameters; needs ``nacre-contact[files]``.
+
+    A case that fails is recorded, and does not stop the others. With a `store`, a study that was
+    killed continues when the same call is made again.
+
+    Parameters
+    ----------
+    case : callable or mapping
+        Function that takes the parameters by name and returns the arguments of `nacre.solve` as a
+        dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
+        arguments, some of which the parameters replace. Arguments of `nacre.slide` or `nacre.roll`
+        make contacts with friction; of a history, the last step counts. Arguments of
+        `nacre.indent.solve`, with a tip, make indentations.
+    parameters : mapping
+        Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
+        labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
+        vary together. All others are combined. Beside arguments of a mapping, a name may be the
+        path of a number in one, such as ``"body.layers[0].thickness"`` or ``"tip.radius"``.
+    outputs : sequence or mapping, optional
+        Outputs that are kept of each solution: names of its attributes, and functions of it that
+        return a number or an array, by name. By default load, approach, tilt, eccentricity, peak
+        pressure and its position, and contact area, except for parameters. Outputs of the stresses
+        are the largest values anywhere, ``"von_mises"``, ``"tension"`` (principal) and
+        ``"max_shear"``; the largest tension in a layer, ``"coating_tension"``; and the largest
+        tractions at an interface, ``"interface_shear"`` and ``"interface_tension"``. The last three
+        are NaN without layers. With friction, attributes of `FrictionSolution` are outputs, too:
+        ``"force"``, ``"torque"``, ``"shift"``, ``"twist"``, ``"creepage"``, ``"dissipated"``.
+        Outputs of an indentation are numbers of `nacre.indent.IndentSolution`, by default load,
+        approach, radius, stiffness and central pressure; ``"pull_off_load"`` is NaN without
+        adhesion.
+    stress : mapping, optional
+        Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
+        ``direction``, ``residual``.
+    store : path, optional
+        File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
+        replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
+        again if its arguments have changed, or the source text of an output function, its defaults,
+        the values of its closure or the object that it is bound to. Where these cannot be compared
+        with an earlier run (an open file, a lock, a function without source text), a
+        `nacre.NacreWarning` says so, and all cases are solved again unless there is a `version`.
+        Nothing else is compared: not globals, nor other functions and classes that a function uses,
+        nor libraries and files.
+    version : str or int, optional
+        Version of the output functions: change it when what they use has changed, and all cases are
+        solved again. With a version, what cannot be compared counts as unchanged.
+    executor : concurrent.futures.Executor, optional
+        Executor of the solves; a thread for each core by default. Each solve has one thread, unless
+        the case has `threads`.
+    progress : bool, optional
+        Whether to show the progress on standard error: a bar in a terminal or a notebook, elsewhere
+        a line each minute at most. By default, there is no line in the first minute.
+    retry : bool, optional
+        Whether to try cases again that failed in an earlier run.
+
+    Returns
+    -------
+    xarray.Dataset
+        Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
+        holds the reason; ``warnings`` holds the warnings of each solve. Beside peak pressure,
+        approach and load stand their errors due to the size of the cells, such as
+        ``peak_pressure_discretisation``: the estimates of `Report.discretisation`, NaN where there
+        is none. The executor does not change a bit.
+
+    Warns
+    -----
+    NacreWarning
+        If cases failed or have warnings: a line with their numbers by kind.
+
+    Raises
+    ------
+    ValueError
+        If parameters or outputs cannot be used, or the store has another ending, or is a file but
+        no study.
+    TypeError
+        If the case does not describe a solve, or an argument is of the wrong kind.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> def ball(thickness, young):
+    ...     coating = nacre.Layer(nacre.Elastic(young, 0.3), thickness)
+    ...     body = nacre.HalfSpace(steel, layers=[coating])
+    ...     return dict(shape=nacre.Sphere(5e-3), body=body, load=10.0)
+    >>> study = nacre.sweep(ball, {"thickness": [5e-6, 20e-6], "young": [105e9, 420e9]})
+    >>> (study.peak_pressure / 1e9).round(2).values
+    array([[1.53, 1.65],
+           [1.36, 1.82]])
+    """
+    with extra("files"):
+        import xarray  # noqa: F401
+
+    if not (callable(case) or isinstance(case, Mapping)):
+        raise TypeError(f"case must be callable or a mapping of arguments, got {case!r}")
+    path = None if store is None else Path(store)
+    if path is not None and path.suffix.lower() != ".nc":
+        raise ValueError(f"store must end in .nc, got {str(store)!r}")
+    _check_store(path)
+    coordinates, points = laid_out(parameters)
+    indents = _indents(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in (INDENTED if indents else OUTPUTS) if name not in parameters]
+    wanted = named(usual if outputs is None else outputs, indents)
+    if taken := set(wanted) & set(parameters):
+        raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
+    stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
+    asked = {**(stress or {})} if stresses else {}
+    if unknown := set(asked) - {"body", "friction", "direction", "residual"}:
+        raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
+    if not isinstance(version, str | int | None):
+        raise TypeError(f"version must be a text or an integer, got {version!r}")
+    identity = identified(wanted, asked, version)
+    again = bool(identity.unknown) and version is None
+    if again and path is not None:
+        message = (
+            f"outputs use what cannot be compared with an earlier run: "
+            f"{', '.join(identity.unknown)}; all cases are solved again. Give version=..., and "
+            f"change it whenever the outputs change"
+        )
+        warnings.warn(message, core.NacreWarning, stacklevel=2)
+    journal = Journal(path.with_suffix(".journal") if path else None)
+    with journal, _quiet():
+        keys: list[str] = []
+        tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
+        failures: dict[str, Record] = {}
+        for point in points:
+            arguments, failure = _describe(case, point, asked)
+            key = key_of(arguments if failure is None else {"failed": point}, identity)
+            keys.append(key)
+            known = journal.records.get(key)
+            if known is not None and not (again or (retry and "error" in known)):
+                continue
+            if failure is not None:
+                failures[key] = {"key": key, "parameters": _said(point), "error": failure}
+            else:
+                tasks[key] = arguments, _said(point)
+        for record in failures.values():
+            journal.add(record)
+
+        def keep(key: str, result: Record) -> None:
+            journal.add({"key": key, "parameters": tasks[key][1], **result})
+
+        arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
+        found = len(set(keys)) - len(tasks) - len(failures)
+        with shown(progress, found + len(tasks), found) as advance:
+            for _ in _run(arguments_of, wanted, asked, executor, keep):
+                advance()
+        records = [journal.records[key] for key in keys]
+        dataset = assembled(coordinates, records, wanted)
+        if path is not None:
+            from nacre._tools.disk import STUDY, replacing, write_dataset
+
+            _check_store(path)  # hours later
+            with replacing(path) as temporary:
+                write_dataset(dataset, temporary, STUDY)
+    for line in counted(records):
+        warnings.warn(line, core.NacreWarning, stacklevel=2)
+    return dataset
+
+
+def _check_store(path: Path | None) -> None:
+    """Raise a `ValueError` if something that is no study has the name of the store."""
+    from nacre._tools.disk import is_study
+
+    if path is not None and path.exists() and not is_study(path):
+        raise ValueError(
+            f"store must be a new file or a study, got {str(path)!r}, which is neither"
+        )
+
+
+def _describe(
+    case: Case, point: dict[str, Any], stress: Mapping[str, Any]
+) -> tuple[dict[str, Any], str | None]:
+    """Return the arguments of a solve, or the reason why the case has none."""
+    try:
+        arguments = _arguments(case, point)
+        check_direction(arguments, **stress)
+    except (ValueError, ArithmeticError) as error:
+        return {}, _reason(error)
+    if "tip" in arguments:
+        if unknown := set(arguments) - INDENT:
+            raise TypeError(
+                f"case must give arguments of nacre.indent.solve beside a tip, "
+                f"got {sorted(unknown)}"
+            )
+        return arguments, None
+    unknown = set(arguments) - ARGUMENTS
+    frictionless = unknown and not {"friction", "steps"} & unknown
+    if frictionless or (unknown - SLIDE and unknown - ROLL):
+        raise TypeError(
+            f"case must give arguments of nacre.solve, nacre.slide, nacre.roll or "
+            f"nacre.indent.solve, got {sorted(unknown)}"
+        )
+    return {"threads": 1, **arguments}, None
+
+
+def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
+    if not isinstance(case, Mapping):
+        made = case(**point)
+        if not isinstance(made, Mapping):
+            raise TypeError(
+                "case must return the arguments of a solve as a mapping, such as "
+                f"dict(shape=..., body=..., load=...), got {made!r:.80}"
+            )
+        return dict(made)
+    paths = {name for name in point if "." in name or "[" in name}
+    found = {**case, **{name: value for name, value in point.items() if name not in paths}}
+    for path in paths:
+        put(found, path, point[path], names="parameters", of="the case")
+    return found
+
+
+def _indents(case: Case, points: Sequence[Mapping[str, Any]]) -> bool:
+    """Return whether the cases of a study are indentations, as the first one that is a case."""
+    if isinstance(case, Mapping):
+        return "tip" in case or any("tip" in point for point in points[:1])
+    for point in points:
+        with suppress(ValueError, ArithmeticError):
+            return "tip" in _arguments(case, point)
+    return False
+
+
+def _said(point: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters as readable values for the journal."""
+    return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
+
+
+def _run(
+    tasks: Mapping[str, dict[str, Any]],
+    outputs: Mapping[str, Output],
+    stress: Mapping[str, Any],
+    executor: Executor | None,
+    keep: Callable[[str, Record], None],
+) -> Iterator[None]:
+    """Solve all tasks; keep their records one at a time, and yield after each.
+
+    A record is kept by the thread that solved it, before that thread begins another case: a kill
+    loses only the cases that are being solved.
+    """
+    pool = executor or ThreadPoolExecutor(max_workers=default_threads())
+    futures: list[Future[Record]] = []
+    ended: SimpleQueue[BaseException | None] = SimpleQueue()
+    turn, stopped = Lock(), Event()
+
+    def end(key: str, future: Future[Record]) -> None:
+        try:
+            with turn:
+                keep(key, future.result())
+        except BaseException as error:  # from the executor or the disk: raised below
+            ended.put(error)
+        else:
+            ended.put(None)
+
+    def submit() -> None:
+        try:
+            for key, arguments in tasks.items():
+                if stopped.is_set():
+                    return
+                task = arguments, dict(outputs), dict(stress), os.getpid()
+                futures.append(pool.submit(_solve, *task))
+                futures[-1].add_done_callback(partial(end, key))
+        except BaseException as error:  # from the executor: raised below
+            ended.put(error)
+
+    # Ctrl-C interrupts only the main thread. No case is submitted there, so that every case that
+    # begins is also kept.
+    submitter = Thread(target=submit)
+    submitter.start()
+    try:
+        for _ in tasks:
+            while True:
+                with suppress(Empty):
+                    failure = ended.get(timeout=0.5)  # Ctrl-C is seen in between
+                    break
+            if failure is not None:
+                raise failure
+            yield
+    finally:
+        stopped.set()
+        submitter.join()
+        for future in futures:
+            future.cancel()
+        if executor is None:
+            pool.shutdown()
+
+
+def default_threads() -> int:
+    """Return how many threads plans have by default."""
+    return core.Convolution([[1.0]], None).threads()
+
+
+def _solve(
+    arguments: dict[str, Any], outputs: dict[str, Output], stress: dict[str, Any], parent: int
+) -> Record:
+    """Solve one case, in any process; return its outputs, or the reason why it failed."""
+    if os.getpid() != parent:
+        warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
+    try:
+        if "tip" in arguments:
+            from nacre.indent import solution as indentation
+
+            found = indentation.solve(**arguments)
+            told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
+            return {"values": indented(found, outputs), "indents": True} | told
+        solution = _solution(arguments)
+        normal = solution if isinstance(solution, Solution) else solution.normal
+        unresolved: list[str] = []
+        threads = {"threads": arguments["threads"]}
+        values = evaluated(solution, outputs, threads | stress, unresolved)
+        kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
+        record = {
+            "values": values,
+            "warnings": normal.report.warnings + unresolved,
+            "kinds": kinds + ["unresolved stress"] * len(unresolved),
+        }
+        rolling = not isinstance(solution, Solution) and rolls(solution)
+        marks = {"line": normal.report.grid.is_line, "rolls": rolling}
+        return record | {name: True for name, holds in marks.items() if holds}
+    except Exception as error:  # whatever it is, the other cases go on
+        return {"error": _reason(error)}
+
+
+def _solution(arguments: dict[str, Any]) -> Solution | FrictionSolution:
+    """Return the solution of a case: with friction where it has any, and the last of a history."""
+    own = set(arguments) - ARGUMENTS
+    if not own:
+        return solve(**arguments)
+    solved = slide(**arguments) if own <= SLIDE else roll(**arguments)
+    found: FrictionSolution = solved[-1] if isinstance(solved, list) else solved
+    return found
+
+
+def _reason(error: Exception) -> str:
+    """Return an error as a text that every file can hold."""
+    text = f"{type(error).__name__}: {error}".replace("\0", "\\0")
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep nacre's warnings off the screen; the Dataset has them."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=core.NacreWarning)
+        yield

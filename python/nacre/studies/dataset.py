@@ -1,0 +1,132 @@
+"""Datasets of studies: the parameters of each case, and the results of all."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import nacre._core as core
+from nacre._tools.units import symbol, system
+from nacre.results import quantities
+from nacre.results.outputs import AXES, ERROR, Output, errors
+from nacre.studies.journal import Record
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
+    """Return the coordinates of a study, and the parameters of each of its cases in order."""
+    import xarray
+
+    coordinates: dict[str, Any] = {}
+    values: dict[str, list[Any]] = {}
+    places: list[xarray.DataArray] = []
+    for name, given in parameters.items():
+        if isinstance(given, xarray.DataArray):
+            values[name] = [item.item() for item in given.values.ravel()]
+            dims, shape = given.dims, given.shape
+            coordinates |= {str(key): coord for key, coord in given.coords.items()}
+            coordinates[name] = (dims, given.values)
+        else:
+            if isinstance(given, str) or not isinstance(given, Iterable):
+                raise TypeError(f"{name} must be a sequence of values, got {given!r}")
+            labels: list[Any]
+            if isinstance(given, Mapping):
+                labels, values[name] = [str(label) for label in given], list(given.values())
+            else:
+                values[name] = [v.item() if isinstance(v, np.generic) else v for v in given]
+                labels = values[name]
+                kinds = {type(v) for v in labels}
+                if not (kinds <= {int, float} or kinds in ({bool}, {str})):
+                    labels = [str(v) if isinstance(v, str) else repr(v) for v in labels]
+            dims, shape = (name,), (len(labels),)
+            coordinates[name] = ((name,), np.array(labels))
+        if not values[name]:
+            raise ValueError(f"{name} must have at least one value, got none")
+        places.append(xarray.DataArray(np.arange(len(values[name])).reshape(shape), dims=dims))
+    grids = xarray.broadcast(*places)
+    ranks = [grid.values.ravel() for grid in grids]
+    count = ranks[0].size if ranks else 1
+    points = [
+        {name: values[name][rank[k]] for name, rank in zip(values, ranks, strict=True)}
+        for k in range(count)
+    ]
+    frame = (
+        grids[0].copy(data=np.arange(count).reshape(grids[0].shape))
+        if grids
+        else xarray.DataArray(0)
+    )
+    dataset = frame.to_dataset(name="case").assign_coords(coordinates)
+    return dataset, points
+
+
+def assembled(
+    coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
+) -> xarray.Dataset:
+    """Return the Dataset of all cases."""
+    dims, shape = coordinates["case"].dims, coordinates["case"].shape
+    dataset = coordinates.drop_vars("case")
+    kinds = {
+        kind: any(record.get(kind) for record in records) for kind in ("line", "rolls", "indents")
+    }
+    units = quantities.units(**kinds)
+    for name, output in outputs.items():
+        arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
+        found = [a.shape for a in arrays if a is not None]
+        rank = max((len(s) for s in found), default=0)
+        inner = tuple(max(s[k] if k < len(s) else 1 for s in found) for k in range(rank))
+        # Arrays that are shorter than others end in NaN, like cases that failed.
+        data = np.full((len(records), *inner), np.nan)
+        for row, array in enumerate(arrays):
+            if array is not None:
+                place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
+                data[place] = array
+        extra_dims = ("axis",) if output in AXES else tuple(f"{name}_{k}" for k in range(rank))
+        if output in AXES:
+            dataset = dataset.assign_coords(axis=["x", "y"])
+            if rank == 0:  # every case failed
+                data = np.full((len(records), 2), np.nan)
+                inner = (2,)
+        dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
+        if isinstance(output, str) and output in units:
+            dataset[name].attrs["units"] = symbol(units[output])
+    taken = {*outputs, *map(str, dataset.coords)}
+    for name, quantity in ({} if kinds["indents"] else errors(outputs, taken)).items():
+        numbers = [r.get("values", {}).get(name, np.nan) for r in records]
+        dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
+        words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
+        dataset[name].attrs = {"units": symbol(units[quantity]), "long_name": words}
+    for name, texts in {
+        "error": [r.get("error", "") for r in records],
+        "warnings": ["\n".join(r.get("warnings", [])) for r in records],
+    }.items():
+        dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
+    dataset.attrs = {
+        "title": "study of coated contacts",
+        "source": f"nacre {core.__version__}",
+        "unit_system": system().name,
+    }
+    return dataset
+
+
+def counted(records: Sequence[Record]) -> list[str]:
+    """Return a line on the cases that failed and a line on the cases with warnings, by kind."""
+    lines = []
+    if failed := sum("error" in record for record in records):
+        lines.append(f"{failed} of {len(records)} cases failed: see error in the Dataset")
+    texts = [record["warnings"] for record in records if record.get("warnings")]
+    if texts:
+        kinds = Counter(
+            kind
+            for record in records
+            for kind in dict.fromkeys(record["kinds"])
+            if record.get("warnings")
+        )
+        said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
+        total = f"{len(texts)} of {len(records)} cases have warnings"
+        lines.append(f"{total}: {said}; see warnings in the Dataset")
+    return lines

@@ -1,0 +1,140 @@
+"""Finished cases of a study, one line each, on the disk before the next one begins.
+
+The first line names the version that began the file and its format. Each other line is a checksum
+and a record as JSON.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import sys
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+from nacre._core import __version__
+from nacre.results.values import FORMAT, check_format
+
+Record = dict[str, Any]
+
+HEAD = f"nacre {__version__}, journal of format {FORMAT}\n".encode()
+
+
+class Journal:
+    """Records by key, kept in a file that only grows; without a path they are in memory only.
+
+    A record is on the disk when `add` returns; one that the disk has no room for leaves the file
+    as it was. A line that a kill cut short is dropped when the file is opened again. One process
+    writes at a time; a second one is refused.
+    """
+
+    def __init__(self, path: Path | None) -> None:
+        self.path = path
+        self.records: dict[str, Record] = {}
+        self._file: IO[bytes] | None = None
+
+    def __enter__(self) -> Self:
+        """Open the file, and read what it holds."""
+        if self.path is not None:
+            if self.path.exists() and not self.path.is_file():
+                raise ValueError(f"{str(self.path)!r} is no journal of a study: it is not a file")
+            self._file = self.path.open("a+b", buffering=0)
+            try:
+                _lock(self._file)
+                self._read(self._file)
+            except BaseException:
+                self._file.close()
+                raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+
+    def add(self, record: Record) -> None:
+        """Keep a record by its ``key``; it replaces an earlier one with the same key."""
+        if self._file is not None:
+            text = json.dumps(record).encode()
+            _append(self._file, _checksum(text) + b" " + text + b"\n")
+        self.records[record["key"]] = record
+
+    def _read(self, file: IO[bytes]) -> None:
+        """Read all records, drop what a kill cut short, and begin a new file."""
+        file.seek(0)
+        end = 0
+        with open(file.fileno(), "rb", closefd=False) as lines:
+            for number, line in enumerate(lines, start=1):
+                cut = not line.endswith(b"\n")
+                if cut and (number > 1 or HEAD.startswith(line)):
+                    break
+                try:
+                    if number == 1:
+                        _check_head(line)
+                    else:
+                        record = _record(line.removesuffix(b"\n"))
+                        self.records[record["key"]] = record
+                except ValueError as error:
+                    message = f"{str(self.path)!r} is no journal of a study: line {number}"
+                    raise ValueError(f"{message}: {error}") from error
+                end += len(line)
+        file.truncate(end)
+        if end == 0:
+            _append(file, HEAD)
+
+
+def _check_head(line: bytes) -> None:
+    found = re.fullmatch(r"nacre (\S+), journal of format (\d+)\n", line.decode("latin-1"))
+    if found is None:
+        raise ValueError("it is not the first line that nacre writes")
+    check_format(int(found[2]), found[1], "it")
+
+
+def _record(line: bytes) -> Record:
+    checksum, _, text = line.partition(b" ")
+    if checksum != _checksum(text):
+        raise ValueError("it was changed after nacre wrote it")
+    record: Record = json.loads(text)
+    return record
+
+
+def _checksum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()
+
+
+def _append(file: IO[bytes], line: bytes) -> None:
+    """Write a line to the disk, whole or not at all."""
+    end = os.fstat(file.fileno()).st_size
+    try:
+        while line:
+            line = line[file.write(line) :]
+        os.fsync(file.fileno())
+    except BaseException:
+        with suppress(OSError):
+            file.truncate(end)
+        raise
+
+
+def _lock(file: IO[bytes]) -> None:
+    """Lock the file for this process until it is closed; children do not inherit the lock."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            file.seek(1 << 40)  # beyond what is read and written
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise BlockingIOError(f"{file.name!r}: another process is running this study") from error

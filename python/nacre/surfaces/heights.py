@@ -1,0 +1,671 @@
+"""Heights in plain files: NumPy arrays, matrices as text, and points as text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of, unit_of
+
+Array = npt.NDArray[np.float64]
+
+METRES = {
+    "m": 1.0,
+    "mm": 1e-3,
+    "µm": 1e-6,
+    "um": 1e-6,
+    "nm": 1e-9,
+    "pm": 1e-12,
+    "Å": 1e-10,
+    "A": 1e-10,
+    "cm": 1e-2,
+}
+NUMBER = re.compile(
+    r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|[+-]?nan", re.IGNORECASE
+)
+LEAST_MEASURED = 0.5
+"""Least share of points that must be measured; below it most of the surface would be a guess."""
+
+
+COUNTS = (
+    re.compile(
+        r"(number of )?points( (per|in) (a )?(trace|line|profile))?|horizontal"
+        r"|(number of |n ?)?(columns|cols)|nx|(pixels|points) x|x[- ]?(pixels|points)"
+    ),
+    re.compile(
+        r"(number of )?(traces|lines|profiles|scans)|vertical|(number of |n ?)?rows"
+        r"|ny|(pixels|points) y|y[- ]?(pixels|points)"
+    ),
+)
+"""Names of the numbers of points along a line of the file, and of lines."""
+UNIT = re.compile(r"((z|height|value)[- ]?)?units?( z| of heights?)?")
+"""Names of the unit of the heights."""
+SPACING = re.compile(
+    r"(xy|x/y|x|y|lateral)?[- ]?"
+    r"(?:calibration|pixel size|pixel|spacing|pitch|step|sampling|resolution|interval)"
+    r"(?: (xy|x/y|x|y))?"
+)
+"""Names of the distance between points."""
+AXES = (
+    frozenset({"x", "lateral", "position", "distance"}),
+    frozenset({"y"}),
+    frozenset({"z", "height", "heights", "h", "topography", "elevation"}),
+)
+"""First words of headings of x, y and z."""
+NUMBERED = frozenset("|i|id|index|line|n|no|nr|number|point|profile|row|scan|trace".split("|"))
+"""Headings of a column that counts."""
+SENTINELS = (
+    *(-25.4, -25400, -25400000, 2147483640, 2147483647, -2147483648, 32767, -32767, -32768),
+    *(9999, -9999, 99999, -99999, 999999, -999999, 1e30, -1e30, 1e37, -1e37, 1e38, -1e38),
+)
+"""Numbers that stand for what was not measured, where they are far from all others."""
+OFF, LEAST_JITTERED = 0.05, 12
+"""Largest distance of a point from its place on the grid, in steps, and the fewest points of a grid
+that is recognised although its points are off."""
+SAMPLE = 1000
+"""Lines from which the separator is found, spread evenly."""
+
+
+class Heights(NamedTuple):
+    """Heights as a file holds them."""
+
+    heights: Array
+    """Heights (nx, ny); NaN where nothing was measured."""
+    spacing: tuple[float, float] | None
+    """Distances between the points, in the unit of the file."""
+    unit: str | None
+    """Unit that the file names."""
+    is_metric: bool = True
+    """Whether the numbers are metres where no unit is named."""
+    named: tuple[str, ...] = ()
+    """Units of columns, in which the numbers are no more."""
+    note: str = ""
+    """What a message adds to the name of the file."""
+
+
+def npy(path: Path) -> Heights:
+    """Return the matrix of a file of NumPy's."""
+    try:
+        # The map of a file is no larger than the file; to read would first make room.
+        heights = np.lib.format.open_memmap(path, mode="r")
+    except OSError:
+        raise
+    except Exception as error:  # a damaged head is read as Python
+        raise ValueError(f"{str(path)!r} must hold an array of NumPy's: {error}") from error
+    if heights.ndim != 2 or heights.dtype.kind not in "biuf":
+        raise ValueError(
+            f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape "
+            f"{heights.shape}"
+        )
+    values, name = heights.astype(np.float64), str(path)
+    if (columns := _coordinates([], values)) is not None:
+        points, steps = _grid(path, values[:, _three(name, columns)])
+        return Heights(points, steps, None, False)
+    return Heights(_matrix(name, [], values, "array"), None, None)
+
+
+def text(path: Path, channel: str | int | None = None) -> Heights:
+    """Return the heights of a table in a text file: points x, y, z on a grid, or a matrix.
+
+    A matrix has one line for each x. Above it may stand ``# unit: um`` and ``# spacing: dx dy``, or
+    what instruments write; those write one line for each y. A profile, places beside heights, and
+    counters that nothing tells from heights are refused, whatever the ending.
+    """
+    found = Text.of(path)
+    table = found.chosen(channel)
+    return found.points(table) or found.matrix(table)
+
+
+@dataclass
+class Table:
+    """Lines of numbers that follow each other."""
+
+    rows: list[list[float]]
+    lines: list[int]
+    """Line of each row in the file, from 1."""
+    title: str = ""
+    """The line above, but for headings of columns."""
+    headings: list[Column] = field(default_factory=list)
+    """Names and units of the columns; empty where the file has none."""
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.rows[0])
+
+
+@dataclass
+class Text:
+    """A text file: what it says in names and values, and its tables."""
+
+    path: Path
+    comments: dict[str, str]
+    """Comments ``# name: value``, names in small letters."""
+    head: dict[str, list[str]]
+    """Lines of a name and values, names in small letters."""
+    above: list[tuple[int, str]]
+    """Comments and lines that are no rows, by their numbers."""
+    tables: list[Table]
+    has_decimal_commas: bool
+
+    @classmethod
+    def of(cls, path: Path) -> Text:
+        """Read a file; a line of numbers that is damaged is an error."""
+        comments, remarks, lines = _content(path)
+        mark = _separator([line for _, line in lines])
+        found = cls(path, comments, {}, remarks, [], False)
+        table: Table | None = None
+        torn: dict[int, tuple[int, int, int]] = {}
+        near: list[str] = []
+        points = False
+        for number, line in lines:
+            row, fields = _row(line, mark)
+            if row is None or (table is None and np.isnan(row).all()):
+                damaged = table is not None and len(fields) == table.width and line[0] not in "#%"
+                if damaged and any(map(_is_value, fields)):
+                    wrong = next(text for text in fields if _number(text) is None)
+                    raise ValueError(
+                        f"{str(path)!r} must hold numbers, line {number} has {wrong[:60]!r}"
+                    )
+                table = None
+                near.append(line)
+                found.above.append((number, line))
+                found._say(line, mark)
+                continue
+            if mark != ",":
+                found.has_decimal_commas |= "," in line
+                points = points or "." in line
+                if found.has_decimal_commas and points:
+                    raise ValueError(
+                        f"{str(path)!r} must have decimal commas or decimal points, line {number} "
+                        f"brings both"
+                    )
+            if table is None or len(row) != table.width:
+                if table is not None:
+                    torn[len(found.tables)] = table.lines[0], table.width, number
+                table = Table([], [])
+                if near and (top := _numbers_beside(near[-1], mark, len(row))) is not None:
+                    if len(top) < len(row) - 1:
+                        raise ValueError(
+                            f"{str(path)!r} must hold numbers, the line above line {number} has "
+                            f"{near[-1][:60]!r}"
+                        )
+                    table.rows.append([np.nan, *top])  # places along a line, and a word beside
+                    table.lines.append(found.above.pop()[0])
+                    near.pop()
+                table.headings, table.title = _headings(near, mark, len(row))
+                near = []
+                found.tables.append(table)
+            table.rows.append(row)
+            table.lines.append(number)
+        found._check(torn, lines, mark)
+        return found
+
+    def _say(self, line: str, mark: str | None) -> None:
+        """Keep what a line above a table says: a name, values and units."""
+        fields = fields_of(line, mark) if mark else [line]
+        if not any(fields[1:]):
+            fields = re.split(r"\s*[:=]\s*|\t|\s{2,}", " ".join(fields).strip(), maxsplit=1)
+        if len(fields) == 1 and (match := NAMED_NUMBER.fullmatch(fields[0])):
+            fields = [match[1], match[2]]
+        name, values = fields[0].strip(" :=").lower(), " ".join(fields[1:]).split()
+        if name and values:
+            self.head.setdefault(name, [value.replace(",", ".") for value in values])
+
+    def _check(
+        self, torn: dict[int, tuple[int, int, int]], lines: list[tuple[int, str]], mark: str | None
+    ) -> None:
+        """Refuse lines of different width, but for counts above a matrix; drop what is no table."""
+        for place, (first, width, number) in torn.items():
+            before, table = self.tables[place - 1], self.tables[place]
+            sizes = sorted((len(table.rows), table.width))
+            if len(before.rows) > 1 or sorted(before.rows[0][:2]) != sizes:
+                message = f"{width} numbers in each line, line {number} has {table.width}"
+                raise ValueError(
+                    f"{str(self.path)!r} must have {message} (line {first} is the first)"
+                )
+        largest = max(self.tables, key=lambda table: len(table.rows) * table.width, default=None)
+        self.tables = [table for table in self.tables if len(table.rows) > 1 < table.width] or (
+            [largest] if largest else []
+        )
+        if not self.tables:
+            for number, fields in ((number, _row(line, mark)[1]) for number, line in lines):
+                wrong = [text for text in fields if _number(text) is None]
+                if 0 < 2 * len(wrong) < len(fields):
+                    raise ValueError(
+                        f"{str(self.path)!r} must hold numbers, line {number} has {wrong[0][:60]!r}"
+                    )
+            raise ValueError(f"{str(self.path)!r} must hold numbers, got none")
+        texts = dict(lines)
+        for table in self.tables:
+            # A mark at the end of every line separates nothing.
+            if mark and table.width > 1 and all(texts[n].endswith(mark) for n in table.lines):
+                table.rows = [row[:-1] for row in table.rows]
+                table.headings = table.headings[: table.width]
+
+    def chosen(self, channel: str | int | None) -> Table:
+        """Return the table that a channel names, or the only one that the head describes."""
+        if len(self.tables) == 1:
+            if channel is not None:
+                ending = self.path.suffix
+                raise ValueError(f"channel must be left out: {ending} has none, got {channel!r}")
+            return self.tables[0]
+        if isinstance(channel, int) and 0 <= channel < len(self.tables):
+            return self.tables[channel]
+        if isinstance(channel, str):
+            hits = [table for table in self.tables if channel.lower() in table.title.lower()]
+            if len(hits) == 1:
+                return hits[0]
+        counts = self.counts()
+        first = self.tables[0]
+        if channel is None and counts and _fits(first, counts) is not None:
+            return first
+        listed = ", ".join(
+            f"{k} ({table.title[:60]!r}, {len(table.rows)} lines of {table.width} numbers from "
+            f"line {table.lines[0]})"
+            for k, table in enumerate(self.tables)
+        )
+        requirement = "given" if channel is None else f"one of these, got {channel!r}"
+        raise ValueError(
+            f"channel must be {requirement}: {str(self.path)!r} has {len(self.tables)} tables, "
+            f"{listed}"
+        )
+
+    def counts(self) -> tuple[int, int] | None:
+        """Return the numbers of points along x and y that the head gives."""
+        found = []
+        for known in COUNTS:
+            said = [values[0] for name, values in self.head.items() if known.fullmatch(name)]
+            said += [value for name, value in self.comments.items() if known.fullmatch(name)]
+            numbers = {int(float(text)) for text in said if NUMBER.fullmatch(text)}
+            found.append(numbers.pop() if len(numbers) == 1 else 0)
+        return (found[0], found[1]) if all(found) else None
+
+    def points(self, table: Table) -> Heights | None:
+        """Return heights of points x, y, z on a grid; None where these are no points."""
+        name, values = str(self.path), np.array(table.rows)
+        columns = _coordinates(table.headings, values)
+        if columns is None:
+            if self.path.suffix.lower() != ".xyz":
+                return None
+            if table.width != 3:
+                _refuse_profile(name, table.headings, values)
+                raise ValueError(f"{name!r} must have three columns x, y, z, got {table.width}")
+            columns = (0, 1, 2)
+        columns = _three(name, columns)
+        heights, steps = _grid(self.path, values[:, columns])
+        units = [table.headings[k].unit for k in columns] if table.headings else []
+        units = units or [
+            self.comments.get(f"{of} units") for of in ("lateral", "lateral", "value")
+        ]
+        x, y, z = (metres(unit or "") for unit in units)
+        if x and y and z:
+            named = tuple(str(unit) for unit in units)
+            steps = steps[0] * (x / z), steps[1] * (y / z)
+            return Heights(heights, steps, units[2], False, named)
+        return Heights(heights, steps, self.unit(), False)
+
+    def matrix(self, table: Table) -> Heights:
+        """Return a matrix of heights, as what it cannot be is refused."""
+        name, values, counts = str(self.path), np.array(table.rows), self.counts()
+        where = f"table from line {table.lines[0]}"
+        is_numbered = counts is not None and _fits(table, counts) == 1
+        if is_numbered and (np.diff(values[:, 0]) == 1).all():
+            values = values[:, 1:]
+        else:
+            values = _matrix(name, table.headings, values, where)
+        if counts is not None and values.shape not in (counts, counts[::-1]):
+            raise ValueError(
+                f"{name!r} says that it has {counts[0]} x {counts[1]} points, but its {where} has "
+                f"{values.shape[0]} lines of {values.shape[1]} numbers"
+            )
+        spacing = self.spacing()
+        is_image = self.path.suffix.lower() != ".csv" or (
+            any(pattern.fullmatch(said) for said in self.head for pattern in COUNTS)
+            or (spacing is not None and "spacing" not in self.comments)
+        )
+        if is_image and counts is not None:
+            is_image = values.shape == counts[::-1]
+        note = f", whose table begins at line {table.lines[0]}," if self.head else ""
+        return Heights(values.T if is_image else values, spacing, self.unit(), note=note)
+
+    def plain(self) -> str:
+        """Return the text with blanks between numbers, decimal points, and heads as they were."""
+        lines = {
+            number: re.sub(r"(\d),(\d)", r"\1.\2", line) if self.has_decimal_commas else line
+            for number, line in self.above
+        }
+        for table in self.tables:
+            for number, row in zip(table.lines, table.rows, strict=True):
+                lines[number] = " ".join(map(repr, row))
+        return "\n".join(lines[number] for number in sorted(lines)) + "\n"
+
+    def unit(self) -> str | None:
+        """Return the unit of the heights that the file names."""
+        said = [self.comments.get("unit", "")]
+        said += [values[-1] for name, values in self.head.items() if UNIT.fullmatch(name)]
+        units = [unit.strip("()[] ").replace("μ", "µ") for unit in said if unit]
+        if not units:
+            return None
+        if metres(units[0]) is None:
+            raise ValueError(
+                f"{str(self.path)!r} must have one of the units {', '.join(METRES)}, got "
+                f"{units[0][:60]!r}"
+            )
+        return units[0]
+
+    def spacing(self) -> tuple[float, float] | None:
+        """Return the distances between points that the file gives, in the unit of the heights."""
+        if "spacing" in self.comments:
+            text = self.comments["spacing"]
+            # "0,5 0,25" has decimal commas; in "0.5, 0.25" the comma separates.
+            fields = text.split() if _has_decimal_commas([text]) else re.split(r"[,;\s]+", text)
+            numbers = [_number(field.replace(",", ".")) for field in fields if field]
+            if len(numbers) not in (1, 2) or not all(
+                n is not None and 0 < n < np.inf for n in numbers
+            ):
+                raise ValueError(
+                    f"{str(self.path)!r} must have one or two numbers above 0 as spacing, got "
+                    f"{text[:60]!r}"
+                )
+            return numbers[0] or 0.0, numbers[-1] or 0.0
+        found = []
+        heights = metres(self.unit() or "m") or 1.0
+        for axis in "xy":
+            for name, values in self.head.items():
+                column = column_of(name)
+                match, number = SPACING.fullmatch(column.name), _number(values[0])
+                unit = metres(values[1] if len(values) > 1 else column.unit or "")
+                which = (match[1] or match[2] or "xy") if match else ""
+                if number and unit and (axis in which or which == "lateral"):
+                    found.append(number * unit / heights)
+                    break
+        return (found[0], found[1]) if len(found) == 2 else None
+
+
+def metres(unit: str) -> float | None:
+    """Return the length of a unit [m], None where it is no length."""
+    known = unit_of(unit)
+    return METRES.get(unit) or (known[1] if known and known[0] == "m" else None)
+
+
+def without_sentinels(heights: Array) -> Array:
+    """Return heights with NaN for numbers such as -25400 that are far from all others."""
+    measured = np.isfinite(heights)
+    known = measured & np.isin(heights, SENTINELS)
+    rest = heights[measured & ~known]
+    if not known.any() or rest.size < LEAST_MEASURED * heights.size:
+        return heights
+    away = np.maximum(rest.min() - heights, heights - rest.max())
+    return np.where(known & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
+
+
+def _fits(table: Table, counts: tuple[int, int]) -> int | None:
+    """Return how many columns a table has more than its head says; None where it does not fit."""
+    for shape in (counts, counts[::-1]):
+        if len(table.rows) == shape[0] and table.width - shape[1] in (0, 1):
+            return table.width - shape[1]
+    return None
+
+
+def first_words(headings: Sequence[Column]) -> list[str]:
+    """Return the first word of each heading, in small letters."""
+    return [re.split(r"[\s_:.-]", column.name.lower().strip())[0] for column in headings]
+
+
+def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] | None:
+    """Return the columns of x, y and z, or only of x and y where that of z is not known."""
+    width = values.shape[1]
+    if width < 3:
+        return None
+    names = first_words(headings)
+    known = [[k for k, name in enumerate(names) if name in words] for words in AXES]
+    if all(len(hits) == 1 for hits in known):
+        return tuple(hits[0] for hits in known)
+    for pair in ((0, 1), (1, 2)):
+        if _are_places(values[:, pair]):
+            rest = [k for k in range(width) if k not in pair]
+            rest = [k for k in rest if not (k == 0 and is_counter(values[:, 0]))]
+            return (*pair, *rest) if len(rest) == 1 else pair
+    return None
+
+
+def _three(name: str, columns: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the columns of x, y and z, all of which must be known."""
+    if len(columns) != 3:
+        raise ValueError(
+            f"{name!r} holds points, not a matrix: columns {columns[0]} and {columns[1]} are "
+            f"places on a grid; name the columns x, y and z in the line above, or leave those alone"
+        )
+    return columns
+
+
+def _are_places(pairs: Array) -> bool:
+    """Return whether pairs of numbers are the places of a grid, most of which are taken once."""
+    if len(pairs) < 4 or not np.isfinite(pairs).all():
+        return False
+    if np.unique(pairs[:, 0] + 1j * pairs[:, 1]).size < len(pairs):
+        return False
+    counts = [len(_distinct(pairs[:, axis])) for axis in (0, 1)]
+    return min(counts) > 1 and LEAST_MEASURED * counts[0] * counts[1] <= len(pairs)
+
+
+def _distinct(values: Array) -> Array:
+    """Return coordinates in order, once each but for rounding or the error of a stage."""
+    found = np.unique(values)
+    gaps = np.diff(found)
+    same = found[np.insert(gaps > 1e-6 * (np.ptp(found) or 1.0), 0, True)]
+    if same.size <= 0.5 * values.size or values.size < LEAST_JITTERED:
+        return same
+    # Steps of a grid whose places are off by some of a step.
+    coarse = found[np.insert(gaps > 0.25 * gaps.max(), 0, True)]
+    place = (values - coarse[0]) / float(np.median(np.diff(coarse)))
+    is_tight = float(np.abs(place - np.median(place - place.round()) - place.round()).max()) <= OFF
+    return coarse if is_tight and coarse.size <= 0.5 * values.size else same
+
+
+def _grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
+    """Return heights on a grid of points in any order, and the distances between them."""
+    if not np.isfinite(points[:, :2]).all():
+        raise ValueError(f"{str(path)!r} must have finite x and y at every point")
+    places, steps = [], []
+    for axis in (0, 1):
+        values = _distinct(points[:, axis])
+        if values.size < 2:
+            raise ValueError(f"{str(path)!r} must have points at two places along each of x and y")
+        step = float(np.median(np.diff(values)))
+        place = (points[:, axis] - values[0]) / step
+        place -= np.median(place - place.round())
+        if not np.abs(place - place.round()).max() <= OFF:
+            raise ValueError(f"{str(path)!r} must have its points on a regular grid")
+        places.append(place.round().astype(int))
+        steps.append(float(np.ptp(values)) / int(places[-1].max()))
+    cells = [int(place.max()) + 1 for place in places]
+    if cells[0] * cells[1] * LEAST_MEASURED > len(points):
+        raise ValueError(
+            f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
+        )
+    heights = np.full(cells, np.nan)
+    heights[places[0], places[1]] = points[:, 2]
+    if not np.array_equal(heights[places[0], places[1]], points[:, 2], equal_nan=True):
+        raise ValueError(f"{str(path)!r} must have one height at each place, got several")
+    return heights, (steps[0], steps[1])
+
+
+def _rises_evenly(values: Array) -> bool:
+    """Return whether at least four numbers are steps of a ladder, but for rounding."""
+    if values.size < 4 or not np.isfinite(values).all():
+        return False
+    steps = np.diff(values)
+    if not steps.all():
+        return False
+    mean = float(steps.mean())
+    return bool((np.abs(steps - mean) <= 0.01 * abs(mean)).all())
+
+
+def is_counter(values: Array) -> bool:
+    """Return whether numbers count from 0 or 1."""
+    return bool(values.size > 1 and values[0] in (0, 1) and (values[1:] == values[:-1] + 1).all())
+
+
+def _is_profile(headings: Sequence[Column], values: Array) -> bool:
+    """Return whether a table has two columns or lines, one of which are places in order."""
+    words = first_words(headings)
+    if len(words) == 2 and words[0] in AXES[0] and words[1] in AXES[2]:
+        return True
+    for table in (values.T, values):
+        lines = table[1:] if len(table) == 3 and is_counter(table[0]) else table
+        if len(lines) != 2 or lines.shape[1] < 4:
+            continue
+        for line in lines:
+            steps = np.diff(line[np.isfinite(line)])
+            ordered = line.size > 4 and ((steps >= 0).all() or (steps <= 0).all())
+            if (ordered and np.count_nonzero(steps) > 0.5 * steps.size) or _rises_evenly(line):
+                return True
+    return False
+
+
+def _refuse_profile(name: str, headings: Sequence[Column], values: Array) -> None:
+    if _is_profile(headings, values):
+        raise ValueError(
+            f"{name!r} holds a profile, places beside heights, not a map: a surface must have two "
+            f"dimensions, got a line; SampledProfile.read reads it for a Roller"
+        )
+
+
+def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) -> Array:
+    """Return heights without the numbers of lines and columns; a profile or places are an error."""
+    _refuse_profile(name, headings, values)
+    corner = bool(np.isnan(values[0, 0]))
+    left, top = values[corner:, 0], values[0, corner:]
+    if corner and is_counter(top) and is_counter(left):
+        return values[1:, 1:]
+    for which, line, others in (
+        ("column", left, values[corner:, 1:].T),
+        ("line", top, values[1:, corner:]),
+    ):
+        if not _rises_evenly(line) or any(map(_rises_evenly, others)):
+            continue
+        first = headings[0].name.lower().strip("# .") if headings else None
+        if which == "column" and is_counter(line) and first in NUMBERED:
+            return values[:, 1:]
+        raise ValueError(
+            f"{name!r} holds more than heights: the first {which} of its {where} counts or gives "
+            f"places, {line[0]:g} to {line[-1]:g} in equal steps; leave it out of the file, or "
+            f"give the heights alone as an array, HeightMap(heights, spacing)"
+        )
+    return values
+
+
+def _headings(near: Sequence[str], mark: str | None, width: int) -> tuple[list[Column], str]:
+    """Return the names of columns by the lines above a table, and the title above those."""
+    if not near:
+        return [], ""
+    names = fields_of(near[-1], mark or " ")
+    units: list[str] = []
+    if len(near) > 1 and len(names) == width and all(_bare_unit(text) for text in names if text):
+        units, near = names, near[:-1]
+        names = fields_of(near[-1], mark or " ")
+    if len(names) != width or not any(names):
+        return [], near[-1]
+    columns = [column_of(text) for text in names]
+    if units:
+        columns = [one._replace(unit=_bare_unit(u)) for one, u in zip(columns, units, strict=True)]
+    return columns, near[-2] if len(near) > 1 else ""
+
+
+def _numbers_beside(line: str, mark: str | None, width: int) -> list[float] | None:
+    """Return the numbers after the first field of a line that is a row but for texts, else None.
+
+    They are none where another field than the first is a text.
+    """
+    fields = fields_of(line, mark or " ")
+    numbers = [_number(field.replace(",", ".")) for field in fields]
+    found = [number for number in numbers if number is not None and np.isfinite(number)]
+    if line[0] in "#%" or len(fields) != width or 2 * len(found) <= max(width, 3):
+        return None
+    return found if numbers[0] is None else []
+
+
+def _bare_unit(text: str) -> str | None:
+    bare = text.strip("()[]{} ")
+    return bare if unit_of(bare) else None
+
+
+def _content(
+    path: Path,
+) -> tuple[dict[str, str], list[tuple[int, str]], list[tuple[int, str]]]:
+    """Return comments ``# name: value`` by name and as numbered lines, and the other lines.
+
+    A comment that names another channel is a line: it stands between tables.
+    """
+    said: dict[str, str] = {}
+    comments: list[tuple[int, str]] = []
+    lines: list[tuple[int, str]] = []
+    for number, line in enumerate(decoded(path).replace("\u2212", "-").splitlines(), start=1):
+        stripped = line.strip(" \r\n\f\v\0\x1a")
+        if stripped.startswith(("#", "%")):
+            name, colon, value = (part.strip() for part in stripped[1:].partition(":"))
+            is_title = name.lower() == "channel" and lines
+            (lines if is_title else comments).append((number, stripped))
+            if colon:
+                said.setdefault(name.lower(), value)
+        elif stripped.strip():
+            lines.append((number, stripped))
+    return said, comments, lines
+
+
+def _row(text: str, mark: str | None) -> tuple[list[float] | None, list[str]]:
+    """Return the numbers of a line, None where it holds another text, and its fields then."""
+    if "_" not in text:
+        with suppress(ValueError):
+            usual = text if mark == "," else text.replace(",", ".")
+            return [float(field) for field in usual.split(mark)], []
+    fields = fields_of(text, mark or " ")
+    # Where commas separate, those within quotes are decimal.
+    numbers = [_number(field.replace(",", ".")) for field in fields]
+    row = [number for number in numbers if number is not None]
+    return (row if len(row) == len(fields) else None), fields
+
+
+def _separator(texts: Sequence[str]) -> str | None:
+    """Return the mark between fields by which most lines are rows; None stands for blanks."""
+    sample = texts[:: max(1, len(texts) // SAMPLE)]
+
+    def rows(mark: str | None) -> int:
+        found = (_row(text, mark)[0] for text in sample if mark is None or mark in text)
+        return sum(row is not None and len(row) > 1 for row in found)
+
+    return max((";", "\t", ",", None), key=rows)  # the first of equals
+
+
+def _has_decimal_commas(texts: Sequence[str]) -> bool:
+    """Return whether blanks separate the fields, and commas stand only within numbers."""
+    fields = [text.split() for text in texts]
+    numbers = [field for line in fields for field in line if any(map(str.isdigit, field))]
+    return (
+        all(len(line) > 1 for line in fields)
+        and any("," in field for field in numbers)
+        and all(NUMBER.fullmatch(field.replace(",", ".", 1)) is not None for field in numbers)
+    )
+
+
+NAMED_NUMBER = re.compile(r"([^\d]{1,60}?)\s+([+-]?\d[\d.,]{0,30}(?: \S{1,20})?)")
+
+
+def _is_value(field: str) -> bool:
+    return field.lower() == "nan" or NUMBER.fullmatch(field) is not None
+
+
+def _number(field: str) -> float | None:
+    """Return the number in a field, NaN for a word in `MISSING`, and None for any other text."""
+    if field.lower() in MISSING:
+        return float("nan")
+    return float(field) if NUMBER.fullmatch(field) else None

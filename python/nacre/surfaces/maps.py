@@ -1,0 +1,268 @@
+"""Measured surfaces from files, and from SurfaceTopography."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre import _core as core
+from nacre._tools.typing import AnyPath, Pair, Topography
+from nacre.surfaces import heights as _heights
+from nacre.surfaces.heights import LEAST_MEASURED, METRES, Heights, without_sentinels
+
+Array = npt.NDArray[np.float64]
+
+TRENDS = ("none", "mean", "plane", "quadratic")
+TALLEST = 10.0
+"""Largest ratio of height to side of a map; surfaces have less than 1, and a wrong unit 1e3."""
+STEEPEST = 50.0
+"""Largest median slope between neighbours along x and y; surfaces have less than 5."""
+FLATTEST, WIDEST = 1e-6, 0.5
+"""Least ratio of height to side of a map that is wider than this [m]."""
+
+
+def read_map(
+    path: AnyPath | Topography,
+    *,
+    spacing: float | Pair | None = None,
+    unit: str | None = None,
+    detrend: Literal["none", "mean", "plane", "quadratic"] = "plane",
+    channel: str | int | None = None,
+    transpose: bool = False,
+    periodic: tuple[bool, bool] = (False, False),
+) -> core.HeightMap:
+    """Read a measured surface from a file, or take one from SurfaceTopography.
+
+    Files of instruments are read by SurfaceTopography, with ``nacre-contact[surfaces]``. Missing
+    points are filled smoothly from their surroundings; a `nacre.NacreWarning` tells how many there
+    were.
+
+    Parameters
+    ----------
+    path : str, os.PathLike or topography
+        A file ``.npy`` holds a matrix of heights ``(nx, ny)``. A table in text, whatever its
+        ending, holds points of a grid, with columns x, y and z in any order, or a matrix of
+        heights, with one line for each x in a ``.csv`` and one for each y in any other and below
+        the head of an instrument. Heads, headings, units such as ``# unit: um`` and
+        ``# spacing: 0.5 0.5``, decimal commas, and numbers that stand for missing points are
+        recognised; a profile is refused. SurfaceTopography reads any other file. A topography is
+        an object of that library.
+    spacing : float or tuple of float, optional
+        Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
+    unit : str, optional
+        Unit of the numbers in the file ("nm", "um", "mm", ...). By default the unit that the file
+        names. Where it names none, numbers in ``.npy`` and ``.csv`` are metres, unless the heights
+        would span more than ten times the map; anything else needs a unit.
+    detrend : {"plane", "none", "mean", "quadratic"}, optional
+        Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
+    channel : str or int, optional
+        Channel of the instrument, or table of the text, that is read: its name or its number.
+    transpose : bool, optional
+        Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one
+        line for each y: that needs ``transpose=True``. The first line then has the smallest y. A
+        `spacing` that is given is not swapped.
+    periodic : tuple of bool, optional
+        Whether the surface repeats along x and along y.
+
+    Returns
+    -------
+    HeightMap
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be understood, its unit or spacing is not known, or less than half of it
+        was measured.
+    TypeError
+        If an argument is of the wrong kind.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.save(f"{folder}/flat.npy", np.zeros((4, 3)))
+    ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
+    (4, 3)
+    """
+    if detrend not in TRENDS:
+        raise ValueError(f"detrend must be one of {', '.join(TRENDS)}, got {detrend!r}")
+    if unit is not None and unit not in METRES:
+        raise ValueError(f"unit must be one of {', '.join(METRES)}, got {unit!r}")
+    if channel is not None and (isinstance(channel, bool) or not isinstance(channel, str | int)):
+        raise TypeError(f"channel must be a name or a number, got {channel!r}")
+    name, found = _found(path, channel)
+    heights, sides = found.heights, found.spacing
+    if transpose:
+        heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
+    factor = _metres(name, found, unit)
+    heights = heights * factor
+    given = spacing
+    if spacing is None:
+        if sides is None:
+            raise ValueError(f"spacing must be given: {name}{found.note} does not have it")
+        spacing = sides[0] * factor, sides[1] * factor
+    is_known = unit is not None or found.unit is not None
+    _check_size(name, heights, spacing, is_known, given is not None)
+    heights = _filled(name, heights)
+    try:
+        return core.HeightMap(_without_trend(heights, detrend), spacing, periodic=periodic)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from error
+
+
+def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
+    """Return a name for messages, and the heights."""
+    if not isinstance(path, str | os.PathLike):
+        if not hasattr(path, "heights"):
+            raise TypeError(f"path must be a path or a topography, got {path!r}")
+        if channel is not None:
+            raise ValueError(f"channel must be left out: a topography has none, got {channel!r}")
+        from nacre.surfaces.instruments import of_topography
+
+        return "the topography", of_topography(path)
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{str(path)!r} is not a file")
+    ending = path.suffix.lower()
+    if ending == ".npy":
+        if channel is not None:
+            raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
+        found = _heights.npy(path)
+    elif ending in (".csv", ".xyz"):
+        found = _heights.text(path, channel)
+    else:
+        from nacre.surfaces.instruments import instrument
+
+        found = instrument(path, channel)
+    return repr(str(path)), found._replace(heights=without_sentinels(found.heights))
+
+
+def _metres(name: str, found: Heights, unit: str | None) -> float:
+    """Return the length of the unit [m]."""
+    is_named = unit is not None and METRES[unit] in map(_heights.metres, found.named)
+    said = found.unit if unit is None or is_named else unit
+    if said is None and not found.is_metric:
+        sizes = f"its heights span {_span(found.heights):.4g}"
+        if found.spacing is not None:
+            nx, ny = found.heights.shape
+            dx, dy = found.spacing
+            sizes += f" and its sides {(nx - 1) * dx:.4g} x {(ny - 1) * dy:.4g}"
+        raise ValueError(f"unit must be given: {name} names none; {sizes}")
+    length = _heights.metres(said or "m")
+    if length is None:
+        raise ValueError(
+            f"unit must be given: {name} has {said!r}, which is none of {', '.join(METRES)}"
+        )
+    return length
+
+
+def _check_size(
+    name: str, heights: Array, spacing: float | tuple[float, float], is_known: bool, is_given: bool
+) -> None:
+    """Refuse heights that do not go with the sides of the map, as where a unit is wrong."""
+    try:
+        dx, dy = (float(d) for d in np.broadcast_to(np.asarray(spacing, dtype=np.float64), 2))
+    except (TypeError, ValueError):
+        return  # HeightMap refuses it
+    lx, ly, span = heights.shape[0] * dx, heights.shape[1] * dy, _span(heights)
+    side = max(lx, ly)
+    if not (side > 0 and span > 0):
+        return
+    sizes = f"heights would span {span:.4g} m on a map of {lx:.4g} m x {ly:.4g} m"
+    if not is_known and span > TALLEST * side:
+        raise ValueError(f"unit must be given: {name} names none, and in metres its {sizes}")
+    steps = [np.diff(heights, axis=0) / dx, np.diff(heights, axis=1) / dy]
+    slopes = [np.abs(step[np.isfinite(step)]) for step in steps]
+    slope = min(float(np.median(one)) if one.size else 0.0 for one in slopes)
+    is_flat = side > WIDEST and span < FLATTEST * side
+    if span > TALLEST * side or slope > STEEPEST or is_flat:
+        remedy = (
+            "check spacing=, in metres, and unit="
+            if is_given
+            else "x, y and z seem to have different units: give spacing=, in metres, and unit= of "
+            "the heights"
+        )
+        raise ValueError(f"spacing must go with the heights: in {name} {sizes}; {remedy}")
+
+
+def _span(heights: Array) -> float:
+    measured = heights[np.isfinite(heights)]
+    return float(np.ptp(measured)) if measured.size else 0.0
+
+
+def _filled(name: str, heights: Array) -> Array:
+    """Return heights whose missing points are filled harmonically, without new peaks or pits."""
+    missing = ~np.isfinite(heights)
+    count = int(missing.sum())
+    if count == 0:
+        return heights
+    measured = heights.size - count
+    if measured < LEAST_MEASURED * heights.size:
+        raise ValueError(
+            f"{name} must have at least half its points measured, got {measured} of {heights.size}"
+        )
+    warnings.warn(
+        f"{count} of {heights.size} heights are missing and were filled smoothly from around them",
+        core.NacreWarning,
+        stacklevel=4,
+    )
+    return _harmonic(heights, missing)
+
+
+def _harmonic(heights: Array, missing: npt.NDArray[np.bool_]) -> Array:
+    """Solve the discrete Laplace equation over the missing points, by conjugate gradients."""
+    scale = float(np.ptp(heights[~missing])) or 1.0
+    base = float(heights[~missing].mean())
+    known = np.where(missing, 0.0, (heights - base) / scale)
+
+    def neighbours(field: Array) -> Array:
+        total = np.zeros_like(field)
+        total[1:] += field[:-1]
+        total[:-1] += field[1:]
+        total[:, 1:] += field[:, :-1]
+        total[:, :-1] += field[:, 1:]
+        return total
+
+    degree = neighbours(np.ones_like(known))
+
+    def apply(field: Array) -> Array:
+        return np.where(missing, degree * field - neighbours(field), 0.0)
+
+    filled = np.zeros_like(known)
+    residual = np.where(missing, neighbours(known), 0.0)
+    direction, size = residual.copy(), float((residual**2).sum())
+    first = size
+    for _ in range(10 * int(missing.sum())):
+        if size <= 1e-24 * first:
+            break
+        image = apply(direction)
+        step = size / float((direction * image).sum())
+        filled += step * direction
+        residual -= step * image
+        before, size = size, float((residual**2).sum())
+        direction = residual + size / before * direction
+    return np.where(missing, base + scale * filled, heights)
+
+
+def _without_trend(heights: Array, detrend: str) -> Array:
+    """Subtract the mean, the plane or the paraboloid that fits best."""
+    if detrend == "none":
+        return heights
+    x, y = (np.linspace(-1, 1, cells) for cells in heights.shape)
+    x, y = np.broadcast_arrays(x[:, np.newaxis], y)
+    terms = [np.ones_like(x)]
+    if detrend in ("plane", "quadratic"):
+        terms += [x, y]
+    if detrend == "quadratic":
+        terms += [x**2, x * y, y**2]
+    basis = np.stack([term.ravel() for term in terms], axis=1)
+    best, *_ = np.linalg.lstsq(basis, heights.ravel())
+    return heights - (basis @ best).reshape(heights.shape)

@@ -1,0 +1,234 @@
+"""`nacre` exits with 0 only for converged solutions, and says in one line why it did not."""
+
+from __future__ import annotations
+
+import csv
+import os
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray
+
+import nacre
+import nacre.cli
+from support import Capture, Patch, command, interrupted, python, written
+
+
+def run(*arguments: object) -> tuple[int, str, str]:
+    """Run ``nacre`` in a process of its own: exit code, stdout, stderr."""
+    done = python("-m", "nacre.cli", *arguments)
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_help_names_the_commands() -> None:
+    code, out, err = run("--help")
+    assert (code, err) == (0, "")
+    assert [name for name in ("info", "indent", "solve", "sweep") if f" {name} " not in out] == []
+
+
+def test_version_is_one_line_and_info_prints_the_versions(capsys: Capture) -> None:
+    assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
+    assert command("info") == 0
+    assert nacre.__version__ in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (["solve", "FILE/below"], "Not a directory"),
+        (["info", "--bogus"], "--bogus"),
+        (["info", "extra"], "extra"),
+        (["nothing"], "nothing"),
+        ([], "command"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(
+    arguments: list[str], names: str, tmp_path: Path, capsys: Capture
+) -> None:
+    (tmp_path / "FILE").touch()
+    assert command(*(a.replace("FILE", str(tmp_path / "FILE")) for a in arguments)) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("nacre: ")
+    assert err.count("\n") == 1
+    assert names in err
+
+
+def test_bad_input_leaves_no_traceback_in_a_process() -> None:
+    code, out, err = run("info", "--threads", "0")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+
+
+@pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
+def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
+    code = f"import sys; sys.modules[{missing!r}] = None; from nacre import cli; cli.main([])"
+    done = python("-c", code)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert f"nacre-contact[{extra}]" in done.stderr
+
+
+SPHERE = """
+[shape]
+kind = "sphere"
+radius = 5e-3
+
+[body]
+substrate = { young = 210e9, poisson = 0.3 }
+
+[solve]
+load = 10
+
+[sweep]
+parameters."solve.load" = [1, 2]
+"""
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Path:
+    """Return a folder of files that are no input of any command."""
+    (tmp_path / "case.toml").write_text(SPHERE)
+    (tmp_path / "empty").write_bytes(b"")
+    (tmp_path / "text").write_text("no")
+    (tmp_path / "binary").write_bytes(bytes(range(256)) * 8)
+    (tmp_path / "nested").write_text("x = " + "[" * 100_000)
+    (tmp_path / "digits").write_text("x = " + "1" * 1_000_000)
+    (tmp_path / "folder").mkdir()
+    with (tmp_path / "huge").open("wb") as file:
+        file.truncate(1 << 34)  # 16 GB, none of them on the disk
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "fifo")
+        (tmp_path / "endless").symlink_to("/dev/zero")
+    else:
+        (tmp_path / "fifo").mkdir()
+        (tmp_path / "endless").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        *(["solve", "FILE"], ["sweep", "FILE"], ["indent", "FILE"]),
+        *(["solve", "case.toml", "--initial", "FILE"], ["sweep", "case.toml", "--store", "FILE"]),
+        ["solve", "map.toml"],
+    ],
+    ids=" ".join,
+)
+def test_a_hostile_file_is_one_line_and_exit_code_2(
+    arguments: list[str], hostile: Path, monkeypatch: Patch, capsys: Capture
+) -> None:
+    monkeypatch.chdir(hostile)
+    names = "missing empty text binary nested digits folder fifo endless huge".split()
+    for name in names:
+        file = name
+        if arguments[0] == "sweep" and "--store" in arguments:
+            if name in ("missing", "endless"):
+                continue
+            file = f"{name}.nc"
+            Path(name).rename(file)
+        if "map.toml" in arguments:
+            if name in ("missing", "huge"):  # a matrix in a file of 16 GB is read
+                continue
+            file = f"{name}.csv"
+            Path(name).rename(file)
+            shape = f'kind = "height_map"\npath = "{file}"\nspacing = 1e-6'
+            text = SPHERE.replace('kind = "sphere"\nradius = 5e-3', shape)
+            Path("map.toml").write_text(text)
+        start = time.process_time()
+        assert command(*(argument.replace("FILE", file) for argument in arguments)) == 2, name
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.startswith("nacre: ")
+        assert err.count("\n") == 1
+        assert len(err) < 1000
+        assert time.process_time() - start < 5, name  # digits of a megabyte are read once
+
+
+LONG = {
+    "loads": '[tip]\nkind = "sphere"\nradius = 5e-6\n[adhesion]\nkind = "maugis"\nwork = 0.05\n'
+    "strength = 1e7\n[indent]\nload = [" + "1e-3, " * 10_000 + "]\n",
+    "steps": '[shape]\nkind = "sphere"\nradius = 5e-3\n[solve]\nload = 10\n[slide]\n'
+    "friction = 0.2\n[[slide.steps]]\nforce = { x = 0.1 }\n[[slide.steps]]\nforce = { x = -0.1 }\n",
+}
+FILM = """
+[body]
+substrate = { young = 210e9, poisson = 0.3 }
+layers = [{ material = { young = 1e9, poisson = 0.4 }, thickness = 1e-6 }]
+"""
+WAITING = """
+import signal, sys, time
+import numpy.linalg
+import nacre.cli, nacre._tools.progress
+nacre._tools.progress.EVERY = 0.2
+asked = []
+def stop(*_):
+    asked.append(time.perf_counter())
+    raise KeyboardInterrupt
+signal.signal(signal.SIGINT, stop)
+try:
+    nacre.cli.main(sys.argv[1:])
+except SystemExit as ended:
+    print(ended.code, time.perf_counter() - asked[0] if asked else -1)
+"""
+
+
+def test_a_radius_beyond_all_contacts_is_refused(tmp_path: Path, capsys: Capture) -> None:
+    tip = '[tip]\nkind = "paraboloid"\nradius = 1e23\n[adhesion]\nkind = "jkr"\nwork = 0.05\n'
+    assert command("indent", written(tmp_path, f"{FILM}{tip}[indent]\nload = 1e-3\n")) == 2
+    assert "no minimum within the radii" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
+@pytest.mark.parametrize("name", LONG)
+def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
+    name: str, tmp_path: Path
+) -> None:
+    text = LONG[name]
+    if name == "steps":
+        head, step = text.split("[[slide.steps]]", 1)
+        text = head + ("[[slide.steps]]" + step) * 2000
+    verb = "solve" if name == "steps" else "indent"
+    path = written(tmp_path, FILM + text)
+    ended = interrupted("-u", "-c", WAITING, verb, path, stream="stderr")
+    assert ended.first.startswith("nacre: solving, 0:00:0")
+    assert ended.lines[0].startswith("130 "), ended
+    assert "Traceback" not in ended.errors
+    # A check is due each 0.2 s; the process has its libraries to unload, on a machine that may
+    # have other work.
+    assert ended.waited < 5
+
+
+@pytest.mark.slow
+def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    case = folder / "case.toml"
+    outside = tmp_path / "x.nc"
+    names = ["../x.nc", str(outside), "a/../../x.nc", "\\u0000.nc"]
+    if sys.platform != "win32":
+        (folder / "link").symlink_to(tmp_path)
+        (folder / "to.journal").symlink_to(tmp_path / "x.journal")
+        names += ["link/x.nc", "to.nc"]
+    for name in names:
+        text = SPHERE.replace("[sweep]", f'[sweep]\nstore = "{name}"')
+        case.write_text(text)
+        code, _, err = run("sweep", case)
+        assert code == 2, name
+        assert "sweep.store: " in err
+        assert err.count("\n") == 1
+        assert sorted(tmp_path.iterdir()) == [folder]
+    table = tmp_path / "x.csv"
+    assert command("sweep", case, "--store", outside, "--save", table) == 0  # the command may
+    frame = xarray.load_dataset(outside).to_dataframe()
+    with table.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["approach"]) for row in rows] == frame["approach"].tolist()
+    assert run("sweep", case, "--save", tmp_path / "x.nc")[0] == 2
+    table.unlink()
+    case.write_text(SPHERE.replace("[sweep]", '[sweep]\nstore = "below/x.nc"'))
+    (folder / "below").mkdir()
+    assert command("sweep", case) == 0
+    assert (folder / "below" / "x.nc").exists()

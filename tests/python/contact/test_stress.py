@@ -1,0 +1,370 @@
+"""Stress from Python: shapes, sections, both bodies, residual stress, summary, errors, progress."""
+
+import csv
+import os
+import pickle
+import signal
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import BALL, COATED, HARD, ROD, STEEL
+from nacre._tools.units import written
+
+GRID = nacre.Grid(shape=(41, 31), size=(4.1e-4, 3.1e-4))
+
+# Sums over a thousand cells, of numbers of the order of the peak pressure.
+ROUNDING = 1e-12
+
+
+@pytest.fixture(scope="module")
+def solution() -> nacre.Solution:
+    """Press a sphere of another material into the coated body."""
+    return nacre.solve(BALL, COATED, HARD, grid=GRID, load=5.0)
+
+
+def close(a: Any, b: Any, solution: nacre.Solution) -> bool:
+    return bool(np.allclose(a, b, rtol=0.0, atol=ROUNDING * solution.peak_pressure))
+
+
+def test_axes_that_are_numbers_are_dropped(solution: nacre.Solution) -> None:
+    depths = [0.0, 10e-6, 50e-6]
+    assert solution.stress(depths).xx.shape == (3, 41, 31)
+    assert solution.stress(10e-6).von_mises.shape == (41, 31)
+    assert solution.stress([10e-6]).max_shear.shape == (1, 41, 31)
+    assert solution.stress(depths, y=0.0).tresca.shape == (3, 41)
+    assert solution.stress(depths, x=0.0).zz.shape == (3, 31)
+    assert solution.stress(depths, x=0.0, y=0.0).principal[0].shape == (3,)
+    assert solution.stress(10e-6, x=0.0, y=0.0).xz.shape == ()
+    assert solution.stress([]).xx.shape == (0, 41, 31)
+
+
+def test_sections_are_those_of_the_planes(solution: nacre.Solution) -> None:
+    depths = np.array([0.0, 5e-6, 40e-6])
+    planes = solution.stress(depths, friction=0.2, direction=(1.0, 0.0), displacement=True)
+    along = solution.stress(
+        depths, friction=0.2, direction=(1.0, 0.0), displacement=True, y=GRID.y[12]
+    )
+    between = solution.stress(
+        depths, x=0.5 * (GRID.x[3] + GRID.x[4]), friction=0.2, direction=(1.0, 0.0)
+    )
+    for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
+        plane = getattr(planes, name)
+        assert np.array_equal(getattr(along, name), plane[:, :, 12])
+        middle = 0.5 * (plane[:, 3] + plane[:, 4])
+        assert close(getattr(between, name), middle, solution)
+    assert np.array_equal(along.uz, planes.uz[:, :, 12])
+    assert np.array_equal(along.y, [GRID.y[12]])
+
+
+def test_the_free_function_takes_pressure_as_uniform(solution: nacre.Solution) -> None:
+    # Five cells deep a solution's stresses differ by the edge alone, which it knows.
+    depths = [0.0, 5e-5]
+    field = nacre.stress(
+        COATED, GRID, solution.pressure, depths, friction=0.1, direction=(1.0, 0.0)
+    )
+    known = solution.stress(depths, friction=0.1, direction=(1.0, 0.0))
+    assert np.allclose(known.xx[1], field.xx[1], rtol=0.0, atol=1e-3 * solution.peak_pressure)
+    assert np.abs(known.xx[0] - field.xx[0]).max() > 1e-3 * solution.peak_pressure
+    assert np.array_equal(known.zz[0], -solution.pressure)
+    assert close(known.zz[0], field.zz[0], solution)
+    assert np.array_equal(-field.zz[0].round(-1), solution.pressure.round(-1))
+    assert field.body == COATED
+    assert field.friction == (0.1, 0.0)
+
+
+def test_displacements_of_both_surfaces_are_that_of_the_solution(solution: nacre.Solution) -> None:
+    body = solution.stress(0.0, displacement=True)
+    counterbody = solution.stress(0.0, displacement=True, body="counterbody")
+    assert counterbody.body == nacre.HalfSpace(HARD)
+    total = body.uz + counterbody.uz
+    # Influence coefficients keep 1e-9, those of stress 1e-9 of the largest.
+    assert np.allclose(total, solution.displacement, rtol=3e-9)
+    with pytest.raises(AttributeError, match=r"^displacements were not evaluated"):
+        _ = solution.stress(0.0).uz
+
+
+NARROW = nacre.Grid((41, 64), (4.1e-4, 2e-4))
+
+
+def test_friction_acts_along_the_rolling_direction(tmp_path: Path) -> None:
+    roller = nacre.Roller(5e-3, flat_length=1e-4, crown_radius=0.01)
+    solution = nacre.solve(roller, COATED, HARD, grid=NARROW, load=5.0)
+    assert roller.rolling_direction == solution.report.rolling_direction == (0.0, 1.0)
+    field = solution.stress(0.0, friction=0.3)
+    assert field.friction == (0.0, 0.3)
+    assert solution.stress(0.0, friction=0.3, body="counterbody").friction == (0.0, -0.3)
+    # Files and pickles keep it.
+    again = nacre.load(solution.save(tmp_path / "roller.nc"))
+    assert again.stress(0.0, friction=0.3) == field
+    assert pickle.loads(pickle.dumps(solution)).report.rolling_direction == (0.0, 1.0)
+
+
+def test_friction_is_asked_for_its_direction(solution: nacre.Solution) -> None:
+    message = r"^direction must be given where friction is above 0: only rollers, cylinders and li"
+    plan = solution.stress_plan()
+    for call in (solution.stress, plan.stress):
+        with pytest.raises(ValueError, match=message):
+            call(0.0, friction=0.1)
+    with pytest.raises(ValueError, match=message):
+        solution.stress_summary(friction=0.1)
+    with pytest.raises(ValueError, match=message):
+        nacre.stress(COATED, GRID, solution.pressure, 0.0, friction=0.1)
+    assert solution.report.rolling_direction is None
+    # A report of an earlier version does not know it, and reads as one without.
+    roller = nacre.solve(nacre.Roller(5e-3, 1e-4, 0.01), COATED, grid=NARROW, load=5.0)
+    state = roller.to_dict()
+    del state["report"]["rolling_direction"]
+    with pytest.raises(ValueError, match=message):
+        nacre.Solution.from_dict(state).stress(0.0, friction=0.1)
+
+
+def test_a_line_contact_slides_across_its_strips_and_has_the_same_datum() -> None:
+    grid = nacre.Grid.line(64, 3e-4)
+    solution = nacre.solve(ROD, COATED, grid=grid, load=2e4)
+    field = solution.stress(0.0, friction=0.1)
+    assert field.friction == (0.0, 0.1)
+    uniform = nacre.stress(COATED, grid, solution.pressure, 0.0, friction=0.1)
+    assert uniform.friction == (0.0, 0.1)
+    surface = solution.stress(0.0, displacement=True)
+    assert np.allclose(surface.uz, solution.displacement, rtol=1e-8)
+
+
+def test_a_stress_says_how_well_its_depth_is_resolved(solution: nacre.Solution) -> None:
+    field = solution.stress([0.0, 5e-6, 40e-6, 4e-4])
+    errors = field.uncertainty
+    assert errors is not None
+    assert (np.diff(errors) < 0.0).all()
+    assert errors[0] < 0.2 * solution.peak_pressure
+    assert errors[-1] < 1e-6 * solution.peak_pressure
+    assert pickle.loads(pickle.dumps(field)).uncertainty.tolist() == errors.tolist()
+    assert nacre.stress(COATED, GRID, solution.pressure, 0.0).uncertainty is None
+    coating, substrate = solution.stress_summary().layers
+    assert coating.uncertainty.keys() == {"von_mises", "tension", "max_shear"}
+    value, (_, _, z) = substrate.von_mises
+    (error,) = solution.stress([z]).uncertainty  # type: ignore[misc]
+    # The same sum, in another order.
+    assert substrate.uncertainty["von_mises"] <= (1.0 + 1e-14) * error < 5e-2 * value
+
+
+def test_stresses_that_cells_do_not_resolve_are_warned_of() -> None:
+    # A soft coating of an eighth of a cell: the tension on its faces is off by as much as itself.
+    coating = nacre.Layer(nacre.Elastic(4.6e9, 0.45), 1.25e-6)
+    body = nacre.HalfSpace(STEEL, [coating])
+    solution = nacre.solve(nacre.Sphere(2e-2), body, grid=GRID, approach=1e-6)
+    with pytest.warns(nacre.NacreWarning, match=r"^the extremes in layers\[0\] are uncertain, "):
+        summary = solution.stress_summary()
+    coating_stress = summary.layers[0]
+    assert coating_stress.uncertainty["tension"] > 0.25 * coating_stress.tension[0]
+    assert coating_stress.uncertainty["von_mises"] < 0.1 * coating_stress.von_mises[0]
+    assert summary.warnings[0].endswith("due to the size of the cells: take smaller cells")
+    assert f"warning: {summary.warnings[0]}" in str(summary)
+    # A sharp edge has no pressure to reconstruct.
+    with pytest.warns(nacre.NacreWarning, match="reaches a sharp edge"):
+        punch = nacre.solve(nacre.FlatPunch(1e-4), STEEL, grid=GRID, load=5.0)
+    with pytest.warns(nacre.NacreWarning, match=r"^at depth 0e0 the stress is uncertain by "):
+        field = punch.stress([0.0, 1e-4])
+    assert len(field.warnings) == 1
+    assert punch.stress(1e-4).warnings == []
+
+
+def test_residual_stress_is_added_in_its_layer(solution: nacre.Solution) -> None:
+    depths = [10e-6, 30e-6]
+    without = solution.stress(depths)
+    both: list[Any] = [{0: -2e9, "substrate": 1e8}, [-2e9, 1e8]]
+    for residual in both:
+        field = solution.stress(depths, residual=residual)
+        for name in ("xx", "yy"):
+            added = getattr(field, name) - getattr(without, name)
+            assert np.allclose(added[0], -2e9, rtol=1e-12)
+            assert np.allclose(added[1], 1e8, rtol=1e-12)
+        assert np.array_equal(field.zz, without.zz)
+        assert np.array_equal(field.xy, without.xy)
+
+
+def test_invariants_are_those_of_the_components(solution: nacre.Solution) -> None:
+    field = solution.stress([3e-6, 30e-6], friction=0.4, direction=(1.0, 1.0), y=0.0)
+    tensor = np.array(
+        [
+            [field.xx, field.xy, field.xz],
+            [field.xy, field.yy, field.yz],
+            [field.xz, field.yz, field.zz],
+        ]
+    )
+    values = np.linalg.eigvalsh(np.moveaxis(tensor, (0, 1), (-2, -1)))[..., ::-1]
+    for k in range(3):
+        assert close(field.principal[k], values[..., k], solution)
+    assert close(field.tresca, values[..., 0] - values[..., 2], solution)
+    assert close(field.max_shear, 0.5 * field.tresca, solution)
+    deviator = values - values.mean(axis=-1, keepdims=True)
+    assert close(field.von_mises, np.sqrt(1.5 * (deviator**2).sum(axis=-1)), solution)
+    value, (x, y, z) = field.peak("tension")
+    assert value == field.principal[0].max()
+    assert field.principal[0][list(field.z).index(z), list(field.x).index(x)] == value
+    assert y == 0.0
+
+
+@pytest.mark.slow
+def test_the_summary_holds_the_extremes(solution: nacre.Solution, tmp_path: Path) -> None:
+    summary = solution.stress_summary(
+        yield_stress={"substrate": 2e9},
+        strength=[1e9, None],
+        friction=0.2,
+        direction=(1.0, 0.0),
+        residual={0: -1e9},
+    )
+    coating, substrate = summary.layers
+    (interface,) = summary.interfaces
+    depths = np.linspace(0.0, 20e-6, 41)
+    fine = solution.stress(
+        depths, side="above", friction=0.2, direction=(1.0, 0.0), residual={0: -1e9}
+    )
+    # Parabolas between depths: the second order of what is left between them.
+    assert coating.von_mises[0] == pytest.approx(fine.von_mises.max(), rel=2e-3)
+    assert coating.tension[0] == pytest.approx(fine.principal[0].max(), rel=2e-3)
+    fine = solution.stress(20e-6 + np.linspace(0.0, 150e-6, 76), friction=0.2, direction=(1.0, 0.0))
+    value, (_, _, z) = substrate.von_mises
+    assert value == pytest.approx(fine.von_mises.max(), rel=1e-3)
+    assert z == pytest.approx(fine.peak("von_mises")[1][2], abs=3e-6)
+    assert substrate.max_shear[0] == pytest.approx(fine.max_shear.max(), rel=1e-3)
+    assert substrate.yield_safety_factor == 2e9 / value
+    assert coating.yield_safety_factor is None
+    assert coating.strength_safety_factor == pytest.approx(1e9 / coating.tension[0])
+    assert substrate.strength_safety_factor is None
+    above = solution.stress(
+        20e-6, side="above", friction=0.2, direction=(1.0, 0.0), residual={0: -1e9}
+    )
+    below = solution.stress(20e-6, friction=0.2, direction=(1.0, 0.0))
+    assert interface.depth == 20e-6
+    assert interface.shear[0] == pytest.approx(np.hypot(below.xz, below.yz).max(), rel=1e-12)
+    assert interface.tension[0] == pytest.approx(below.zz.max(), rel=1e-9)
+    assert interface.compression[0] == pytest.approx(below.zz.min(), rel=1e-12)
+    jump = [getattr(below, name) - getattr(above, name) for name in ("xx", "yy", "xy")]
+    largest = abs(jump[0] + jump[1]) / 2 + np.hypot((jump[0] - jump[1]) / 2, jump[2])
+    assert interface.jump is not None
+    assert interface.jump[0] == pytest.approx(largest.max(), rel=1e-12)
+    assert nacre.load(summary.save(tmp_path / "a.nc")) == summary
+    frame = summary.to_xarray().to_dataframe().set_index(["part", "quantity"])
+    shear = frame.loc[("interfaces[0]", "shear")]
+    assert (shear.value, (shear.x, shear.y, shear.z)) == interface.shear
+    mises = frame.loc[("the substrate", "von_mises")]
+    assert (mises.value, mises.uncertainty) == (
+        substrate.von_mises[0],
+        substrate.uncertainty["von_mises"],
+    )
+    assert mises.safety_factor == substrate.yield_safety_factor
+    with summary.save(tmp_path / "a.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if line[0] != "#"))
+    assert [float(row["value"]) for row in rows] == frame.value.tolist()
+    lines = str(summary).splitlines()
+    assert max(len(line) for line in lines if not line.startswith("warning")) <= 100
+    assert [line.split("  ")[0] for line in lines if line[0] not in " w"] == [
+        "layers[0], 0 m to 20 µm",
+        "substrate",
+        "interfaces[0] at 20 µm",
+    ]
+    assert "safety factor" in lines[0]
+    (row,) = (line for line in lines if line.startswith("substrate"))
+    assert written(value, "Pa") in row
+    assert row.endswith(f"  {2e9 / value:.3g}")
+    assert summary.finished
+
+
+@pytest.mark.slow
+def test_names_of_layers_are_keys_and_are_shown() -> None:
+    hard, soft = nacre.Elastic(420e9, 0.3), nacre.Elastic(250e9, 0.3)
+    layers = [
+        nacre.Layer(hard, 2e-6, name="TiN"),
+        nacre.Layer(soft, 1e-6),
+        nacre.Layer(hard, 2e-6, name="TiN"),
+        nacre.Layer(soft, 3e-6, name="CrN"),
+    ]
+    solution = nacre.solve(BALL, nacre.HalfSpace(STEEL, layers), load=10.0)
+    assert "layers[0] TiN" in str(solution)
+    assert "layers[1]   " in str(solution)
+    # A name stands for all layers that have it.
+    named = solution.stress_summary(strength={"TiN": 1e9, "CrN": 2e9}, residual={"TiN": -1e9})
+    numbered = solution.stress_summary(
+        strength={0: 1e9, 2: 1e9, 3: 2e9}, residual={0: -1e9, 2: -1e9}
+    )
+    assert named == numbered
+    assert [layer.name for layer in named.layers] == ["TiN", None, "TiN", "CrN", None]
+    assert nacre.types.StressSummary.from_dict(named.to_dict()) == named
+    rows = [line.split("  ")[0] for line in str(named).splitlines()]
+    assert "layers[0] TiN, 0 m to 2 µm" in rows
+    assert "layers[1], 2 µm to 3 µm" in rows
+    assert "interfaces[3] below CrN at 8 µm" in rows
+    with pytest.raises(ValueError, match=r"names of layers \(TiN, TiN, CrN\), got 'DLC'"):
+        solution.stress_summary(strength={"DLC": 1.0})
+
+
+def test_fields_are_values(solution: nacre.Solution) -> None:
+    field = solution.stress(
+        [0.0, 30e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
+    )
+    assert field != solution.stress([0.0, 30e-6], y=0.0)
+    assert repr(field).startswith("<Stress: depths 2 from 0")
+    assert not field.xx.flags.writeable
+
+
+# Plans, progress and interrupts.
+
+
+@pytest.mark.parametrize("body", ["body", "counterbody"])
+def test_a_plan_gives_the_bits_of_the_solution(solution: nacre.Solution, body: Any) -> None:
+    plan = solution.stress_plan(body, threads=1)
+    report = solution.report
+    assert plan.body == (report.body if body == "body" else report.counterbody)
+    sliding: dict[str, Any] = {"friction": 0.2, "direction": (1.0, 0.0)}
+    section: dict[str, Any] = {"y": 0.0, "side": "above", "displacement": True}
+    limits: dict[str, Any] = {"yield_stress": {"substrate": 2e9}, "residual": [-1e9]}
+    for _ in range(2):
+        assert plan.stress(1e-5, **sliding) == solution.stress(1e-5, body=body, **sliding)
+        whole = solution.stress([0.0, 2e-5], body=body, **section)
+        assert plan.stress([0.0, 2e-5], **section) == whole
+        assert plan.summary(**limits) == solution.stress_summary(body=body, **limits)
+
+
+class StopError(Exception):
+    """Raised by a callback."""
+
+
+@pytest.mark.parametrize("planned", [False, True])
+def test_progress_stops_and_raises(solution: nacre.Solution, planned: bool, tmp_path: Path) -> None:
+    plan: Any = solution.stress_plan()
+    stress = plan.stress if planned else solution.stress
+    summary = plan.summary if planned else solution.stress_summary
+    parts: list[float] = []
+    stress([0.0, 1e-6, 2e-6], progress=parts.append)
+    assert parts == sorted(parts)
+    assert (parts[0], parts[-1]) == (0.0, 1.0)
+    stopped = stress([0.0, 1e-6, 2e-6], progress=lambda part: part < 0.5)
+    assert stopped.xx.shape == (1, 41, 31)
+    assert list(stopped.z) == [0.0]
+    assert not summary(progress=lambda part: part < 0.1).finished
+    nothing = summary(progress=lambda _: False)
+    assert nacre.load(nothing.save(tmp_path / "a.nc")) == nothing
+    assert nothing.to_xarray().attrs["finished"] == "False"
+    assert "# finished: False" in nothing.save(tmp_path / "a.csv").read_text()
+
+    def fail(part: float) -> None:
+        raise StopError
+
+    with pytest.raises(StopError):
+        stress([0.0, 1e-5], progress=fail)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_interrupts_a_plan(solution: nacre.Solution) -> None:
+    plan = solution.stress_plan()
+    timer = threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT))
+    start = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        plan.stress(np.linspace(0.0, 1e-3, 20_000), friction=0.3, direction=(1.0, 0.0))
+    assert time.monotonic() - start < 10.0

@@ -1,0 +1,200 @@
+"""A field of a value class is everywhere: in plain data, files, pickles, case files and paths."""
+
+import inspect
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import STEEL, quiet
+from nacre import _core as core
+from nacre.results import values
+from support import python
+
+COATING = nacre.Layer(nacre.Elastic(3e9, 0.4), 2e-6, "frictionless", "lacquer")
+PROFILE = nacre.LogarithmicProfile(1e-6, 10e-3, flat_length=2e-3, end_factor=0.9)
+MADE: dict[str, list[dict[str, Any]]] = {
+    "Elastic": [{"young": 2e11, "poisson": 0.25}],
+    "Layer": [
+        {"material": STEEL, "thickness": 1e-6, "interface": "frictionless", "name": "skin"},
+    ],
+    "HalfSpace": [{"substrate": STEEL, "layers": (COATING,), "ends": (-1e-2, 2e-2)}],
+    "Response": [{"values": None, "local": 1e-13}],
+    "Grid": [
+        {"shape": (4, 6), "size": (1.0, 2.0), "center": (0.5, 0.1), "periodic": (True, False)},
+    ],
+    "Grid.line": [{"cells": 8, "width": 2.0, "center": 0.5}],
+    "LogarithmicProfile": [
+        {"amplitude": 1e-6, "length": 10e-3, "flat_length": 2e-3, "end_factor": 0.9},
+    ],
+    "SampledProfile": [
+        {"x": (-1e-3, 0.0, 1e-3), "drop": (1e-6, 0.0, 2e-6), "smooth": False},
+        {
+            "x": (-1e-3, -5e-4, 5e-4, 1e-3),
+            "drop": (1e-6, 0.0, 0.0, 2e-6),
+            **{"corners": (5e-4,), "smoothing": 2e-4},
+        },
+    ],
+    "Sphere": [{"radius": 5e-3, "counter_radius_x": 6e-2, "counter_radius_y": 7e-2}],
+    "Paraboloid": [
+        {
+            "radius_x": 5e-3,
+            "radius_y": 6e-3,
+            "counter_radius_x": 6e-2,
+            "counter_radius_y": 7e-2,
+        }
+    ],
+    "Cylinder": [{"radius": 5e-3, "counter_radius": 6e-2}],
+    "Roller": [
+        {"radius": 5e-3, "flat_length": 8e-3, "crown_radius": 7.5, "length": 9e-3},
+        {"radius": 5e-3, "profile": PROFILE, "counter_radius": 6e-2},
+    ],
+    "FlatPunch": [{"radius": 1e-3}],
+    "HeightMap": [
+        {
+            "heights": ((0.0, 1e-6), (2e-6, 3e-6)),
+            "spacing": (1e-6, 2e-6),
+            "center": (1e-6, 0.0),
+            "periodic": (True, True),
+        }
+    ],
+    "Tip.sphere": [{"radius": 1e-6}],
+    "Tip.paraboloid": [{"radius": 1e-6}],
+    "Tip.cone": [{"slope": 0.3}],
+    "Tip.flat_punch": [{"radius": 1e-6}],
+    "Tip.power": [{"factor": 2.0, "exponent": 1.5}],
+    "Tip.rounded_cone": [{"slope": 0.3, "radius": 1e-7}],
+    "Tip.rounded_punch": [{"flat": 1e-6, "radius": 1e-7}],
+    "Tip.flat_cone": [{"flat": 1e-6, "slope": 0.3}],
+    "Tip.profile": [{"radii": (0.0, 1e-6, 2e-6), "heights": (0.0, 1e-7, 3e-7)}],
+    "Tip.area_function": [{"coefficients": (24.5, 1e-7), "depth": 1e-6}],
+    "Tip.berkovich": [{"radius": 1e-7}],
+    "Adhesion.jkr": [{"work": 0.1}],
+    "Adhesion.dmt": [{"work": 0.1}],
+    "Adhesion.maugis": [{"work": 0.1, "strength": 1e8}],
+}
+"""Arguments of each call that makes a value: all of them, and none as it is by default."""
+TABLES = {
+    "Elastic": "Material",
+    "HalfSpace": "Body",
+    "Grid.line": "Grid",
+    **{name: name for name in ("Layer", "Grid", "HeightMap")},
+    **{name: name for name in ("LogarithmicProfile", "SampledProfile")},
+}
+"""Tables of case files where the name of the class does not say them."""
+FROM_A_FILE = {("HeightMap", "heights"), ("HeightMap", "center")}
+"""Fields that a case reads from a file."""
+OTHERS = {"Tip.berkovich": "Tip.rounded_cone"}
+"""Calls whose values are those of another call."""
+SAMPLES = nacre.Response(lambda alpha: 1e-12 / alpha)
+
+PAIRS = [(name, k) for name, made in MADE.items() for k in range(len(made))]
+each = pytest.mark.parametrize(("name", "number"), PAIRS, ids=lambda part: str(part))
+
+
+def value_of(name: str, number: int) -> tuple[Any, dict[str, Any]]:
+    """Return a value, and the arguments that made it."""
+    given = MADE[name][number]
+    if name == "Response":
+        given = given | {"values": SAMPLES.values}
+    return values.CALLS[name][0](**given), given
+
+
+def decoded(data: Any) -> Any:
+    """Return a value of plain data, or the message of the error."""
+    try:
+        return values.decode(data)
+    except ValueError as error:
+        return str(error)
+
+
+def table(name: str, schema: dict[str, Any]) -> set[str]:
+    """Return the keys of a value in case files."""
+    family, _, kind = name.partition(".")
+    title = kind.title().replace("_", "") + family if family in ("Tip", "Adhesion") else ""
+    return set(schema[TABLES.get(name) or title or f"{name}Shape"]["properties"])
+
+
+@pytest.fixture(scope="module")
+def schema() -> dict[str, Any]:
+    done = python("-m", "nacre.cli", "schema", "--json")
+    found: dict[str, Any] = json.loads(done.stdout)["$defs"]
+    return found
+
+
+def test_every_argument_of_every_value_is_tried() -> None:
+    assert set(MADE) == set(values.CALLS)
+    for name, (make, fields) in values.CALLS.items():
+        assert set().union(*MADE[name]) == set(fields), name
+        defaults = inspect.signature(make).parameters
+        for given in MADE[name]:
+            for field, value in given.items():
+                default = defaults[field].default
+                assert name == "Response" or default is inspect.Parameter.empty or value != default
+
+
+@each
+def test_fields_are_in_plain_data_and_in_files(name: str, number: int) -> None:
+    value, given = value_of(name, number)
+    ((kind, data),) = values.encode(value).items()
+    assert kind == OTHERS.get(name, name)
+    for field, argument in given.items():
+        assert data[field] == values.encode(argument)
+        other = decoded({kind: {key: one for key, one in data.items() if key != field}})
+        assert other != value
+        assert not isinstance(other, str) or field in other
+    assert values.decode(json.loads(json.dumps({kind: data}))) == value
+
+
+@each
+def test_fields_are_in_pickles_and_in_the_text_of_a_value(name: str, number: int) -> None:
+    value, given = value_of(name, number)
+    again = pickle.loads(pickle.dumps(value))
+    assert again == value
+    assert values.encode(again) == values.encode(value)
+    if name not in ("Response", *OTHERS):
+        shown = given if name not in ("Layer", "HalfSpace") else list(given)[1:]
+        assert all(f"{field}=" in repr(value) for field in shown)
+
+
+@each
+def test_fields_are_keys_of_case_files(name: str, number: int, schema: dict[str, Any]) -> None:
+    if name == "Response":
+        return  # Its values are no keys.
+    for field in MADE[name][number]:
+        assert field in table(name, schema) or (name, field) in FROM_A_FILE
+
+
+@each
+def test_numbers_have_paths(name: str, number: int) -> None:
+    value, given = value_of(name, number)
+    paths = dict(core.numbers({"it": value}))
+    for field, argument in given.items():
+        leaves = argument if isinstance(argument, tuple) else (argument,)
+        if not all(type(leaf) is float for leaf in leaves) or name == "Response":
+            continue
+        for k, leaf in enumerate(leaves):
+            if not leaf:  # where profiles begin
+                continue
+            path = f"it.{field}[{k}]" if isinstance(argument, tuple) else f"it.{field}"
+            assert paths[path] == leaf
+            other = 1.01 * leaf or 1e-9
+            changed = core.with_value({"it": value}, path, other)
+            rest = dict(core.numbers(changed))
+            assert {one for one in rest if rest[one] != paths[one]} == {path}
+            assert rest[path] == other
+            assert core.at(changed, path) == other
+    assert dict(core.numbers({"it": value})) == paths
+
+
+def test_a_solution_keeps_all_fields_of_bodies_and_grid(tmp_path: Path) -> None:
+    body = nacre.HalfSpace(STEEL, [COATING], ends=(None, 1.0))
+    grid = nacre.Grid((16, 12), (4e-4, 3e-4), (1e-5, 2e-5))
+    solution = quiet(nacre.solve, nacre.Sphere(5e-3), body, grid=grid, load=1.0)
+    found = nacre.load(solution.save(tmp_path / "a.nc"))
+    assert (found.report.body, found.report.grid) == (body, grid)
+    assert np.array_equal(found.x, grid.x)

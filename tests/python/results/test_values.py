@@ -1,0 +1,274 @@
+"""Public values pickle, copy and compare, and print as the call that makes them."""
+
+import copy
+import itertools
+import json
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import BALL, STEEL
+from nacre.results import values
+from support import python
+
+DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
+COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=1e-5 / 3)])
+FLOATING = nacre.HalfSpace(
+    nacre.RIGID, layers=[nacre.Layer(DLC, 1e-6, "frictionless"), nacre.Layer(STEEL, 1e-3)]
+)
+GRID = nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4))
+SMALL = nacre.Grid(shape=(16, 12), size=(4e-4, 4.1e-4))
+THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives them
+LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
+SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
+SOLUTION = nacre.solve(BALL, COATED, load=10.0, grid=GRID)
+SLID = nacre.slide(BALL, COATED, STEEL, load=10.0, grid=GRID, friction=0.1, force=(0.3, None))
+SUMMARY = SOLUTION.stress_summary(strength={0: 1e9}, threads=1)
+
+MADE_BY_A_CALL: dict[str, Any] = {
+    "elastic": STEEL,
+    "layer": nacre.Layer(DLC, thickness=1e-5 / 3),
+    "frictionless layer": nacre.Layer(DLC, thickness=1e-5 / 3, interface="frictionless"),
+    "named layer": nacre.Layer(DLC, thickness=1e-5 / 3, name="DLC"),
+    "layer of an odd name": nacre.Layer(DLC, thickness=1e-5 / 3, name='it\'s 2\\3 "µm"'),
+    "rigid": nacre.RIGID,
+    "half-space": nacre.HalfSpace(STEEL),
+    "coated": COATED,
+    "two layers on a rigid base": FLOATING,
+    "body with two ends": nacre.HalfSpace(STEEL, ends=(-1e-2 / 3, 1e-2 / 7)),
+    "coated body with one end": nacre.HalfSpace(STEEL, COATED.layers, ends=(None, 1e-2 / 3)),
+    "grid": GRID,
+    "grid off the origin": nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4), center=(-1e-3 / 7, 0.1)),
+    "line grid": nacre.Grid.line(cells=48, width=1e-3 / 3, center=1e-4 / 7),
+    "sphere": BALL,
+    "paraboloid": nacre.Paraboloid(5e-3, 1.0),
+    "cylinder": nacre.Cylinder(5e-3),
+    "roller": nacre.Roller(5e-3, 19.13e-3, 7.5),
+    "cut roller": nacre.Roller(5e-3, 19.13e-3, 7.5, length=26e-3),
+    "logarithmic profile": LOGARITHMIC,
+    "sampled profile": SAMPLED,
+    "logarithmic roller": nacre.Roller(5e-3, profile=LOGARITHMIC),
+    "sampled roller": nacre.Roller(5e-3, profile=SAMPLED, length=18e-3),
+    "punch": nacre.FlatPunch(1e-3),
+    "ball in a groove": nacre.Sphere(
+        5e-3, counter_radius_x=-5e-3 * 1.04, counter_radius_y=1e-2 / 3
+    ),
+    "ball in a trough": nacre.Sphere(5e-3, counter_radius_y=-6e-3),
+    "barrel on a ring": nacre.Paraboloid(5e-3, 1.0, counter_radius_x=-1e-2 / 3 * 2),
+    "cylinder on a ring": nacre.Cylinder(5e-3, counter_radius=1e-1 / 3),
+    "roller in a raceway": nacre.Roller(5e-3, 19.13e-3, 7.5, counter_radius=-0.1 / 3),
+    "point contact": nacre.hertz.Point(5e-3, 1e11 / 3, 10.0),
+    "line contact": nacre.hertz.Line(5e-3, 1e11 / 3, 1e4 / 3),
+    "ellipse": nacre.hertz.Ellipse(5e-3, None, 1e11 / 3, 10.0, counter_radius_y=0.1 / 3),
+    "height map": nacre.HeightMap(THIRDS, spacing=0.1, center=(1e-6, -2e-6)),
+    "oblong height map": nacre.HeightMap(THIRDS, spacing=(1e-6, 2e-6)),
+    "shifted": BALL.shifted(1e-3 / 3, -2e-3),
+    "sum": BALL + nacre.FlatPunch(1e-3),
+    "sum of three": (BALL + nacre.FlatPunch(1e-3)) + nacre.Cylinder(5e-3),
+    "shifted sum": (BALL + nacre.FlatPunch(1e-3)).shifted(1e-3, 0.0),
+    "sum of shifted": BALL.shifted(1e-3, 0.0) + nacre.FlatPunch(1e-3).shifted(0.0, 1e-3),
+    "contact": nacre.Contact(STEEL, GRID),
+    "contact with everything": nacre.Contact(
+        COATED,
+        SMALL,
+        FLOATING,
+        coefficients=nacre.influence_coefficients(COATED, SMALL, "image", 2),
+        threads=1,
+    ),
+}
+NOT_KEPT = {"point contact", "line contact", "ellipse", "contact", "contact with everything"}
+VALUES = MADE_BY_A_CALL | {
+    "solution": SOLUTION,
+    "response": nacre.Response(lambda alpha: 1e-12 / alpha, local=1e-13),
+    "convolution": nacre.Convolution(THIRDS, threads=2),
+    "report": SOLUTION.report,
+    "stress": SOLUTION.stress(
+        [0.0, 1e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
+    ),
+    "stress plan": SOLUTION.stress_plan(threads=1),
+    "gradient": SOLUTION.gradient("located_peak"),
+    "weighted gradient": SOLUTION.vjp(np.ones((48, 50)), ["load"]),
+    "direction": SOLUTION.jvp({"load": 1.0}),
+    "friction solution": SLID,
+    "friction report": SLID.report,
+    "creep coefficients": nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
+    "stress summary": SUMMARY,
+    "layer stress": SUMMARY.layers[0],
+    "interface stress": SUMMARY.interfaces[0],
+}
+
+every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())
+
+
+def public_classes() -> set[type]:
+    public = (getattr(room, name) for room in (nacre, nacre.types) for name in room.__all__)
+    found = {c for c in public if isinstance(c, type) and not issubclass(c, BaseException)}
+    return found - {nacre.types.Shape, nacre.types.History}  # a base, and a list
+
+
+def attributes(value: object) -> dict[str, Any]:
+    names = [name for name in dir(value) if not name.startswith("_")]
+    return {name: getattr(value, name) for name in names if not callable(getattr(value, name))}
+
+
+def test_every_public_class_has_a_value_here() -> None:
+    assert public_classes() - {type(value) for value in VALUES.values()} == set()
+
+
+@every_value
+def test_pickles_and_copies_are_equal_values(value: object) -> None:
+    pickles = [pickle.dumps(value, protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+    for back in (*map(pickle.loads, pickles), copy.copy(value), copy.deepcopy(value)):
+        assert type(back) is type(value)
+        assert back == value
+        assert repr(back) == repr(value)
+    kept = attributes(pickle.loads(pickles[-1]))
+    for name, attribute in attributes(value).items():
+        np.testing.assert_equal(kept[name], attribute, err_msg=name)
+
+
+@pytest.mark.parametrize("value", MADE_BY_A_CALL.values(), ids=MADE_BY_A_CALL.keys())
+def test_repr_is_the_call_that_makes_it(value: object) -> None:
+    back = eval(repr(value), {"array": np.array} | vars(nacre) | vars(nacre.hertz))
+    assert back == value
+
+
+@pytest.mark.parametrize("name", sorted(MADE_BY_A_CALL.keys() - NOT_KEPT))
+def test_values_survive_as_plain_data(name: str) -> None:
+    data = json.loads(json.dumps(values.encode(MADE_BY_A_CALL[name])))
+    assert values.decode(data) == MADE_BY_A_CALL[name]
+
+
+def test_different_values_differ() -> None:
+    for a, b in itertools.permutations(VALUES.values(), 2):
+        assert a != b
+        assert not a == b
+
+
+@every_value
+def test_values_differ_from_other_things_and_cannot_be_changed(value: object) -> None:
+    assert value != repr(value)
+    assert value != 1.0
+    assert value != None  # noqa: E711
+    for name, attribute in attributes(value).items():
+        with pytest.raises(AttributeError):
+            setattr(value, name, attribute)
+
+
+@every_value
+def test_equal_values_have_equal_hashes_or_none(value: object) -> None:
+    try:
+        found = hash(value)
+    except TypeError:
+        return
+    assert hash(pickle.loads(pickle.dumps(value))) == found
+    with np.printoptions(precision=2):
+        assert hash(value) == found
+
+
+SIGNED_ZEROS: list[tuple[Any, Any]] = [
+    (nacre.HalfSpace(STEEL, ends=(0.0, 1.0)), nacre.HalfSpace(STEEL, ends=(-0.0, 1.0))),
+    (nacre.Elastic(1.0, 0.0), nacre.Elastic(1.0, -0.0)),
+    (nacre.Grid((2, 2), (1.0, 1.0)), nacre.Grid((2, 2), (1.0, 1.0), (-0.0, 0.0))),
+    (nacre.Grid.line(2, 1.0), nacre.Grid.line(2, 1.0, -0.0)),
+    (nacre.Roller(1.0, 0.0, 1.0), nacre.Roller(1.0, -0.0, 1.0)),
+    (nacre.LogarithmicProfile(1.0, 1.0, 0.0), nacre.LogarithmicProfile(1.0, 1.0, -0.0)),
+    (BALL.shifted(0.0, 1.0), BALL.shifted(-0.0, 1.0)),
+    (nacre.HeightMap(np.zeros((2, 2)), 1.0), nacre.HeightMap(-np.zeros((2, 2)), 1.0)),
+    (
+        nacre.HeightMap(np.zeros((2, 2)), 1.0, center=(0.0, 0.0)),
+        nacre.HeightMap(np.zeros((2, 2)), 1.0, center=(0.0, -0.0)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("zero", "minus"), SIGNED_ZEROS, ids=range(len(SIGNED_ZEROS)))
+def test_the_sign_of_zero_does_not_tell_values_apart(zero: object, minus: object) -> None:
+    assert zero == minus
+    assert hash(zero) == hash(minus)
+
+
+def test_sums_and_shifts_are_one_list() -> None:
+    punch, cylinder = nacre.FlatPunch(1e-3), nacre.Cylinder(5e-3)
+    assert BALL + (punch + cylinder) == (BALL + punch) + cylinder
+    assert hash(BALL + (punch + cylinder)) == hash((BALL + punch) + cylinder)
+    moved = (BALL.shifted(1e-3, 0.0) + punch).shifted(0.0, 2e-3)
+    assert moved == BALL.shifted(1e-3, 2e-3) + punch.shifted(0.0, 2e-3)
+    assert BALL.shifted(0.0, 0.0) == BALL
+    assert hash(BALL.shifted(0.0, 0.0)) == hash(BALL)
+    assert BALL + punch != punch + BALL
+    # As studies and files of two parts have them.
+    assert values.decode({"sum": [values.encode(BALL), values.encode(punch)]}) == BALL + punch
+
+
+SUMS = """
+import functools, operator, pickle, nacre
+from nacre.results import values
+
+part = nacre.Paraboloid(1.0, 1.0)
+grid = nacre.Grid((8, 8), (1e-3, 1e-3))
+contact = nacre.Contact(nacre.Elastic(1e9, 0.3), grid)
+for make in (operator.add, lambda a, b: b + a, lambda a, b: a.shifted(1e-9, 0.0) + b):
+    many = functools.reduce(make, [part] * 100_000)
+    assert contact.solve(many, load=1.0).report.converged
+    del many
+moved = functools.reduce(lambda shape, _: shape.shifted(1e-9, 0.0), range(100_000), part)
+assert repr(moved).count("shifted") == 1
+some = functools.reduce(operator.add, [part] * 5000)
+for protocol in (0, 5):
+    assert pickle.loads(pickle.dumps(some, protocol)) == some
+assert values.decode(values.encode(some)) == some
+print(hash(some) == hash(functools.reduce(operator.add, [part] * 5000)))
+"""
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_shapes_can_be_added() -> None:
+    # In a process of its own: without lists, recursion ends the process.
+    run = python("-c", SUMS)
+    assert (run.returncode, run.stdout) == (0, "True\n"), run.stderr
+
+
+def test_rigid_is_one_object() -> None:
+    assert copy.deepcopy(nacre.RIGID) is nacre.RIGID
+    assert pickle.loads(pickle.dumps(nacre.RIGID)) is nacre.RIGID
+    assert FLOATING.substrate is nacre.RIGID
+
+
+def test_numbers_are_kept_to_the_bit() -> None:
+    heights = nacre.HeightMap(THIRDS, spacing=(0.1, 0.7), center=(1e-6, -2e-6))
+    assert heights.spacing == (0.1, 0.7)
+    assert heights.center == (1e-6, -2e-6)
+    np.testing.assert_array_equal(heights.heights, THIRDS)
+    assert (DLC.young, DLC.poisson) == (1e11 / 3, 0.25)
+    assert GRID.size == (4e-4, 4.1e-4)
+
+
+def test_a_pickled_plan_solves_alike() -> None:
+    contact = nacre.Contact(COATED, GRID)
+    back = pickle.loads(pickle.dumps(contact))
+    np.testing.assert_array_equal(
+        back.solve(BALL, load=10.0).pressure, contact.solve(BALL, load=10.0).pressure
+    )
+
+
+def test_a_convergence_error_pickles_with_its_solution() -> None:
+    with pytest.raises(nacre.ConvergenceError) as caught:
+        nacre.solve(BALL, COATED, load=10.0, grid=GRID, max_iterations=3)
+    back = pickle.loads(pickle.dumps(caught.value))
+    assert str(back) == str(caught.value)
+    assert back.solution == caught.value.solution
+
+
+def test_a_solution_prints_what_was_solved() -> None:
+    rigid = repr(SOLUTION)
+    elastic = repr(nacre.solve(BALL, COATED, STEEL, load=10.0, grid=GRID))
+    for text in (rigid, elastic):
+        assert "48" in text
+        assert "converged" in text
+        assert "counterbody" in text
+    assert "rigid" in rigid.lower()
+    assert "rigid" not in elastic.lower()
