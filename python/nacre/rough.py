@@ -20,7 +20,9 @@ from nacre._tools.units import symbol, written
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.results import display
+from nacre.results.listed import Listed
 from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre.results.quantities import ROUGHNESS
 
 if TYPE_CHECKING:
     import xarray
@@ -42,8 +44,6 @@ __all__ = [
 
 Array = npt.NDArray[np.float64]
 
-HEIGHTS = ("sa", "sq", "sp", "sv")
-"""Height parameters that are lengths."""
 PERIMETER = (np.pi - 1 + np.log(2)) / 24
 """Error of the area of counted cells over perimeter times cell, by Yastrebov et al. (2017)."""
 
@@ -178,9 +178,12 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     return gradient[0], gradient[1], laplacian, power
 
 
-@dataclass(frozen=True)
-class Roughness:
-    """Height parameters of a map, about its mean plane, and its slope and curvature."""
+@dataclass(frozen=True, repr=False)
+class Roughness(Listed):
+    """Height parameters of a map, about its mean, and its slope and curvature."""
+
+    _QUANTITIES = ROUGHNESS
+    _TITLE = "roughness of a map"
 
     sa: float
     """Sa: mean of the absolute heights [m], ISO 25178-2."""
@@ -198,20 +201,6 @@ class Roughness:
     """Root of the mean square of the gradient, as `spectral_slope` finds it."""
     rms_curvature: float
     """Root of the mean square of the mean curvature, half the Laplacian [1/m], likewise."""
-
-    def _rows(self) -> list[tuple[str, str]]:
-        heights = [(name.capitalize(), written(getattr(self, name), "m")) for name in HEIGHTS]
-        shares = [(name.capitalize(), f"{getattr(self, name):.4g}") for name in ("ssk", "sku")]
-        slope = ("rms slope", f"{self.rms_slope:.4g}")
-        curvature = f"{self.rms_curvature:.4g} /{symbol('m')}"
-        return [*heights, *shares, slope, ("rms curvature", curvature)]
-
-    def __str__(self) -> str:
-        """Return a table."""
-        return display.text(self._rows(), [])
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows())
 
 
 def roughness(surface: core.HeightMap) -> Roughness:

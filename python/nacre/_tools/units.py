@@ -265,8 +265,8 @@ class Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
         # The prefix of an area is squared: mm² are 1e-6 m².
         power = 2 if dimension.endswith("²") else 1
-        if not dimension or largest == 0 or not math.isfinite(largest):
-            return cls(1.0, own)
+        if not dimension or largest == 0 or not math.isfinite(largest) or dimension[0] == "1":
+            return cls(1.0, own)  # nobody writes k1/m
         if _system is not SI and dimension in _system.units:
             target, name = _system.units[dimension]
             low, high = (bound**power for bound in READABLE)

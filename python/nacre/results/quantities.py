@@ -144,6 +144,17 @@ CREEP = (
     Quantity("semi_axes", "semi-axes along and across rolling", "m", dims=("semi_axis",)),
 )
 """Kalker's coefficients."""
+ROUGHNESS = (
+    Quantity("sa", "mean of the absolute heights", "m", label="Sa"),
+    Quantity("sq", "root of the mean square of the heights", "m", label="Sq"),
+    Quantity("sp", "highest point above the mean", "m", label="Sp"),
+    Quantity("sv", "lowest point below the mean", "m", label="Sv"),
+    Quantity("ssk", "skewness of the heights", label="Ssk"),
+    Quantity("sku", "kurtosis of the heights", label="Sku"),
+    Quantity("rms_slope", "root of the mean square of the gradient", label="rms slope"),
+    Quantity("rms_curvature", "rms of half the Laplacian", "1/m", label="rms curvature"),
+)
+"""Parameters of the roughness of a map."""
 
 NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
 NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}

@@ -294,7 +294,7 @@ def test_saved_solutions_have_the_same_statistics(tmp_path: Path) -> None:
 # Maps.
 
 
-def test_the_roughness_of_waves_is_theirs() -> None:
+def test_the_roughness_of_waves_is_theirs(tmp_path: Path) -> None:
     """Of a sin(qx) + b cos(ky): Sq² = (a² + b²)/2, slope² = (a²q² + b²k²)/2, and so on."""
     n, m, step = 96, 64, 1e-6
     x, y = step * np.arange(n)[:, None], step * np.arange(m)[None, :]
@@ -312,6 +312,8 @@ def test_the_roughness_of_waves_is_theirs() -> None:
     fourth = 0.375 * (a**4 + b**4) + 1.5 * a**2 * b**2
     assert found.sku == pytest.approx(fourth / found.sq**4, rel=1e-12)
     assert "Sq             158.1 nm" in str(found)
+    assert nacre.load(found.save(tmp_path / "a.nc")) == found
+    assert found.to_xarray().sq.attrs["units"] == "m"
     for said in ("96 × 64", "x and y", "158.1 nm", "base64"):
         assert said in surface._repr_html_()  # type: ignore[attr-defined]
     # A paraboloid that is not periodic has its curvature and slope, and a plane none but its slope.
