@@ -72,6 +72,8 @@ are still read, and older studies found again. Versions that do not know them re
 name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
+ELSEWHERE = {"IndentSolution": "nacre.indent", "Fit": "nacre.indent", "Roughness": "nacre.rough"}
+"""Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""
 BEGUN = ("traction", "displacement", "friction", "motion")
@@ -229,9 +231,9 @@ def _decoded(data: Any) -> Any:
 
 
 def result_class(kind: object) -> Any:
-    """Return the class of results of this name; that of an indentation may have to be imported."""
-    if kind in ("IndentSolution", "Fit"):
-        import_module("nacre.indent")
+    """Return the class of results of this name; that of some may have to be imported."""
+    if kind in ELSEWHERE:
+        import_module(ELSEWHERE[str(kind)])
     if not isinstance(kind, str) or kind not in RESULTS:
         raise ValueError(f"the key 'kind' must name a result of nacre, got {kind!r}")
     return RESULTS[kind]

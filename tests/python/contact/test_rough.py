@@ -11,6 +11,7 @@ import pytest
 import nacre
 from nacre import plot, rough
 from nacre.case import Case, CaseError
+from support import python
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # spots of few cells
 
@@ -313,6 +314,8 @@ def test_the_roughness_of_waves_is_theirs(tmp_path: Path) -> None:
     assert found.sku == pytest.approx(fourth / found.sq**4, rel=1e-12)
     assert "Sq             158.1 nm" in str(found)
     assert nacre.load(found.save(tmp_path / "a.nc")) == found
+    done = python("-c", "import nacre; print(nacre.load('a.nc').sq)", folder=tmp_path)
+    assert float(done.stdout) == found.sq
     assert found.to_xarray().sq.attrs["units"] == "m"
     for said in ("96 × 64", "x and y", "158.1 nm", "base64"):
         assert said in surface._repr_html_()  # type: ignore[attr-defined]
