@@ -16,6 +16,7 @@ pub use automatic::{choose_grid, solve, solve_with};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
 pub use driver::WatchedSolve;
+#[cfg(feature = "python")]
 pub(crate) use options::SMALLEST_GRID;
 pub use options::{Algorithm, Motion, Options, Setup};
 pub use plan::Contact;
