@@ -232,8 +232,8 @@ def _decoded(data: Any) -> Any:
 
 def result_class(kind: object) -> Any:
     """Return the class of results of this name; that of some may have to be imported."""
-    if kind in ELSEWHERE:
-        import_module(ELSEWHERE[str(kind)])
+    if isinstance(kind, str) and kind in ELSEWHERE:
+        import_module(ELSEWHERE[kind])
     if not isinstance(kind, str) or kind not in RESULTS:
         raise ValueError(f"the key 'kind' must name a result of nacre, got {kind!r}")
     return RESULTS[kind]
