@@ -64,8 +64,14 @@ CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
 }
 """Callables by their names in data, each with its arguments."""
 LATER = {
-    *("name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"),
-    *("corners", "smoothing"),
+    "name",
+    "counter_radius",
+    "counter_radius_x",
+    "counter_radius_y",
+    "ends",
+    "periodic",
+    "corners",
+    "smoothing",
 }
 """Arguments that format 1 had not at first. Where they say nothing they are left out: older data
 are still read, and older studies found again. Versions that do not know them refuse them by
