@@ -143,7 +143,8 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
 
     Along an axis that is not periodic W is 1 - cos, halved; else it is 1. The products follow from
     Fourier derivatives of periodic functions alone: W h' = (W h)' - W' h, and
-    W h'' = (W h)'' - 2 (W' h)' + W'' h.
+    W h'' = (W h)'' - 2 (W' h)' + W'' h. The mean slope is taken out first, so that both ends of h
+    are alike.
     """
     heights = surface.heights - surface.heights.mean()
     shape, repeats = heights.shape, surface.periodic
@@ -159,6 +160,10 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     gradient, laplacian = [], np.zeros(shape)
     for axis, (count, step) in enumerate(zip(shape, surface.spacing, strict=True)):
         across, rate = window[1 - axis], 2 * np.pi / (count * step)
+        trend, centred = 0.0, axes[axis] / rate - 0.5 * count * step
+        if not repeats[axis]:
+            trend = float((heights * centred).sum() / (centred**2 * np.ones(shape)).sum())
+        rest = heights - trend * centred
         slope = 0 * ones[axis] if repeats[axis] else 0.5 * rate * np.sin(axes[axis])
         bend = 0 * ones[axis] if repeats[axis] else 0.5 * rate**2 * np.cos(axes[axis])
         waves = np.expand_dims(2 * np.pi * np.fft.rfftfreq(count, step), 1 - axis)
@@ -170,9 +175,10 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
             found = np.fft.rfft(field, axis=axis) * factors
             return np.asarray(np.fft.irfft(found, field.shape[axis], axis=axis))
 
-        weighted = window[axis] * heights
-        gradient.append(across * (derived(weighted, 1) - slope * heights))
-        curved = derived(weighted, 2) - 2 * derived(slope * heights, 1) + bend * heights
+        weighted = window[axis] * rest
+        inclined = derived(weighted, 1) - slope * rest + trend * window[axis]
+        gradient.append(across * inclined)
+        curved = derived(weighted, 2) - 2 * derived(slope * rest, 1) + bend * rest
         laplacian += across * curved
     power = float(np.mean((window[0] * window[1]) ** 2))
     return gradient[0], gradient[1], laplacian, power

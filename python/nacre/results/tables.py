@@ -63,7 +63,10 @@ def write_rows(path: Path, rows: Iterable[Iterable[Any]], **comments: Any) -> No
 
 def write_sections(result: Any, path: Path) -> None:
     """Write the sections along x and along y through the largest pressure."""
-    i, j = np.unravel_index(np.argmax(result.pressure), result.pressure.shape)
+    i, j = (
+        int(np.argmin(np.abs(side - place)))
+        for side, place in zip((result.x, result.y), result.peak_position, strict=True)
+    )
     _write(result, path, {"x": (slice(None), j), "y": (i, slice(None))})
 
 
