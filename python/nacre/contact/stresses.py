@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -19,6 +17,7 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
+from nacre.results.listed import Tabular
 from nacre.results.quantities import EXTREMES
 
 if TYPE_CHECKING:
@@ -378,7 +377,7 @@ class InterfaceStress(_Extremes):
 
 
 @dataclass(frozen=True, repr=False)
-class StressSummary(Result):
+class StressSummary(Tabular):
     """Extremes of the stress in each layer and at each interface.
 
     Printing it shows a table, and so does a notebook. Each value comes with its point
@@ -426,51 +425,19 @@ class StressSummary(Result):
             Part and name of each extreme, value, uncertainty, position and safety factor over
             ``row``; NaN where there is none.
         """
-        heads, *rows = self._rows()
+        heads, *rows = self._file_rows()
         variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
         table = [(row, row.unit) for row in EXTREMES]
         said = {name: str(value) for name, value in self._comments().items()}
         title = "extremes of the stress"
         return files.dataset(title, table, variables, {}, self.to_dict(), **said)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, or ``.csv`` for the table.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
-        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
-        >>> summary = solution.stress_summary()
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
-        True
-        """
-        return files.save(path, files.tabular(self, self._rows(), **self._comments()))
-
     def _comments(self) -> dict[str, Any]:
         """Return what stands beside the table."""
         warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
         return {"finished": self.finished, **warnings}
 
-    def _rows(self) -> list[tuple[Any, ...]]:
+    def _file_rows(self) -> list[tuple[Any, ...]]:
         """Return the rows of the table, the heading first."""
         rows: list[tuple[Any, ...]] = [tuple(row.name for row in EXTREMES)]
         parts: list[LayerStress | InterfaceStress] = [*self.layers, *self.interfaces]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import operator
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
@@ -20,8 +20,8 @@ from nacre.indent._residuals import ROUNDING
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import holds
-from nacre.results import display, files
-from nacre.results.base import Result
+from nacre.results import display
+from nacre.results.listed import Tabular
 from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ GIVEN = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Result):
+class Fit(Tabular):
     """Estimates of `fit`, how sure they are, and whether the data tell them at all."""
 
     estimates: dict[str, float]
@@ -216,28 +216,10 @@ class Fit(Result):
 
         return estimates(self)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF with all of the fit, which `nacre.load` reads and
-            which needs ``nacre-contact[files]``, or ``.csv`` for the table of parameters.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-        """
+    def _file_rows(self) -> Iterable[list[Any]]:
         from nacre.indent._files import parameter_rows
 
-        return files.save(path, files.tabular(self, parameter_rows(self)))
+        return parameter_rows(self)
 
     def _state(self) -> dict[str, Any]:
         curves = [

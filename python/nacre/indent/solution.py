@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import copyreg
 import math
-import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
@@ -18,8 +16,8 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import Field, Layers, Matrix, Vector
 from nacre._tools.units import printable, written
-from nacre.results import display, files
-from nacre.results.base import Result
+from nacre.results import display
+from nacre.results.listed import Tabular
 from nacre.results.quantities import INDENT, units
 from nacre.results.values import decode, encode, refusing
 
@@ -99,7 +97,7 @@ class StateDerivative:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IndentSolution(Result):
+class IndentSolution(Tabular):
     """Contacts of an indentation, with all that they depend on.
 
     `Indentation.at` and `nacre.indent.solve` return it. Numbers have the shape of the load,
@@ -344,28 +342,10 @@ class IndentSolution(Result):
 
         return indentation(self)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, or ``.csv`` for a table.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-        """
+    def _file_rows(self) -> Iterable[list[Any]]:
         from nacre.indent._files import contact_rows
 
-        return files.save(path, files.tabular(self, contact_rows(self)))
+        return contact_rows(self)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the load as a function of the approach, or of one contact the pressure.

@@ -138,9 +138,9 @@ class Result:
     _LATER: ClassVar[tuple[str, ...]] = ()
     """Fields that states of format 1 did not have at first; without them they are None."""
 
-    def __init_subclass__(cls) -> None:
-        """Make the class known to files and studies by its name."""
-        if not cls.__name__.startswith("_"):
+    def __init_subclass__(cls, *, is_base: bool = False) -> None:
+        """Make the class known to files and studies by its name, unless it is a base of others."""
+        if not is_base and not cls.__name__.startswith("_"):
             values.RESULTS[cls.__name__] = cls
 
     @classmethod

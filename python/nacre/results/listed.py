@@ -1,8 +1,9 @@
-"""Results that are a list of numbers: printed, in a notebook and in files by their quantities."""
+"""Results in tables: saved as one, or as a list of numbers, which is printed, too."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,7 +19,55 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Listed(Result):
+class Tabular(Result, is_base=True):
+    """Base of results that are saved as NetCDF and as a table."""
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the result; needs ``nacre-contact[files]``."""
+        raise NotImplementedError
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, or ``.csv`` for the table.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+        >>> summary = solution.stress_summary()
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
+        True
+        """
+        return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
+
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
+        """Return the rows of the table in a ``.csv``, the heading first."""
+        raise NotImplementedError
+
+    def _comments(self) -> dict[str, Any]:
+        """Return what stands above the table."""
+        return {}
+
+
+class Listed(Tabular, is_base=True):
     """Base of results whose table has a row for each of their quantities.
 
     The dataclass needs ``repr=False``, and `_QUANTITIES` and `_TITLE`.
@@ -39,32 +88,14 @@ class Listed(Result):
         variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._QUANTITIES}
         return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, or ``.csv`` for the numbers, in one row.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-        """
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
         cells: list[tuple[str, Any]] = []
         for row in self._QUANTITIES:
             values = np.ravel(row.of(self)).tolist()
             names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
             heads = [headed(row, self, name) for name in (names if row.dims else [""])]
             cells += zip(heads, values, strict=True)
-        return files.save(path, files.tabular(self, zip(*cells, strict=True)))
+        return zip(*cells, strict=True)
 
     def _si(self, row: Quantity) -> str:
         """Return the SI unit of a quantity of this result; that in a line contact may differ."""
