@@ -138,6 +138,12 @@ def spectral_slope(surface: core.HeightMap) -> float:
     return float(np.sqrt(np.mean(first**2 + second**2) / power))
 
 
+def _check(surface: object) -> None:
+    """Raise a `TypeError` unless this is a map."""
+    if not isinstance(surface, core.HeightMap):
+        raise TypeError(f"surface must be a HeightMap, got {surface!r}")
+
+
 def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     """Return gradient and Laplacian of a map times a window W, and the mean of W².
 
@@ -146,6 +152,7 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     W h'' = (W h)'' - 2 (W' h)' + W'' h. The mean slope is taken out first, so that both ends of h
     are alike.
     """
+    _check(surface)
     heights = surface.heights - surface.heights.mean()
     shape, repeats = heights.shape, surface.periodic
     axes = [
@@ -231,6 +238,7 @@ def roughness(surface: core.HeightMap) -> Roughness:
     >>> round(found.sq * 1e6, 3), round(found.rms_slope, 4)
     (0.707, 0.0694)
     """
+    _check(surface)
     heights = surface.heights - surface.heights.mean()
     sq = float(heights.std())
     _, _, laplacian, power = _derivatives(surface)
@@ -291,8 +299,9 @@ def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
     >>> nacre.rough.windowed(rough).periodic
     (True, True)
     """
-    if not 0 < taper <= 0.5:
-        raise ValueError(f"taper must be above 0 and at most 0.5, got {taper}")
+    _check(surface)
+    if not (isinstance(taper, int | float) and 0 < taper <= 0.5):
+        raise ValueError(f"taper must be above 0 and at most 0.5, got {taper!r}")
     mean = surface.heights.mean()
     heights = surface.heights - mean
     for axis, count in enumerate(heights.shape):

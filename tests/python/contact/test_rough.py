@@ -363,3 +363,6 @@ def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> No
     np.testing.assert_allclose(rough.windowed(whole).heights, whole.heights, rtol=0, atol=1e-21)
     with pytest.raises(ValueError, match=r"taper must be above 0 and at most 0\.5, got 0\.6"):
         rough.windowed(part, 0.6)
+    for function in (rough.roughness, rough.spectral_slope, rough.windowed):
+        with pytest.raises(TypeError, match="surface must be a HeightMap, got 3"):
+            function(3)  # type: ignore[arg-type]
