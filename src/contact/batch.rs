@@ -11,7 +11,6 @@ use crate::contact::options::{Motion, Options};
 use crate::contact::plan::Contact;
 use crate::contact::solution::Solution;
 use crate::contact::solver::Termination;
-use crate::contact::start::Sampled;
 use crate::error::Result;
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{SetOnDrop, Threads, check_memory};
@@ -32,8 +31,7 @@ const ASKING_INTERVAL: Duration = Duration::from_millis(20);
 impl Contact {
     /// Solves many cases side by side, each on one of the plan's threads, or on several where there
     /// are fewer cases than threads. Solutions come in the order of the cases, and equal those of
-    /// [`Contact::solve`] to the bit. Under a load, successive cases of one shape (at one address) share
-    /// its undeformed gap.
+    /// [`Contact::solve`] to the bit.
     ///
     /// `progress` gets the number of finished cases, on the calling thread, every 20 ms and at the
     /// end. Its break stops the rest: cases that are not finished are `None`.
@@ -114,7 +112,7 @@ impl Contact {
             return Ok(());
         }
         check_memory(self.grid.shape(), workers as u64 * self.own_memory())?;
-        let threads = self.convolution.threads();
+        let threads = self.convolution().threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         // Nothing is ever sent: the channel closes with the last worker.
@@ -124,7 +122,7 @@ impl Contact {
                 let alive = alive.clone();
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
-                    let (_alive, mut sampled) = (alive, Sampled::default());
+                    let _alive = alive;
                     let asked = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
@@ -134,13 +132,7 @@ impl Contact {
                         let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
-                        let solved = plan.run(|| {
-                            let mut solution =
-                                plan.solve_sampled(*shape, sampled, motion, options, progress)?;
-                            plan.compare(&mut solution, *shape, motion, options, progress);
-                            Ok(solution)
-                        });
+                        let solved = plan.solve_watched(*shape, motion, options, &mut |_| asked());
                         let unfinished = matches!(&solved, Ok(solution)
                         if solution.report.termination == Termination::Stopped);
                         if !unfinished {
@@ -178,6 +170,6 @@ impl Contact {
 
     /// Number of cases that are solved at once.
     fn workers(&self, cases: &[Case]) -> usize {
-        self.convolution.threads().min(cases.len())
+        self.convolution().threads().min(cases.len())
     }
 }

@@ -3,14 +3,13 @@
 use std::f64::consts::PI;
 use std::fmt;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::Instant;
 
 use ndarray::Array2;
 
 use crate::compliance::ends::check_carried;
+use crate::contact::cascade::Cascade;
 use crate::contact::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
-use crate::contact::cascade::{Cascade, Coarser};
 use crate::contact::options::{Algorithm, Motion, Options};
 use crate::contact::plan::{Contact, bodies};
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
@@ -20,7 +19,7 @@ use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
-    Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
+    check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
 };
 use crate::error::{Error, Result};
 use crate::model::surface::{Lifted, Surface};
@@ -76,6 +75,17 @@ impl Contact {
         let mut asked = options.into();
         let options = asked.options;
         let progress = &mut |report: &Report| asked.tell(report);
+        self.solve_watched(shape, motion, options, progress)
+    }
+
+    /// [`Contact::solve`] with a callback that is told of each iteration.
+    pub(super) fn solve_watched(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
         self.run(|| {
             let mut solution = self.solve_alone(shape, motion, options, progress)?;
             self.compare(&mut solution, shape, motion, options, progress);
@@ -92,29 +102,15 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
-    }
-
-    /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`
-    /// was sampled last, its gaps are not computed again.
-    pub(super) fn solve_sampled<'a>(
-        &self,
-        shape: &'a dyn Surface,
-        sampled: &mut Sampled<'a>,
-        motion: &Motion,
-        options: &Options,
-        progress: &mut Progress,
-    ) -> Result<Solution> {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
         self.check_memory_of_solve(options.hardness.is_some())?;
         let Some(before) = &options.indentation else {
-            return self.press(shape, sampled, motion, options, progress);
+            return self.press(shape, motion, options, progress);
         };
         check_indentation(before, &self.grid)?;
         let dented = Lifted::new(shape, &self.grid, before.clone());
-        let mut solution =
-            self.press(&dented, &mut Sampled::default(), motion, options, progress)?;
+        let mut solution = self.press(&dented, motion, options, progress)?;
         solution.indentation = Some(match solution.indentation {
             Some(deeper) => deeper + before,
             None => before.clone(),
@@ -123,10 +119,9 @@ impl Contact {
     }
 
     /// Presses a shape into the body that has the indentations of earlier solves.
-    fn press<'a>(
+    fn press(
         &self,
-        shape: &'a dyn Surface,
-        sampled: &mut Sampled<'a>,
+        shape: &dyn Surface,
         motion: &Motion,
         options: &Options,
         progress: &mut Progress,
@@ -150,7 +145,7 @@ impl Contact {
             criteria: options.stop_criteria()?,
         };
         let mut report = Report::planned(self, steps.shape, motion, options.tolerance);
-        let unit = self.convolution.work();
+        let unit = self.convolution().work();
         let mut count = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
             report.count(iterations, work / unit, quality);
             report.seconds = start.elapsed().as_secs_f64();
@@ -158,18 +153,19 @@ impl Contact {
         };
         let tally = &mut Tally::new(&mut count);
 
-        let (gap, mut fields, ahead) = steps.sample(shape, sampled, tally)?;
+        let gap = steps.sample()?;
+        let mut fields = SolutionFields::new(self.grid.shape(), &steps.rows());
         let elastic = Problem {
-            convolution: &self.convolution,
+            convolution: self.convolution(),
             freedoms: &freedoms,
             gap: slice(&gap),
             bounds: &Bounds::none(columns),
-            local: &self.local,
+            local: &self.levels[0].local,
         };
         if let Some(hardness) = &options.hardness {
             check_load(&elastic, hardness)?;
         }
-        let (mut outcome, results) = steps.iterate(&elastic, &gap, ahead, &mut fields, tally)?;
+        let (mut outcome, results) = steps.iterate(&elastic, &gap, &mut fields, tally)?;
         let exceeded = |limits: &Bounds| {
             let mut cells = slice(&fields.pressure).iter().enumerate();
             cells.any(|(k, p)| *p > limits.limit(k))
@@ -183,8 +179,9 @@ impl Contact {
         let (iterations, work) = (tally.iterations, tally.work);
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
         report.count(iterations, work / unit, quality);
-        let mut solution =
-            steps.report(&problem, &gap, fields, (outcome, quality), results, report)?;
+        let indentation = problem.bounds.is_limited().then(|| fields.indentation(&problem));
+        let fields = (gap, indentation, fields);
+        let mut solution = steps.report(fields, (outcome, quality), results, report)?;
         solution.report.seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }
@@ -203,7 +200,7 @@ struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     fn rows(&self) -> Rows<'a> {
-        Rows::new(&self.freedoms.columns, self.plan.convolution.own_threads())
+        Rows::new(&self.freedoms.columns, self.plan.convolution().own_threads())
     }
 
     /// Whether the solve starts with nested grids.
@@ -211,43 +208,12 @@ impl<'a> Steps<'a> {
         self.options.algorithm == Algorithm::Cascade
     }
 
-    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution; at the same time
-    /// coarser solutions, since fetching memory may take long and the coarsest grids are too small for several threads.
-    /// The shape that is `given` tells whether it was sampled before.
-    fn sample<'s>(
-        &self,
-        given: &'s dyn Surface,
-        sampled: &mut Sampled<'s>,
-        tally: &mut Tally,
-    ) -> Result<(Arc<Array2<f64>>, SolutionFields, Option<Coarser>)> {
-        let (plan, rows, options) = (self.plan, self.rows(), self.options);
-        // An approach that may be too large for a solution is looked at before.
-        let bounded = plan.datum.floats && !self.freedoms.loaded[0];
-        let (finest, ahead) = rows.both(
-            || -> Result<_> {
-                let sample = || checked_gaps(self.shape, &plan.grid, &rows);
-                let mut gap = sampled.gaps(given, sample)?;
-                self.freedoms.check_feasible(&gap)?;
-                if self.freedoms.any_prescribed() {
-                    self.freedoms.prescribe(Arc::make_mut(&mut gap));
-                }
-                Ok((gap, SolutionFields::new(plan.grid.shape(), &rows)))
-            },
-            || {
-                let ahead = self.cascades() && options.initial.is_none() && !bounded;
-                ahead.then(|| self.solve_coarser(None, tally)).flatten()
-            },
-        );
-        let (gap, fields) = finest?;
-        if bounded && self.largest_hardness() <= 0.0 {
-            self.check_gap(&gap)?;
-        }
-        Ok((gap, fields, ahead))
-    }
-
-    /// An error where the approach is beyond full contact, which only a hardness ends.
-    fn check_gap(&self, gap: &Array2<f64>) -> Result<()> {
-        self.motion.approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap))
+    /// The gap, less the prescribed motion.
+    fn sample(&self) -> Result<Array2<f64>> {
+        let mut gap = checked_gaps(self.shape, &self.plan.grid, &self.rows())?;
+        self.freedoms.check_feasible(&gap)?;
+        self.freedoms.prescribe(&mut gap);
+        Ok(gap)
     }
 
     /// Largest hardness of the cells that may yield; 0 where none may.
@@ -259,26 +225,25 @@ impl<'a> Steps<'a> {
         })
     }
 
-    /// Solutions on the coarser grids; `None` where they need the `gap` of the finest.
-    fn solve_coarser(&self, gap: Option<&Array2<f64>>, tally: &mut Tally) -> Option<Coarser> {
-        let levels = &self.plan.levels;
-        Coarser::solve(self.freedoms, gap, self.shape, levels, self.criteria, tally)
-    }
-
     /// Solves the elastic problem from a given pressure, or from the solutions on coarser grids, whose results it
     /// returns.
     fn iterate(
         &self,
         problem: &Problem,
         gap: &Array2<f64>,
-        ahead: Option<Coarser>,
         fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<(Outcome, Vec<GridResult>)> {
         let levels = &self.plan.levels;
-        if self.check_gap(gap).is_err() {
+        let approach = self.motion.approach;
+        let possible = approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap));
+        if let Err(full_contact) = possible {
+            let hardness = self.largest_hardness();
+            if hardness <= 0.0 {
+                return Err(full_contact);
+            }
             // There is no elastic solution; that with the hardness is sought from where all cells yield.
-            fields.pressure.fill(2.0 * self.largest_hardness());
+            fields.pressure.fill(2.0 * hardness);
             let (solver, termination) = (Solver::Preconditioned, Termination::IterationLimit);
             return Ok((Outcome { solver, termination, lambda: [0.0; 3] }, Vec::new()));
         }
@@ -287,8 +252,8 @@ impl<'a> Steps<'a> {
             return Ok((outcome, Vec::new()));
         }
         if self.cascades()
-            && let Some(coarser) = ahead.or_else(|| self.solve_coarser(Some(gap), tally))
-            && let Some(mut cascade) = Cascade::after(coarser, problem, gap, levels, tally)
+            && let Some(mut cascade) =
+                Cascade::nested(problem, gap, self.shape, levels, self.criteria, tally)
         {
             let results = std::mem::take(&mut cascade.results);
             let outcome = cascade.solve_in_window(problem, fields, self.criteria, tally)?;
@@ -309,7 +274,7 @@ impl<'a> Steps<'a> {
         tally: &mut Tally,
     ) -> Result<Outcome> {
         if self.cascades() {
-            let cascade = Cascade::from(&start, problem, gap, &self.plan.levels);
+            let cascade = Cascade::from(&start, problem, gap, &self.plan.levels[0]);
             return cascade.solve_in_window(problem, fields, self.criteria, tally);
         }
         fields.pressure = start;
@@ -333,9 +298,7 @@ impl<'a> Steps<'a> {
     /// The solution. All that it reports is computed from the pressure, with the `quality` that was found afresh.
     fn report(
         &self,
-        problem: &Problem,
-        gap: &Arc<Array2<f64>>,
-        mut fields: SolutionFields,
+        (gap, indentation, mut fields): (Array2<f64>, Option<Array2<f64>>, SolutionFields),
         (outcome, quality): (Outcome, Quality),
         results: Vec<GridResult>,
         mut report: Report,
@@ -344,10 +307,9 @@ impl<'a> Steps<'a> {
             return Err(Error::Overflow);
         }
         let (plan, grid) = (self.plan, &self.plan.grid);
-        let indentation = (problem.bounds.is_limited()).then(|| fields.indentation(problem));
         let undeformed = match &indentation {
-            Some(deeper) => Arc::new(&**gap + deeper),
-            None => Arc::clone(gap),
+            Some(deeper) => gap + deeper,
+            None => gap,
         };
         let (approach, tilt) = self.freedoms.rigid_motion(fields.multipliers.lambda());
         let (pressure, window) = (&fields.pressure, &fields.window);
@@ -474,56 +436,4 @@ fn farthest(lines: &[[f64; 2]], side: f64, load: Option<f64>) -> f64 {
         }
     }
     moment
-}
-
-#[cfg(test)]
-mod tests {
-    use std::ops::ControlFlow;
-
-    use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
-    use crate::error::Result;
-    use crate::model::grid::Grid;
-    use crate::model::material::Elastic;
-    use crate::model::surface::Paraboloid;
-
-    /// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
-    /// of that moment carries the load, and the report is that of a stopped solve.
-    #[test]
-    fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
-        let grid = Grid::new([128, 128], [4.0, 4.0])?;
-        let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
-        let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
-        for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-            let options = Options { algorithm, ..Options::default() };
-            let mut last = 1;
-            for stop in 1.. {
-                let (mut calls, mut work) = (0, 0.0);
-                let mut progress = |report: &Report| {
-                    calls += 1;
-                    work = report.convolutions;
-                    if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-                };
-                let solution = contact.solve(&shape, &motion, options.watched(&mut progress))?;
-                let report = &solution.report;
-                let expected = match algorithm {
-                    Algorithm::Cascade => Solver::Preconditioned,
-                    Algorithm::PolonskyKeer => Solver::PolonskyKeer,
-                };
-                assert_eq!(report.solver, Some(expected));
-                assert!(report.convolutions >= work, "{stop}");
-                assert!(report.balance.force < 1e-12, "{stop}");
-                if report.converged() {
-                    last = stop;
-                    break;
-                }
-                assert_eq!((report.termination, calls), (Termination::Stopped, stop));
-                let worst = report.residual.max(report.overlap);
-                assert!(worst > options.tolerance, "{stop}: {worst:e}");
-                assert_eq!(report.discretisation, None);
-            }
-            // Three grids, or one, with several iterations each.
-            assert!(last > 10, "{last}");
-        }
-        Ok(())
-    }
 }

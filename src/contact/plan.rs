@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, ArrayRef2};
@@ -12,10 +11,9 @@ use crate::compliance::ends::Ends;
 use crate::compliance::influence::{Method, coefficients_on};
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
-use crate::contact::cascade::Levels;
 use crate::contact::cascade::discretisation::Unresolved;
+use crate::contact::cascade::{Level, coarser};
 use crate::contact::options::Setup;
-use crate::contact::problem::LocalDisplacement;
 use crate::contact::solver::linear_cg;
 use crate::error::{Error, Result, all_finite, refuse_if, same_shape};
 use crate::model::grid::Grid;
@@ -25,8 +23,8 @@ use crate::numerics::parallel::{Threads, check_memory};
 /// where the contact fills the grid, 151 where it tilts as well, 67 where it fills a ninth.
 const ARRAYS: u64 = 18;
 
-/// Arrays of a solve after the first one, whose memory the plan keeps. Measured: 46 bytes a cell.
-const LATER_ARRAYS: u64 = 7;
+/// Those of them whose memory the plan does not keep for later solves. Measured: 46 bytes a cell.
+const OWN_ARRAYS: u64 = 7;
 
 /// Arrays that a hardness adds. Measured: 40 bytes a cell.
 const YIELDING_ARRAYS: u64 = 5;
@@ -54,16 +52,13 @@ pub struct Contact {
     pub(super) body: Body,
     pub(super) grid: Grid,
     pub(super) setup: Setup,
-    pub(super) convolution: Convolution,
-    pub(super) levels: Levels,
-    pub(super) local: LocalDisplacement,
+    /// The grid and all coarser ones, from the finest on.
+    pub(super) levels: Vec<Level>,
     pub(super) datum: Datum,
     pub(super) unresolved: Unresolved,
     pub(super) ends: Ends,
     /// Operators of tractions, made when friction first needs them.
     pub(super) tangential: OnceLock<Arc<Tangential>>,
-    /// Whether a solve has begun, whose memory the plan keeps.
-    worked: AtomicBool,
 }
 
 impl Contact {
@@ -82,31 +77,22 @@ impl Contact {
         )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let additions = ends.additions(&grid, &grid, &threads)?;
-        let (finest, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
+        let (coefficients, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
         let convolution =
-            Convolution::plan_repeated(&finest, grid.is_periodic(), Arc::clone(&threads))?
-                .plus(additions);
-        let levels = Levels::plan(grid, finest, &convolution, |coarse| {
-            let coefficients = total_coefficients(&body, &setup, coarse, &threads)?;
-            let local = LocalDisplacement::new(&bodies(&body, &setup), coarse);
-            let additions = ends.additions(coarse, &grid, &threads)?;
-            Ok((datum.moved(coefficients, coarse), additions, local))
-        })?;
-        let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
-        let unresolved = Unresolved::new(&bodies(&body, &setup), &grid);
-        Ok(Self {
-            body,
-            grid,
-            setup,
-            convolution,
-            levels,
-            local,
-            datum,
-            unresolved,
-            ends,
-            tangential: OnceLock::new(),
-            worked: AtomicBool::new(false),
-        })
+            Convolution::plan_repeated(&coefficients, grid.is_periodic(), Arc::clone(&threads))?;
+        let both = bodies(&body, &setup);
+        let mut levels = vec![Level::new(grid, coefficients, convolution.plus(additions), &both)];
+        let mut finer = grid;
+        while let Some(coarse) = coarser(&finer)? {
+            let coefficients = total_coefficients(&body, &setup, &coarse, &threads)?;
+            let coefficients = datum.moved(coefficients, &coarse);
+            let convolution = levels[0].convolution.companion(&coefficients, coarse.is_periodic());
+            let convolution = convolution.plus(ends.additions(&coarse, &grid, &threads)?);
+            levels.push(Level::new(coarse, coefficients, convolution, &both));
+            finer = coarse;
+        }
+        let unresolved = Unresolved::new(&both, &grid);
+        Ok(Self { body, grid, setup, levels, datum, unresolved, ends, tangential: OnceLock::new() })
     }
 
     /// The body that shapes are pressed into.
@@ -128,7 +114,7 @@ impl Contact {
     /// coefficients are not positive definite with the datum of [`Grid::line`], it has a farther datum, which
     /// raises the displacement everywhere by the same; solutions have the datum of the grid.
     pub fn convolution(&self) -> &Convolution {
-        &self.convolution
+        &self.levels[0].convolution
     }
 
     /// The operators of tractions, made when they are first needed.
@@ -145,33 +131,37 @@ impl Contact {
             "friction needs a grid that is not periodic: give a wider grid",
         )?;
         let counterbody = self.setup.counterbody.as_ref();
-        let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);
+        let threads = Arc::new(Threads::new(Some(self.convolution().threads()))?);
         let new = Tangential::plan(&self.body, counterbody, &self.grid, &threads)?;
         Ok(Arc::clone(self.tangential.get_or_init(|| Arc::new(new))))
     }
 
     /// This plan on other threads; all large arrays are shared.
     pub(super) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
-        let convolution = self.convolution.on_threads(threads);
+        let mut levels: Vec<Level> = Vec::new();
+        for level in &self.levels {
+            let convolution = match levels.first() {
+                None => level.convolution.on_threads(threads),
+                Some(finest) => level.convolution.sharing_with(&finest.convolution),
+            };
+            levels.push(level.with(convolution));
+        }
         Self {
             body: self.body.clone(),
             grid: self.grid,
             setup: self.setup.clone(),
-            levels: self.levels.beside(&convolution),
+            levels,
             unresolved: self.unresolved,
-            convolution,
-            local: self.local.clone(),
             datum: self.datum,
             ends: self.ends.clone(),
             tangential: self.tangential.clone(),
-            worked: AtomicBool::new(false),
         }
     }
 
     /// Calls `work`, a whole solve, on the plan's threads.
     pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let [nx, ny] = self.grid.shape();
-        self.convolution.own_threads().run_inside(nx * ny, work)
+        self.convolution().own_threads().run_inside(nx * ny, work)
     }
 
     /// Bytes that a plan with its coefficients, and the arrays of one solve take between free `ends`.
@@ -185,18 +175,14 @@ impl Contact {
         Self::memory(&self.grid, &self.ends)
     }
 
-    /// Checks that there is memory for a solve, of surfaces that yield where they have a hardness.
+    /// Checks that there is memory for a solve, of surfaces that yield where they have a hardness. What the plan keeps was
+    /// checked with it.
     ///
     /// # Errors
     /// Too little memory.
     pub(super) fn check_memory_of_solve(&self, yields: bool) -> Result<()> {
-        let arrays = match self.worked.swap(true, Ordering::Relaxed) {
-            true => LATER_ARRAYS,
-            false if self.ends.any() => ARRAYS + ENDS_ARRAYS,
-            false => ARRAYS,
-        };
         let of_hardness = if yields { YIELDING_ARRAYS } else { 0 };
-        check_memory(self.grid.shape(), array(&self.grid) * (arrays + of_hardness))
+        check_memory(self.grid.shape(), array(&self.grid) * (OWN_ARRAYS + of_hardness))
     }
 }
 

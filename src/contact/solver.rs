@@ -4,7 +4,6 @@ pub(super) mod active_set;
 pub(super) mod linear_cg;
 pub(super) mod polonsky_keer;
 pub(super) mod preconditioned;
-mod stagnation;
 
 use std::ops::ControlFlow;
 

@@ -67,11 +67,7 @@ pub(crate) fn solve(
         if advance(problem, &inside, &g, &search.direction, step, p) {
             search.conjugacy.restart();
         }
-        if problem.bounds.is_limited() {
-            problem.rebalance_within(p, u, found.lambda());
-        } else {
-            problem.rebalance(p);
-        }
+        problem.rebalance(p, u, found.lambda());
         tally.iterations += 1;
     }
 }
