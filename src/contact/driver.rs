@@ -1,6 +1,5 @@
 //! One solve, as named steps in order.
 
-use std::f64::consts::PI;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -11,7 +10,7 @@ use crate::compliance::ends::check_carried;
 use crate::contact::cascade::Cascade;
 use crate::contact::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
 use crate::contact::options::{Algorithm, Motion, Options};
-use crate::contact::plan::{Contact, bodies};
+use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
@@ -154,7 +153,7 @@ impl Contact {
         let tally = &mut Tally::new(&mut count);
 
         let gap = steps.sample()?;
-        let mut fields = SolutionFields::new(self.grid.shape(), &steps.rows());
+        let mut fields = SolutionFields::new(self.grid.shape());
         let elastic = Problem {
             convolution: self.convolution(),
             freedoms: &freedoms,
@@ -174,7 +173,10 @@ impl Contact {
         let limits = limits.filter(|limits| !stopped && exceeded(limits));
         let problem = Problem { bounds: limits.as_ref().unwrap_or(elastic.bounds), ..elastic };
         if problem.bounds.is_limited() {
-            outcome = steps.let_yield(&problem, &gap, &mut fields, tally)?;
+            let g = fields.gap(&problem);
+            let start = yielding_pressure(&problem, slice(&fields.pressure), &g)?;
+            fields.pressure.fill(0.0);
+            outcome = steps.solve_from(start, &problem, &gap, &mut fields, tally)?;
         }
         let (iterations, work) = (tally.iterations, tally.work);
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
@@ -216,15 +218,6 @@ impl<'a> Steps<'a> {
         Ok(gap)
     }
 
-    /// Largest hardness of the cells that may yield; 0 where none may.
-    fn largest_hardness(&self) -> f64 {
-        let hardness = self.options.hardness.as_ref().filter(|hardness| hardness.is_limited());
-        hardness.map_or(0.0, |hardness| {
-            let values = (0..self.plan.grid.shape().iter().product()).map(|cell| hardness.at(cell));
-            values.filter(|value| value.is_finite()).fold(0.0, f64::max)
-        })
-    }
-
     /// Solves the elastic problem from a given pressure, or from the solutions on coarser grids, whose results it
     /// returns.
     fn iterate(
@@ -238,7 +231,7 @@ impl<'a> Steps<'a> {
         let approach = self.motion.approach;
         let possible = approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap));
         if let Err(full_contact) = possible {
-            let hardness = self.largest_hardness();
+            let hardness = self.options.hardness.as_ref().map_or(0.0, Hardness::largest);
             if hardness <= 0.0 {
                 return Err(full_contact);
             }
@@ -279,20 +272,6 @@ impl<'a> Steps<'a> {
         }
         fields.pressure = start;
         polonsky_keer::solve(problem, fields, self.criteria, tally)
-    }
-
-    /// Solves the problem with its hardness from the elastic solution in `fields`.
-    fn let_yield(
-        &self,
-        problem: &Problem,
-        gap: &Array2<f64>,
-        fields: &mut SolutionFields,
-        tally: &mut Tally,
-    ) -> Result<Outcome> {
-        let g = fields.gap(problem);
-        let start = yielding_pressure(problem, slice(&fields.pressure), &g)?;
-        fields.pressure.fill(0.0);
-        self.solve_from(start, problem, gap, fields, tally)
     }
 
     /// The solution. All that it reports is computed from the pressure, with the `quality` that was found afresh.
@@ -367,16 +346,8 @@ impl<'a> Steps<'a> {
             (&fields.pressure, &self.plan.grid, &self.plan.unresolved);
         let (both, loaded) = ([pressure, &fields.displacement], self.motion.load.is_some());
         let others = unresolved.errors(both, &fields.window, grid, loaded, singular);
-        let corners = corner_error(pressure, grid, self.shape, self.short_waves());
+        let corners = corner_error(pressure, grid, self.shape, unresolved.short_waves);
         Some(changes.plus(others).at_least(corners))
-    }
-
-    /// Sum of the responses α û/p̂ of both bodies to waves of the length of two cells \[1/Pa\].
-    fn short_waves(&self) -> f64 {
-        let [dx, dy] = self.plan.grid.spacing();
-        let finest = if self.plan.grid.is_line() { dy } else { dx.min(dy) };
-        let bodies = bodies(&self.plan.body, &self.plan.setup);
-        bodies.iter().map(|body| body.normal(PI / finest)).sum()
     }
 }
 

@@ -353,17 +353,12 @@ pub(crate) struct SolutionFields {
 }
 
 impl SolutionFields {
-    /// SolutionFields of zeros.
-    ///
-    /// The system hands out their memory as it is written, most of it when the memory of the iteration is
-    /// free again.
-    pub(crate) fn new(shape: [usize; 2], rows: &Rows) -> Self {
-        let zeros = || Array2::zeros(shape);
-        let (pressure, displacement) = rows.both(zeros, zeros);
+    /// Fields of zeros.
+    pub(crate) fn new(shape: [usize; 2]) -> Self {
         Self {
-            pressure,
+            pressure: Array2::zeros(shape),
             window: [0..0, 0..0],
-            displacement,
+            displacement: Array2::zeros(shape),
             multipliers: Multipliers::default(),
             quality: None,
         }

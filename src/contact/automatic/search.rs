@@ -4,6 +4,7 @@ use crate::compliance::response::Body;
 use crate::contact::automatic::relief::{Low, Overlap, Relief, limited};
 use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
+use crate::contact::plan::bodies;
 use crate::contact::solution::{Progress, Solution};
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
@@ -306,7 +307,6 @@ fn approach_under(load: f64, task: &Task, widths: &impl Fn(f64) -> [f64; 2]) -> 
 /// α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the response itself,
 /// and the local compliance.
 fn compliance(task: &Task, alpha: f64) -> f64 {
-    let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
     let of = |body: &Body| {
         let limits = body.asymptotes();
         let larger = match limits.short.max(limits.long) {
@@ -315,5 +315,5 @@ fn compliance(task: &Task, alpha: f64) -> f64 {
         };
         larger + alpha * body.local()
     };
-    bodies.into_iter().flatten().map(of).sum()
+    bodies(task.body, task.setup).into_iter().map(of).sum()
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::contact::problem::bounds::{Bounds, clip, in_contact, is_free};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::numerics::dense::eliminate;
-use crate::numerics::parallel::{Lanes, ONE, Row, Total, all, sum, update, where_positive};
+use crate::numerics::parallel::{Lanes, ONE, Row, Total, all, sum, update};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -309,30 +309,6 @@ impl Freedoms {
         self.solve(&gram, sums.right)
     }
 
-    /// Subtracts from the residual `values` their best fit Bλ over the contact cells of pressure `p`, and
-    /// makes all others 0.
-    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64], bounds: &Bounds) {
-        let inside = |k: usize| bounds.is_free(k, p[k]) || r[k] != 0.0;
-        let member: Vec<f64> = (0..p.len()).map(|k| f64::from(u8::from(inside(k)))).collect();
-        let no_limit = vec![f64::INFINITY; self.columns[1].len()];
-        let mut sums = FitSums::ZERO;
-        for (number, (x, cells)) in self.rows().enumerate() {
-            let row = Row { number, x, y: &self.columns[1] };
-            let (inputs, values) = ([&member[cells.clone()], row.y, row.y], &mut values[cells]);
-            let here = Self::fit_row(row, &no_limit, inputs, [values], |[member, ..], [value]| {
-                let value = where_positive(member, value);
-                ([value], [member, value])
-            });
-            sums = sums.joined(here);
-        }
-        let mean = self.fitted(sums);
-        self.for_each(mean, |k, b| {
-            if inside(k) {
-                values[k] -= b;
-            }
-        });
-    }
-
     /// Solves for the loaded degrees of freedom; one that the others determine (a contact of one cell has
     /// no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
@@ -382,20 +358,6 @@ mod tests {
             if k.is_multiple_of(7) { 0.0 } else { 0.5 + (k * 37 % 101) as f64 / 50.0 }
         };
         (0..CELLS[0] * CELLS[1]).map(p).collect()
-    }
-
-    #[test]
-    fn a_load_alone_scales_the_pressure() -> Result<()> {
-        let freedoms = freedoms([None, None])?;
-        let before = pressure();
-        let mut p = before.clone();
-        assert!(freedoms.balance(&mut p, &Bounds::none(CELLS[1])));
-        let factor = 2.0 / (freedoms.cell_area * before.iter().sum::<f64>());
-        for (p, before) in p.iter().zip(&before) {
-            assert!((p - factor * before).abs() <= 1e-13 * factor * before);
-        }
-        assert!(!freedoms.balance(&mut vec![0.0; before.len()], &Bounds::none(CELLS[1])));
-        Ok(())
     }
 
     /// The load is 2 and acts at the eccentricity; p/p_before is affine in x and y where it is positive, and the
@@ -481,8 +443,7 @@ mod tests {
         Ok(freedoms.fitted(sums))
     }
 
-    /// An exact plane over the contact is found, whatever there is beside it, and the projection leaves nothing
-    /// of it: 1e-14 is the rounding of a hundred cells.
+    /// An exact plane over the contact is found, whatever there is beside it: 1e-14 is the rounding of a hundred cells.
     #[test]
     fn a_plane_is_found() -> Result<()> {
         let freedoms = tilting()?;
@@ -497,13 +458,6 @@ mod tests {
         for k in 0..3 {
             assert!((found[k] - lambda[k]).abs() < 1e-14, "{found:?}");
         }
-        let member: Vec<f64> = p.iter().map(|p| p.max(0.0)).collect();
-        for (value, p) in values.iter_mut().zip(&p) {
-            *value = if *p > 0.0 { *value } else { 3.0 };
-        }
-        let bounds = Bounds::none(FIT_CELLS[1]);
-        freedoms.project(&mut values, &member, &vec![0.0; cells], &bounds);
-        assert!(values.iter().all(|v| v.abs() < 1e-14));
         Ok(())
     }
 
@@ -524,15 +478,10 @@ mod tests {
             assert!((found - sum).abs() < 1e-11, "{found} {sum}");
         }
         let lambda = fit(&freedoms, &p, &values)?;
-        let mut projected = values.clone();
-        let bounds = Bounds::none(FIT_CELLS[1]);
-        freedoms.project(&mut projected, &p, &vec![0.0; cells], &bounds);
         freedoms.for_each(lambda, |k, b| values[k] -= b);
         for moment in freedoms.moments(&values) {
             assert!(moment.abs() < 1e-11, "{moment:e}");
         }
-        let apart = values.iter().zip(projected).map(|(a, b)| (a - b).abs());
-        assert!(apart.fold(0.0, f64::max) < 1e-13);
         Ok(())
     }
 

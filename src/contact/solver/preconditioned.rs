@@ -32,11 +32,9 @@ use crate::contact::problem::balance::Products;
 use crate::contact::problem::bounds::{clip, in_contact, is_free, not_allowed, residual};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
-use crate::contact::solver::linear_cg::Conjugacy;
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, active_set};
-use crate::numerics::parallel::{
-    ONE, Rows, Total, ZERO, all, dot, sum, update, update_with_largest,
-};
+use crate::numerics::linear_cg::Conjugacy;
+use crate::numerics::parallel::{ONE, Rows, Total, ZERO, all, sum, update, update_with_largest};
 
 /// Iterations by which most contacts have converged. After them a contact of a few cells is left to
 /// [`active_set`]; chosen by trial.
@@ -236,7 +234,7 @@ impl<'a> Preconditioned<'a> {
 
     /// Makes the direction of the next step; returns its product with the residual.
     fn search_direction(&mut self, p: &[f64]) -> f64 {
-        let ([factors @ .., descent], with_last) = self.deflate(p);
+        let (factors, [descent, with_last]) = self.deflate(p);
         let beta = self.conjugacy.beta(descent, with_last);
         let slope = self.turn(p, factors, beta);
         if slope > 0.0 {
@@ -249,7 +247,7 @@ impl<'a> Preconditioned<'a> {
     /// Preconditions the residual, z = M r, and finds the multiples of the images that must be subtracted
     /// from z so that, on the contact, it changes neither force nor moments. Returns them and the products of the rest
     /// with the residual and with that of the iteration before.
-    fn deflate(&mut self, p: &[f64]) -> ([f64; 4], f64) {
+    fn deflate(&mut self, p: &[f64]) -> ([f64; 3], [f64; 2]) {
         let (freedoms, bounds) = (self.problem.freedoms, self.problem.bounds);
         let inverse = &self.approximation.inverse;
         inverse.apply_slices(&self.r, &mut self.z, &mut self.workspace);
@@ -272,16 +270,8 @@ impl<'a> Preconditioned<'a> {
             let removed = factors.iter().zip(&of_images).map(|(f, image)| f * product(image));
             product(&of_z) - removed.sum::<f64>()
         };
-        let descent = remains(|products| products.with_residual);
-        if descent > 0.0 {
-            let [a, b, c] = factors;
-            return ([a, b, c, descent], remains(|products| products.with_last));
-        }
-        // The oblique projection failed: steepest descent, projected orthogonally.
-        self.z.copy_from_slice(&self.r);
-        freedoms.project(&mut self.z, p, &self.r, bounds);
-        self.conjugacy.restart();
-        ([0.0, 0.0, 0.0, dot(&self.r, &self.z)], 0.0)
+        let products = [|of: &Products| of.with_residual, |of: &Products| of.with_last];
+        (factors, products.map(remains))
     }
 
     /// Images of the loaded degrees of freedom; r, which has no weight there, in place of the others.
