@@ -11,6 +11,7 @@ use crate::contact::options::{Motion, Options};
 use crate::contact::plan::Contact;
 use crate::contact::solution::Solution;
 use crate::contact::solver::Termination;
+use crate::contact::start::Sampled;
 use crate::error::Result;
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{SetOnDrop, Threads, check_memory};
@@ -31,7 +32,8 @@ const ASKING_INTERVAL: Duration = Duration::from_millis(20);
 impl Contact {
     /// Solves many cases side by side, each on one of the plan's threads, or on several where there
     /// are fewer cases than threads. Solutions come in the order of the cases, and equal those of
-    /// [`Contact::solve`] to the bit.
+    /// [`Contact::solve`] to the bit. Under a load, successive cases of one shape (at one address) share
+    /// its undeformed gap.
     ///
     /// `progress` gets the number of finished cases, on the calling thread, every 20 ms and at the
     /// end. Its break stops the rest: cases that are not finished are `None`.
@@ -122,7 +124,7 @@ impl Contact {
                 let alive = alive.clone();
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
-                    let _alive = alive;
+                    let (_alive, mut sampled) = (alive, Sampled::default());
                     let asked = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
@@ -132,7 +134,9 @@ impl Contact {
                         let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let solved = plan.solve_watched(*shape, motion, options, &mut |_| asked());
+                        let progress = &mut |_: &_| asked();
+                        let solved =
+                            plan.solve_watched(*shape, &mut sampled, motion, options, progress);
                         let unfinished = matches!(&solved, Ok(solution)
                         if solution.report.termination == Termination::Stopped);
                         if !unfinished {

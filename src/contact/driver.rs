@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use ndarray::Array2;
@@ -18,7 +19,7 @@ use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
-    check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
+    Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
 };
 use crate::error::{Error, Result};
 use crate::model::surface::{Lifted, Surface};
@@ -74,19 +75,21 @@ impl Contact {
         let mut asked = options.into();
         let options = asked.options;
         let progress = &mut |report: &Report| asked.tell(report);
-        self.solve_watched(shape, motion, options, progress)
+        self.solve_watched(shape, &mut Sampled::default(), motion, options, progress)
     }
 
-    /// [`Contact::solve`] with a callback that is told of each iteration.
-    pub(super) fn solve_watched(
+    /// [`Contact::solve`] with a callback that is told of each iteration. Where `shape` was sampled last, its gaps are not
+    /// computed again.
+    pub(super) fn solve_watched<'a>(
         &self,
-        shape: &dyn Surface,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
         motion: &Motion,
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
         self.run(|| {
-            let mut solution = self.solve_alone(shape, motion, options, progress)?;
+            let mut solution = self.solve_sampled(shape, sampled, motion, options, progress)?;
             self.compare(&mut solution, shape, motion, options, progress);
             Ok(solution)
         })
@@ -101,15 +104,27 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
+        self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
+    }
+
+    fn solve_sampled<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
         self.check_memory_of_solve(options.hardness.is_some())?;
         let Some(before) = &options.indentation else {
-            return self.press(shape, motion, options, progress);
+            return self.press(shape, sampled, motion, options, progress);
         };
         check_indentation(before, &self.grid)?;
         let dented = Lifted::new(shape, &self.grid, before.clone());
-        let mut solution = self.press(&dented, motion, options, progress)?;
+        let mut solution =
+            self.press(&dented, &mut Sampled::default(), motion, options, progress)?;
         solution.indentation = Some(match solution.indentation {
             Some(deeper) => deeper + before,
             None => before.clone(),
@@ -118,9 +133,10 @@ impl Contact {
     }
 
     /// Presses a shape into the body that has the indentations of earlier solves.
-    fn press(
+    fn press<'a>(
         &self,
-        shape: &dyn Surface,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
         motion: &Motion,
         options: &Options,
         progress: &mut Progress,
@@ -152,7 +168,7 @@ impl Contact {
         };
         let tally = &mut Tally::new(&mut count);
 
-        let gap = steps.sample()?;
+        let gap = steps.sample(shape, sampled)?;
         let mut fields = SolutionFields::new(self.grid.shape());
         let elastic = Problem {
             convolution: self.convolution(),
@@ -210,11 +226,18 @@ impl<'a> Steps<'a> {
         self.options.algorithm == Algorithm::Cascade
     }
 
-    /// The gap, less the prescribed motion.
-    fn sample(&self) -> Result<Array2<f64>> {
-        let mut gap = checked_gaps(self.shape, &self.plan.grid, &self.rows())?;
+    /// The gap, less the prescribed motion. The shape that is `given` tells whether it was sampled before.
+    fn sample<'s>(
+        &self,
+        given: &'s dyn Surface,
+        sampled: &mut Sampled<'s>,
+    ) -> Result<Arc<Array2<f64>>> {
+        let sample = || checked_gaps(self.shape, &self.plan.grid, &self.rows());
+        let mut gap = sampled.gaps(given, sample)?;
         self.freedoms.check_feasible(&gap)?;
-        self.freedoms.prescribe(&mut gap);
+        if self.freedoms.any_prescribed() {
+            self.freedoms.prescribe(Arc::make_mut(&mut gap));
+        }
         Ok(gap)
     }
 
@@ -277,7 +300,7 @@ impl<'a> Steps<'a> {
     /// The solution. All that it reports is computed from the pressure, with the `quality` that was found afresh.
     fn report(
         &self,
-        (gap, indentation, mut fields): (Array2<f64>, Option<Array2<f64>>, SolutionFields),
+        (gap, indentation, mut fields): (Arc<Array2<f64>>, Option<Array2<f64>>, SolutionFields),
         (outcome, quality): (Outcome, Quality),
         results: Vec<GridResult>,
         mut report: Report,
@@ -287,7 +310,7 @@ impl<'a> Steps<'a> {
         }
         let (plan, grid) = (self.plan, &self.plan.grid);
         let undeformed = match &indentation {
-            Some(deeper) => gap + deeper,
+            Some(deeper) => Arc::new(&*gap + deeper),
             None => gap,
         };
         let (approach, tilt) = self.freedoms.rigid_motion(fields.multipliers.lambda());

@@ -4,6 +4,7 @@ pub(super) mod tangent;
 pub(super) mod warnings;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use ndarray::{ArcArray2, Array1, Array2};
 
@@ -341,8 +342,8 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
 pub(crate) enum Gap {
     /// g = h + u − Bλ, with the displacement u of the solution.
     Computed {
-        /// h, less the prescribed motion.
-        undeformed: Array2<f64>,
+        /// h, less the prescribed motion; solutions of one shape may share it.
+        undeformed: Arc<Array2<f64>>,
         /// B
         freedoms: Box<Freedoms>,
         /// λ

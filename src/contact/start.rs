@@ -1,5 +1,7 @@
 //! The start of a solve: the gaps of a shape, and a pressure.
 
+use std::sync::{Arc, Weak};
+
 use ndarray::{Array2, ArrayRef2};
 
 use crate::contact::problem::{Problem, array, slice};
@@ -7,6 +9,29 @@ use crate::error::{Error, Result, none_negative, same_shape};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{ONE, Rows, all, sum};
+
+/// Gaps of the shape that was sampled last on one grid, kept while a solution has them.
+#[derive(Default)]
+pub(super) struct Sampled<'a>(Option<(&'a dyn Surface, Weak<Array2<f64>>)>);
+
+impl<'a> Sampled<'a> {
+    /// The gaps of `shape`; `sample` computes them where another shape was sampled last.
+    pub(super) fn gaps(
+        &mut self,
+        shape: &'a dyn Surface,
+        sample: impl FnOnce() -> Result<Array2<f64>>,
+    ) -> Result<Arc<Array2<f64>>> {
+        if let Some((known, gaps)) = &self.0
+            && std::ptr::eq(*known, shape)
+            && let Some(gaps) = gaps.upgrade()
+        {
+            return Ok(gaps);
+        }
+        let gaps = Arc::new(sample()?);
+        self.0 = Some((shape, Arc::downgrade(&gaps)));
+        Ok(gaps)
+    }
+}
 
 /// Gaps of `shape` on `grid`, finite or +∞.
 pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Result<Array2<f64>> {

@@ -39,7 +39,7 @@
 //! # Rim
 //!
 //! The rim jumps from cell to cell, so that changes from grid to grid may be small by chance. A contact n cells
-//! wide has at least a relative error of 0.1/n², by trial on random contacts. Between two sharp edges, which
+//! wide has at least a relative error of [`CHANCE`]/n². Between two sharp edges, which
 //! may lie anywhere in their cells, it has 1/2n.
 //!
 //! # Corners

@@ -115,12 +115,14 @@ impl Freedoms {
         if asked > 0.0 { asked / cells as f64 } else { 1.0 }
     }
 
+    /// Whether the prescribed motion changes the gap.
+    pub(crate) fn any_prescribed(&self) -> bool {
+        self.prescribed.iter().any(|&freedom| freedom != 0.0)
+    }
+
     /// Subtracts the prescribed motion from the gap: h − δ − s_x x − s_y y.
     pub(crate) fn prescribe(&self, gap: &mut Array2<f64>) {
         let [delta, sx, sy] = self.prescribed;
-        if self.prescribed == [0.0; 3] {
-            return;
-        }
         let [x, y] = &self.coordinates;
         for (mut row, x) in gap.rows_mut().into_iter().zip(x) {
             let shift = delta + sx * x;

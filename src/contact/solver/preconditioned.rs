@@ -36,8 +36,9 @@ use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, 
 use crate::numerics::linear_cg::Conjugacy;
 use crate::numerics::parallel::{ONE, Rows, Total, ZERO, all, sum, update, update_with_largest};
 
-/// Iterations by which most contacts have converged. After them a contact of a few cells is left to
-/// [`active_set`]; chosen by trial.
+/// Iterations by which most contacts have converged. After them a contact of a few cells is left to [`active_set`]. Chosen by
+/// trial: without it, 2 of 32 eccentric rough contacts take 13 convolutions more and 2 others 11 and 26 fewer, and 2 of 3
+/// contacts on coats 1000 times harder than the body take 36 more.
 const PATIENCE: usize = 20;
 
 /// Iterations after which the reference algorithm goes on. Contacts on coats 1e3 to 1e5 times harder than the body take 250
@@ -109,8 +110,8 @@ impl<'a> Preconditioned<'a> {
     }
 
     /// Solves from the balanced pressure `p`, which becomes the solution. It ends early with
-    /// [`Termination::IterationLimit`] where [`active_set`] or the reference algorithm can go on. Displacements are sums over the steps and carry their rounding: a caller that needs them
-    /// computes them afresh.
+    /// [`Termination::IterationLimit`] where [`active_set`] or the reference algorithm can go on. Displacements are sums
+    /// over the steps and carry their rounding: a caller that needs them computes them afresh.
     pub(crate) fn solve(
         &mut self,
         p: &mut Vec<f64>,
