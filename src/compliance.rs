@@ -1,6 +1,7 @@
 //! Surface displacement that a pressure causes: frequency response, influence coefficients, convolution.
 
 pub mod convolution;
+pub(crate) mod datum;
 pub mod ends;
 pub(crate) mod graded;
 pub(crate) mod images;

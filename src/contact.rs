@@ -25,5 +25,6 @@ pub(crate) use problem::patch::{block, bounds};
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;
 pub use solution::{Balance, Progress, Report, Solution};
-pub use solver::linear_cg::Watch;
 pub use solver::{Solver, Termination};
+
+pub use crate::numerics::linear_cg::Watch;

@@ -2,6 +2,7 @@
 
 pub(crate) mod dense;
 pub(crate) mod fft;
+pub(crate) mod linear_cg;
 pub(crate) mod parallel;
 pub(crate) mod quadrature;
 pub(crate) mod roots;

@@ -24,7 +24,10 @@ use crate::contact::solution::{Progress, Report, Solution};
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
-use crate::model::surface::Surface;
+use crate::model::surface::{Extent, Surface};
+
+/// Distance from the end of a shape, relative to its length, that is rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Enlargements of a grid on which the contact reached the edge, or the shape overlaps outside.
 const ENLARGEMENTS: usize = 10;
@@ -127,7 +130,7 @@ fn solve_on_own_grid(task: Task, options: &Options, watched: &mut Progress) -> R
 /// Where it overlaps the displaced surface, the search goes on with a grid that holds this place too. If that
 /// does not end, the solution has the warning [`Warning::OutsideGrid`].
 ///
-/// Cells are divided along the axes along which the pressure bends most at its peak, until the estimated error
+/// Cells are halved along the axis along which the pressure bends most at its peak, until the estimated error
 /// of the peak pressure ([`Report::discretisation`]) is at most 1 %. Where this needs more than [`Options::cells`], or
 /// where dividing the cells does not lower the estimate, the solution has the warning [`Warning::PeakError`].
 ///
@@ -162,32 +165,32 @@ fn solve_on_fit_grid(
         if !solution.report.converged() {
             return Ok((solution, None));
         }
-        let frame = frame_of(&grid);
-        let missed = overlap(&task, &solution, frame)?;
+        let missed = overlap(&task, &solution, frame_of(&grid))?;
         let touched = solution
             .cells_in_contact()
             .map(|contact| touched_sides(&contact, &grid, task.shape.extent()))
             .unwrap_or_default();
-        let warning;
-        if let Some(missed) = missed {
-            warning = Some(Warning::OutsideGrid { depth: missed.depth });
-            if enlargements == ENLARGEMENTS {
-                return Ok((solution, warning));
+        let too_coarse = peak_error(&solution).filter(|error| *error > PEAK_ERROR);
+        let warning = match &missed {
+            Some(missed) => Some(Warning::OutsideGrid { depth: missed.depth }),
+            None => too_coarse.map(|error| Warning::PeakError { error }),
+        };
+        let grows = missed.is_some() || touched != [[false; 2]; 2];
+        let next = match missed {
+            _ if grows && enlargements < ENLARGEMENTS => {
+                (refinement, enlargements) = (Refinement::default(), enlargements + 1);
+                Some(match missed {
+                    Some(missed) => search.holding(missed, &solution, progress)?,
+                    None => enlarged(&task, &grid, touched)?,
+                })
             }
-            grid = search.holding(missed, &solution, progress)?;
-            (refinement, enlargements) = (Refinement::default(), enlargements + 1);
-        } else if touched != [[false; 2]; 2] && enlargements < ENLARGEMENTS {
-            warning = None;
-            grid = enlarged(&task, &grid, touched)?;
-            (refinement, enlargements) = (Refinement::default(), enlargements + 1);
-        } else {
-            match refinement.next(&solution, &task)? {
-                Next::Enough => return Ok((solution, None)),
-                Next::TooFine(warning) => return Ok((solution, Some(warning))),
-                Next::Finer(finer) => grid = finer,
-            }
-            warning = peak_error(&solution).map(|error| Warning::PeakError { error });
-        }
+            Some(_) => None,
+            None => refinement.next(&solution, &task)?,
+        };
+        let Some(next) = next else {
+            return Ok((solution, warning));
+        };
+        grid = next;
         solution = match task.solve(grid, options, progress) {
             // The grid before was not too large.
             Err(Error::Memory { .. }) => return Ok((solution, warning)),
@@ -217,13 +220,6 @@ const PEAK_ERROR: f64 = 0.01;
 /// Cells in contact on the line through the peak below which they are divided whatever the estimate says.
 const NARROW: usize = 8;
 
-/// Cells on either side of the peak whose pressure says along which axis it bends; chosen by trial.
-const AROUND_PEAK: usize = 3;
-
-/// Second difference of the pressure along one axis, relative to the other, above which cells are divided along
-/// this axis too; chosen by trial.
-const BENDS_TOO: f64 = 0.25;
-
 /// Error after a division, relative to the smallest before, above which the division was of no use. Halving the
 /// cells halves the error of a finite peak at least; the peak at a sharp edge has no error that falls.
 const NO_USE: f64 = 0.75;
@@ -231,16 +227,6 @@ const NO_USE: f64 = 0.75;
 /// Divisions without use in a row after which the peak is given up: the estimate remembers the changes from
 /// three grids.
 const GIVEN_UP: usize = 3;
-
-/// What follows a solution on a grid that holds the contact.
-enum Next {
-    /// Nothing: the peak pressure is accurate, or nobody can tell.
-    Enough,
-    /// A solution on finer cells.
-    Finer(Grid),
-    /// A warning that the peak pressure is not accurate.
-    TooFine(Warning),
-}
 
 /// The divisions of one grid.
 #[derive(Debug, Default)]
@@ -252,128 +238,78 @@ struct Refinement {
 }
 
 impl Refinement {
-    /// The next step after `solution`, which has converged.
-    fn next(&mut self, solution: &Solution, task: &Task) -> Result<Next> {
-        let edges = edges(solution, task.shape);
-        if edges.contains(&Edge::Reached) {
-            return Ok(Next::Enough);
-        }
-        let short_of_edge = edges.map(|edge| edge == Edge::OutOfReach);
-        if short_of_edge.contains(&true) {
-            let finer = divided(task, solution.grid(), short_of_edge, &[4, 2])?;
-            return Ok(finer.map_or(Next::Enough, Next::Finer));
+    /// The next grid after that of `solution`, which has converged; `None` where the peak pressure is accurate, where
+    /// nobody can tell, and where no permitted grid makes it so.
+    fn next(&mut self, solution: &Solution, task: &Task) -> Result<Option<Grid>> {
+        let Some(short_of_end) = short_of_ends(solution, task.shape) else {
+            return Ok(None);
+        };
+        if short_of_end.contains(&true) {
+            return halved(task, solution.grid(), short_of_end);
         }
         let Some(error) = peak_error(solution) else {
-            return Ok(Next::Enough);
+            return Ok(None);
         };
         let (bends, narrow) = around_peak(solution);
         if error <= PEAK_ERROR && narrow == [false; 2] {
-            return Ok(Next::Enough);
+            return Ok(None);
         }
         let useless = self.least.is_some_and(|least| error > NO_USE * least);
         self.in_vain = if useless { self.in_vain + 1 } else { 0 };
         self.least = Some(self.least.map_or(error, |least| least.min(error)));
         if self.in_vain == GIVEN_UP {
-            return Ok(Next::TooFine(Warning::PeakError { error }));
+            return Ok(None);
         }
-        // Where division along one axis was of no use twice, the other axis may need it.
-        let both = self.in_vain + 1 == GIVEN_UP;
+        // Where halving along one axis was of no use, the other axis may need it.
+        let both = self.in_vain > 0;
         let axes = [0, 1].map(|k| both || narrow[k] || (bends[k] && error > PEAK_ERROR));
-        let far = error > 4.0 * PEAK_ERROR && axes != [true; 2];
-        let parts: &[usize] = if far { &[4, 2] } else { &[2] };
-        let finer = divided(task, solution.grid(), axes, parts)?;
-        Ok(finer.map_or(Next::TooFine(Warning::PeakError { error }), Next::Finer))
+        halved(task, solution.grid(), axes)
     }
 }
 
-/// The grid whose cells are divided along `axes`, into the first of these numbers of `parts` with which there are
-/// not too many; `None` where there always are.
-fn divided(task: &Task, grid: &Grid, axes: [bool; 2], parts: &[usize]) -> Result<Option<Grid>> {
-    for parts in parts {
-        let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { *parts } else { 1 });
-        if shape[0].saturating_mul(shape[1]) <= task.most {
-            let finer = Grid::new(shape, grid.size())?.centered_at(grid.center())?;
-            return Ok(Some(finer));
-        }
+/// The grid whose cells are halved along `axes`; `None` where there would be too many.
+fn halved(task: &Task, grid: &Grid, axes: [bool; 2]) -> Result<Option<Grid>> {
+    let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { 2 } else { 1 });
+    if shape[0].saturating_mul(shape[1]) > task.most {
+        return Ok(None);
     }
-    Ok(None)
+    Ok(Some(Grid::new(shape, grid.size())?.centered_at(grid.center())?))
 }
 
-/// How a contact meets the edges of a shape along one axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Edge {
-    /// The contact stays away from them.
-    Away,
-    /// The contact reaches the cell at an edge, but the gap at the edge itself is too large to touch, as at the
-    /// end of a logarithmic profile: cells are too long.
-    OutOfReach,
-    /// The contact reaches an edge, where the pressure is singular.
-    Reached,
-}
-
-/// How the contact meets the edges of `shape` along both axes; it does where the solution has a warning of them.
-fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
-    let warned = |warning: &Warning| {
-        matches!(warning, Warning::SharpEnd { .. } | Warning::FreeEnd | Warning::SharpEdge)
-    };
-    let mut edges = [Edge::Away; 2];
-    if !solution.report.warnings.iter().any(warned) {
-        return edges;
-    }
-    let (grid, pressure) = (solution.grid(), &solution.pressure);
-    let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
-    for ((i, j), _) in pressure.indexed_iter().filter(|(_, p)| **p > 0.0) {
-        for (axis, side) in [(0, -1_isize), (0, 1), (1, -1), (1, 1)] {
-            let beside = if axis == 0 {
-                [i.checked_add_signed(side), Some(j)]
-            } else {
-                [Some(i), j.checked_add_signed(side)]
-            };
-            let in_contact = match beside {
-                [Some(i), Some(j)] => pressure.get([i, j]).is_some_and(|p| *p > 0.0),
-                _ => false,
-            };
-            if in_contact {
-                continue;
-            }
-            let mut step = [0.0; 2];
-            step[axis] = side as f64 * spacing[axis];
-            match touches_edge(solution, shape, [x[i], y[j]], step) {
-                Some(true) => return [Edge::Reached; 2],
-                Some(false) => edges[axis] = Edge::OutOfReach,
-                None => {}
-            }
-        }
-    }
-    edges
-}
-
-/// Whether the edge of `shape` between `[x, y]` and the place a `step` further can touch the surface; `None` where
-/// there is no edge between them.
-fn touches_edge(
-    solution: &Solution,
-    shape: &dyn Surface,
-    [x, y]: [f64; 2],
-    step: [f64; 2],
-) -> Option<bool> {
-    // Halvings of a cell's length, to the rounding of coordinates.
-    const HALVINGS: usize = 50;
-    let at = |part: f64| [x + part * step[0], y + part * step[1]];
-    let gap = |[x, y]: [f64; 2]| shape.gap(x, y);
-    if gap(at(1.0)).is_finite() {
+/// Axes along which the contact reaches the cell at an end of the shape, although the gap at the end itself is too large
+/// to touch, as on a logarithmic profile: cells are too long. `None` where the contact reaches an edge, at which the
+/// pressure is singular.
+fn short_of_ends(solution: &Solution, shape: &dyn Surface) -> Option<[bool; 2]> {
+    let warned = |kind: fn(&Warning) -> bool| solution.report.warnings.iter().any(kind);
+    if warned(|warning| *warning == Warning::SharpEdge) {
         return None;
     }
-    let (mut inside, mut outside) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (inside + outside);
-        if gap(at(middle)).is_finite() {
-            inside = middle;
-        } else {
-            outside = middle;
+    let mut short = [false; 2];
+    if !warned(|warning| matches!(warning, Warning::SharpEnd { .. } | Warning::FreeEnd)) {
+        return Some(short);
+    }
+    let (grid, contact, tilt) = (solution.grid(), solution.contact_extent(), solution.tilt);
+    for axis in 0..2 {
+        let Extent::CutOff([low, high]) = shape.extent()[axis] else {
+            continue;
+        };
+        for side in [0, 1] {
+            // The gap is infinite beyond the end, and by rounding perhaps at it.
+            let end = [low, high][side] + [ROUNDING, -ROUNDING][side] * (high - low);
+            if (contact[axis][side] - end).abs() > grid.spacing()[axis] {
+                continue;
+            }
+            let beside = grid.coordinates(1 - axis).to_vec().into_iter();
+            let touches = beside
+                .map(|at| if axis == 0 { [end, at] } else { [at, end] })
+                .any(|[x, y]| shape.gap(x, y) < solution.approach + tilt[0] * x + tilt[1] * y);
+            if touches {
+                return None;
+            }
+            short[axis] = true;
         }
     }
-    let edge @ [x, y] = at(inside);
-    Some(gap(edge) < solution.approach + solution.tilt[0] * x + solution.tilt[1] * y)
+    Some(short)
 }
 
 /// The estimated error of the peak pressure, relative to the peak; `None` where there is no estimate.
@@ -382,21 +318,17 @@ fn peak_error(solution: &Solution) -> Option<f64> {
     errors.peak_pressure.filter(|_| peak > 0.0).map(|error| error / peak)
 }
 
-/// Along each axis: whether the pressure bends about as much as along the other, and whether few cells are in
-/// contact, both on the line through the peak.
+/// Along each axis: whether the pressure bends most along it at the peak, and whether few cells are in contact on the line
+/// through the peak.
 fn around_peak(solution: &Solution) -> ([bool; 2], [bool; 2]) {
     let (pressure, peak) = (&solution.pressure, solution.peak_pressure());
     let found = pressure.indexed_iter().find(|(_, p)| **p >= peak);
     let (row, column) = found.map_or((0, 0), |(at, _)| at);
     let lines = [(pressure.column(column), row), (pressure.row(row), column)];
-    let bends = lines.map(|(line, at)| {
-        let value = |k: usize| line.get(k).copied().unwrap_or(0.0);
-        let near = at.saturating_sub(AROUND_PEAK)..=at + AROUND_PEAK;
-        let second = |k: usize| {
-            let before = if k == 0 { 0.0 } else { value(k - 1) };
-            (before - 2.0 * value(k) + value(k + 1)).abs()
-        };
-        near.map(second).fold(0.0, f64::max)
+    // The less the neighbours of the peak carry, the more the pressure bends.
+    let beside = lines.map(|(line, at)| {
+        let before = at.checked_sub(1).map_or(0.0, |k| line[k]);
+        before + line.get(at + 1).copied().unwrap_or(0.0)
     });
     let narrow = lines.map(|(line, at)| {
         let free = |k: &usize| line.get(*k).is_some_and(|p| *p > 0.0);
@@ -404,6 +336,5 @@ fn around_peak(solution: &Solution) -> ([bool; 2], [bool; 2]) {
         let below = (0..at).rev().take_while(free).count();
         above + below < NARROW
     });
-    let most = bends[0].max(bends[1]);
-    (bends.map(|bend| bend >= BENDS_TOO * most), narrow)
+    (beside.map(|sum| sum <= beside[0].min(beside[1])), narrow)
 }

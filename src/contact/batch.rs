@@ -114,7 +114,7 @@ impl Contact {
             return Ok(());
         }
         check_memory(self.grid.shape(), workers as u64 * self.own_memory())?;
-        let threads = self.convolution.threads();
+        let threads = self.convolution().threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         // Nothing is ever sent: the channel closes with the last worker.
@@ -134,13 +134,9 @@ impl Contact {
                         let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
-                        let solved = plan.run(|| {
-                            let mut solution =
-                                plan.solve_sampled(*shape, sampled, motion, options, progress)?;
-                            plan.compare(&mut solution, *shape, motion, options, progress);
-                            Ok(solution)
-                        });
+                        let progress = &mut |_: &_| asked();
+                        let solved =
+                            plan.solve_watched(*shape, &mut sampled, motion, options, progress);
                         let unfinished = matches!(&solved, Ok(solution)
                         if solution.report.termination == Termination::Stopped);
                         if !unfinished {
@@ -178,6 +174,6 @@ impl Contact {
 
     /// Number of cases that are solved at once.
     fn workers(&self, cases: &[Case]) -> usize {
-        self.convolution.threads().min(cases.len())
+        self.convolution().threads().min(cases.len())
     }
 }

@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use crate::compliance::convolution::{Addition, Convolution};
+use crate::compliance::convolution::Convolution;
+use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::GridResult;
 use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
@@ -41,75 +42,9 @@ const GOOD_START: f64 = 1e-5;
 /// Certificates that may fail on a window that need not open, by rounding of the displacement.
 const RETRIES: usize = 2;
 
-/// Solutions on the coarser grids.
-pub(super) struct Coarser {
-    /// Pressure on the last grid that was solved.
-    pressure: Option<Patch>,
-    /// Results from the coarsest grid on.
-    results: Vec<GridResult>,
-    /// The outcome on the grid where the caller stopped the solve.
-    stopped: Option<Outcome>,
-}
-
-impl Coarser {
-    /// Solves on the coarser grids of `planned`, for the degrees of freedom and the `gap` of the finest.
-    /// `None` where `shape` has no gap for coarser cells, and the `gap` that serves instead is not given.
-    pub(super) fn solve(
-        freedoms: &Freedoms,
-        gap: Option<&Array2<f64>>,
-        shape: &dyn Surface,
-        planned: &Levels,
-        criteria: StopCriteria,
-        tally: &mut Tally,
-    ) -> Option<Self> {
-        let levels = planned.coarser(freedoms, gap, shape)?;
-        let mut solved = Self { pressure: None, results: Vec::new(), stopped: None };
-        for level in levels.iter().rev() {
-            let tolerance = criteria.tolerance.max(COARSE_TOLERANCE);
-            let criteria = StopCriteria { tolerance, ..criteria };
-            let Some(mut patch) = solved.start(level) else {
-                continue;
-            };
-            if solved.stopped.is_none() {
-                tally.iterations = 0;
-                let outcome = level.solve(&mut patch, criteria, tally);
-                if outcome.termination == Termination::Stopped {
-                    solved.stopped = Some(outcome);
-                }
-                solved.results.push(level.result(&patch, outcome.lambda));
-            }
-            solved.pressure = Some(patch);
-        }
-        Some(solved)
-    }
-
-    /// The balanced pressure that `level` starts from: the interpolated one, or else a uniform one. `None`
-    /// where coarse cells cannot carry the moments that fine ones can.
-    fn start(&mut self, level: &Level) -> Option<Patch> {
-        let shape = level.shape();
-        let halved = level.halved();
-        if (halved.iter().zip(shape)).any(|(halved, n)| !halved && n > 1) {
-            // Results are comparable only between grids of which all directions were halved.
-            self.results.clear();
-        }
-        let mut patch = match self.pressure.take() {
-            Some(coarse) => coarse.interpolated(shape, halved),
-            None => {
-                let uniform = level.freedoms.typical_pressure(level.gap.len());
-                Patch::of_grid(&Array2::from_elem(shape, uniform))
-            }
-        };
-        let balanced = level.balance(&mut patch);
-        if !balanced {
-            self.results.clear();
-        }
-        balanced.then_some(patch)
-    }
-}
-
 /// The finest grid, and a window around its contact.
 pub(super) struct Cascade<'a> {
-    finest: Level<'a>,
+    finest: LevelProblem<'a>,
     patch: Patch,
     /// Results of the coarser grids, from the coarsest on.
     pub(super) results: Vec<GridResult>,
@@ -118,21 +53,41 @@ pub(super) struct Cascade<'a> {
 }
 
 impl<'a> Cascade<'a> {
-    /// Starts the finest grid from the solutions on the coarser ones; `None` where no balanced pressure was
+    /// Solves on the coarser of `levels`, and starts the finest grid from there; `None` where no balanced pressure was
     /// found.
-    pub(super) fn after(
-        mut coarser: Coarser,
+    pub(super) fn nested(
         problem: &Problem<'a>,
         gap: &'a Array2<f64>,
-        planned: &'a Levels,
+        shape: &dyn Surface,
+        levels: &'a [Level],
+        criteria: StopCriteria,
         tally: &mut Tally,
     ) -> Option<Self> {
-        if coarser.stopped.is_none() {
+        let mut problems = vec![LevelProblem::finest(&levels[0], problem, gap)];
+        for level in &levels[1..] {
+            problems.push(problems[problems.len() - 1].coarse(level, shape));
+        }
+        let tolerance = criteria.tolerance.max(COARSE_TOLERANCE);
+        let criteria = StopCriteria { tolerance, ..criteria };
+        let (mut pressure, mut results, mut stopped) = (None, Vec::new(), None);
+        for level in problems[1..].iter().rev() {
+            let Some(mut patch) = level.start(pressure.take(), &mut results) else {
+                continue;
+            };
+            if stopped.is_none() {
+                tally.iterations = 0;
+                let outcome = level.solve(&mut patch, criteria, tally);
+                stopped = (outcome.termination == Termination::Stopped).then_some(outcome);
+                results.push(level.result(&patch, outcome.lambda));
+            }
+            pressure = Some(patch);
+        }
+        if stopped.is_none() {
             tally.iterations = 0;
         }
-        let finest = planned.finest(problem, gap);
-        let patch = coarser.start(&finest)?;
-        Some(Self { finest, patch, results: coarser.results, stopped: coarser.stopped })
+        let finest = problems.swap_remove(0);
+        let patch = finest.start(pressure, &mut results)?;
+        Some(Self { finest, patch, results, stopped })
     }
 
     /// Starts the finest grid from a `given` pressure.
@@ -140,9 +95,9 @@ impl<'a> Cascade<'a> {
         given: &Array2<f64>,
         problem: &Problem<'a>,
         gap: &'a Array2<f64>,
-        planned: &'a Levels,
+        finest: &'a Level,
     ) -> Self {
-        let finest = planned.finest(problem, gap);
+        let finest = LevelProblem::finest(finest, problem, gap);
         let mut patch = Patch::of_grid(given);
         if let Some(contact) = patch.contact() {
             patch = patch.moved(widened(&contact, finest.shape()));
@@ -215,8 +170,13 @@ fn halved(grid: &Grid) -> [bool; 2] {
     [0, 1].map(|k| shape[k] >= 2 * COARSEST_CELLS && !(periodic[k] && shape[k] % 2 == 1))
 }
 
-/// The grid whose cells are twice as long in the directions of `halved`; it starts where `fine` does.
-fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
+/// The next coarser grid, whose cells are twice as long in the directions that are halved; it starts where `fine` does.
+/// `None` where there is none.
+pub(super) fn coarser(fine: &Grid) -> Result<Option<Grid>> {
+    let halved = halved(fine);
+    if halved == [false; 2] {
+        return Ok(None);
+    }
     let (shape, spacing, center) = (fine.shape(), fine.spacing(), fine.center());
     let cells = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) } else { shape[k] });
     let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
@@ -227,110 +187,34 @@ fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
     } else {
         Grid::new(cells, sides)?.periodic(fine.is_periodic())?
     };
-    grid.centered_at([0, 1].map(|k| center[k] + grown[k]))
+    grid.centered_at([0, 1].map(|k| center[k] + grown[k])).map(Some)
 }
 
-/// A grid and all coarser ones, each with its own influence coefficients.
+/// A grid with its own influence coefficients.
 #[derive(Debug)]
-pub(crate) struct Levels {
-    /// Coefficients of levels 0 (the finest), 1, 2, …
-    coefficients: Arc<Vec<Array2<f64>>>,
-    /// Convolutions of levels 1, 2, …; level 0 uses the contact's own.
-    convolutions: Vec<Convolution>,
-    /// Local displacements of levels 1, 2, …; level 0 uses the contact's own.
-    locals: Vec<LocalDisplacement>,
-    /// Grids of levels 0, 1, 2, …
-    grids: Vec<Grid>,
+pub(crate) struct Level {
+    grid: Grid,
+    coefficients: Arc<Array2<f64>>,
+    pub(super) convolution: Convolution,
+    pub(super) local: LocalDisplacement,
 }
 
-impl Levels {
-    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid, what free ends add
-    /// to them, and its local displacements.
-    pub(crate) fn plan(
-        finest: Grid,
+impl Level {
+    /// A grid with the `coefficients` of `bodies`, and their convolution.
+    pub(super) fn new(
+        grid: Grid,
         coefficients: Array2<f64>,
-        convolution: &Convolution,
-        of: impl Fn(&Grid) -> Result<(Array2<f64>, Vec<Addition>, LocalDisplacement)>,
-    ) -> Result<Self> {
-        let (mut coefficients, mut grids) = (vec![coefficients], vec![finest]);
-        let (mut convolutions, mut locals) = (Vec::new(), Vec::new());
-        let mut fine = finest;
-        while halved(&fine) != [false; 2] {
-            fine = coarse_grid(&fine, halved(&fine))?;
-            let (coarse, additions, local) = of(&fine)?;
-            locals.push(local);
-            let companion = convolution.companion(&coarse, fine.is_periodic());
-            convolutions.push(companion.plus(additions));
-            coefficients.push(coarse);
-            grids.push(fine);
-        }
-        Ok(Self { coefficients: Arc::new(coefficients), convolutions, locals, grids })
+        convolution: Convolution,
+        bodies: &[&Body],
+    ) -> Self {
+        let local = LocalDisplacement::new(bodies, &grid);
+        Self { grid, coefficients: Arc::new(coefficients), convolution, local }
     }
 
-    /// These levels on the threads of `finest`; all large arrays are shared.
-    pub(crate) fn beside(&self, finest: &Convolution) -> Self {
-        let convolutions = self.convolutions.iter();
-        Self {
-            coefficients: Arc::clone(&self.coefficients),
-            convolutions: convolutions.map(|c| c.sharing_with(finest)).collect(),
-            locals: self.locals.clone(),
-            grids: self.grids.clone(),
-        }
-    }
-
-    /// The finest level, for `problem` with this `gap`.
-    pub(crate) fn finest<'a>(&'a self, problem: &Problem<'a>, gap: &'a Array2<f64>) -> Level<'a> {
-        Level {
-            coefficients: &self.coefficients[0],
-            convolution: problem.convolution,
-            local: problem.local,
-            grid: &self.grids[0],
-            freedoms: problem.freedoms.clone(),
-            gap: Cow::Borrowed(gap),
-            bounds: problem.bounds.clone(),
-        }
-    }
-
-    /// Levels 1, 2, … for the degrees of freedom and the gap of level 0. `None` where `shape` has no gap
-    /// for coarser cells and the `gap` of level 0, from which it would be averaged, is not given.
-    pub(crate) fn coarser(
-        &self,
-        freedoms: &Freedoms,
-        gap: Option<&Array2<f64>>,
-        shape: &dyn Surface,
-    ) -> Option<Vec<Level<'_>>> {
-        let mut levels: Vec<Level> = Vec::new();
-        let coarser = self.coefficients.iter().zip(&self.grids).skip(1);
-        let finer = self.grids.iter();
-        let locals = self.locals.iter();
-        for ((((coefficients, grid), convolution), local), finer) in
-            coarser.zip(&self.convolutions).zip(locals).zip(finer)
-        {
-            let halved = halved(finer);
-            let fine = levels.last();
-            let freedoms = fine.map_or(freedoms, |fine| &fine.freedoms).coarse(halved);
-            let rows = Rows::new(&freedoms.columns, convolution.own_threads());
-            // A measured surface has no gap for cells that are much larger than its own.
-            let gap = match checked_gaps(shape, grid, &rows) {
-                Ok(mut gap) => {
-                    if freedoms.any_prescribed() {
-                        freedoms.prescribe(&mut gap);
-                    }
-                    gap
-                }
-                Err(_) => coarse_gap(fine.map_or(gap, |fine| Some(&fine.gap))?, halved),
-            };
-            levels.push(Level {
-                coefficients,
-                convolution,
-                local,
-                grid,
-                freedoms,
-                gap: Cow::Owned(gap),
-                bounds: Bounds::none(grid.shape()[1]),
-            });
-        }
-        Some(levels)
+    /// This level with another convolution; the coefficients are shared.
+    pub(super) fn with(&self, convolution: Convolution) -> Self {
+        let (coefficients, local) = (Arc::clone(&self.coefficients), self.local.clone());
+        Self { grid: self.grid, coefficients, convolution, local }
     }
 }
 
@@ -353,30 +237,71 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     })
 }
 
-/// One grid with its coefficients and its problem.
-pub(crate) struct Level<'a> {
-    coefficients: &'a Array2<f64>,
-    convolution: &'a Convolution,
-    local: &'a LocalDisplacement,
-    grid: &'a Grid,
-    pub(crate) freedoms: Freedoms,
-    pub(crate) gap: Cow<'a, Array2<f64>>,
+/// The problem on one grid.
+struct LevelProblem<'a> {
+    level: &'a Level,
+    freedoms: Freedoms,
+    gap: Cow<'a, Array2<f64>>,
     bounds: Bounds<'a>,
 }
 
-impl Level<'_> {
+impl<'a> LevelProblem<'a> {
+    /// The `problem` with this `gap` on the finest grid.
+    fn finest(level: &'a Level, problem: &Problem<'a>, gap: &'a Array2<f64>) -> Self {
+        let (freedoms, bounds) = (problem.freedoms.clone(), problem.bounds.clone());
+        Self { level, freedoms, gap: Cow::Borrowed(gap), bounds }
+    }
+
+    /// This elastic problem on the next coarser grid.
+    fn coarse<'b>(&self, level: &'b Level, shape: &dyn Surface) -> LevelProblem<'b> {
+        let freedoms = self.freedoms.coarse(self.halved());
+        let rows = Rows::new(&freedoms.columns, level.convolution.own_threads());
+        // A measured surface has no gap for cells that are much larger than its own.
+        let gap = match checked_gaps(shape, &level.grid, &rows) {
+            Ok(mut gap) => {
+                freedoms.prescribe(&mut gap);
+                gap
+            }
+            Err(_) => coarse_gap(&self.gap, self.halved()),
+        };
+        let bounds = Bounds::none(level.grid.shape()[1]);
+        LevelProblem { level, freedoms, gap: Cow::Owned(gap), bounds }
+    }
+
     /// Numbers of cells.
-    pub(crate) fn shape(&self) -> [usize; 2] {
-        [self.gap.nrows(), self.gap.ncols()]
+    fn shape(&self) -> [usize; 2] {
+        self.level.grid.shape()
     }
 
     /// Directions that are halved for the next coarser grid.
-    pub(crate) fn halved(&self) -> [bool; 2] {
-        halved(self.grid)
+    fn halved(&self) -> [bool; 2] {
+        halved(&self.level.grid)
+    }
+
+    /// The balanced pressure to start from: the `coarse` one, interpolated, or else a uniform one. `None` where these
+    /// cells cannot carry the moments that finer ones can. Clears `results` with which those of this grid cannot be compared.
+    fn start(&self, coarse: Option<Patch>, results: &mut Vec<GridResult>) -> Option<Patch> {
+        let (shape, halved) = (self.shape(), self.halved());
+        if (halved.iter().zip(shape)).any(|(halved, n)| !halved && n > 1) {
+            // Results are comparable only between grids of which all directions were halved.
+            results.clear();
+        }
+        let mut patch = match coarse {
+            Some(coarse) => coarse.interpolated(shape, halved),
+            None => {
+                let uniform = self.freedoms.typical_pressure(self.gap.len());
+                Patch::of_grid(&Array2::from_elem(shape, uniform))
+            }
+        };
+        let balanced = self.balance(&mut patch);
+        if !balanced {
+            results.clear();
+        }
+        balanced.then_some(patch)
     }
 
     /// Peak pressure, approach and load of a solution on this grid.
-    pub(crate) fn result(&self, patch: &Patch, lambda: [f64; 3]) -> GridResult {
+    fn result(&self, patch: &Patch, lambda: [f64; 3]) -> GridResult {
         let ([peak], [sum]) = update_with_largest([&patch.values], [], |[p], []| ([], [p], [p]));
         GridResult {
             peak_pressure: peak,
@@ -386,7 +311,7 @@ impl Level<'_> {
     }
 
     /// Takes the pressure from cells that cannot touch, and balances it. False where that is impossible.
-    pub(crate) fn balance(&self, patch: &mut Patch) -> bool {
+    fn balance(&self, patch: &mut Patch) -> bool {
         let pressures = patch.values.chunks_exact_mut(patch.window[1].len().max(1));
         for (p, gaps) in pressures.zip(patch::rows(&self.gap, &patch.window)) {
             update([gaps], [p], |[h], [p]| ([h.simd_lt(all(f64::INFINITY)) & p], []));
@@ -398,29 +323,24 @@ impl Level<'_> {
 
     /// Solves in the window of `patch`, and in larger windows while the contact reaches the edge; `patch`
     /// becomes the solution. Where the preconditioned iteration ends early, the active set goes on.
-    pub(crate) fn solve(
-        &self,
-        patch: &mut Patch,
-        criteria: StopCriteria,
-        tally: &mut Tally,
-    ) -> Outcome {
+    fn solve(&self, patch: &mut Patch, criteria: StopCriteria, tally: &mut Tally) -> Outcome {
         let shape = self.shape();
         loop {
             let window = &patch.window;
             let whole = *window == full_window(shape);
-            let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
-            let repeats = repeating(self.grid, window);
+            let corner = block(&self.level.coefficients, &[0..window[0].len(), 0..window[1].len()]);
+            let repeats = repeating(&self.level.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
             let bounds = self.bounds.in_window(window);
             let first = window[0].start;
-            let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
-            let approximation = self.convolution.approximation(&corner, repeats);
+            let windowed = (!whole).then(|| self.level.convolution.on_window(&corner, first));
+            let approximation = self.level.convolution.approximation(&corner, repeats);
             let gap = copied(&self.gap, window);
             let problem = Problem {
-                convolution: windowed.as_ref().unwrap_or(self.convolution),
+                convolution: windowed.as_ref().unwrap_or(&self.level.convolution),
                 freedoms: &freedoms,
                 gap: &gap,
-                local: self.local,
+                local: &self.level.local,
                 bounds: &bounds,
             };
             let mut solver = Preconditioned::new(&problem, &approximation);

@@ -1,6 +1,5 @@
 //! One solve, as named steps in order.
 
-use std::f64::consts::PI;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -9,10 +8,10 @@ use std::time::Instant;
 use ndarray::Array2;
 
 use crate::compliance::ends::check_carried;
+use crate::contact::cascade::Cascade;
 use crate::contact::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
-use crate::contact::cascade::{Cascade, Coarser};
 use crate::contact::options::{Algorithm, Motion, Options};
-use crate::contact::plan::{Contact, bodies};
+use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
@@ -76,8 +75,21 @@ impl Contact {
         let mut asked = options.into();
         let options = asked.options;
         let progress = &mut |report: &Report| asked.tell(report);
+        self.solve_watched(shape, &mut Sampled::default(), motion, options, progress)
+    }
+
+    /// [`Contact::solve`] with a callback that is told of each iteration. Where `shape` was sampled last, its gaps are not
+    /// computed again.
+    pub(super) fn solve_watched<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
         self.run(|| {
-            let mut solution = self.solve_alone(shape, motion, options, progress)?;
+            let mut solution = self.solve_sampled(shape, sampled, motion, options, progress)?;
             self.compare(&mut solution, shape, motion, options, progress);
             Ok(solution)
         })
@@ -95,9 +107,7 @@ impl Contact {
         self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
     }
 
-    /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`
-    /// was sampled last, its gaps are not computed again.
-    pub(super) fn solve_sampled<'a>(
+    fn solve_sampled<'a>(
         &self,
         shape: &'a dyn Surface,
         sampled: &mut Sampled<'a>,
@@ -150,7 +160,7 @@ impl Contact {
             criteria: options.stop_criteria()?,
         };
         let mut report = Report::planned(self, steps.shape, motion, options.tolerance);
-        let unit = self.convolution.work();
+        let unit = self.convolution().work();
         let mut count = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
             report.count(iterations, work / unit, quality);
             report.seconds = start.elapsed().as_secs_f64();
@@ -158,18 +168,19 @@ impl Contact {
         };
         let tally = &mut Tally::new(&mut count);
 
-        let (gap, mut fields, ahead) = steps.sample(shape, sampled, tally)?;
+        let gap = steps.sample(shape, sampled)?;
+        let mut fields = SolutionFields::new(self.grid.shape());
         let elastic = Problem {
-            convolution: &self.convolution,
+            convolution: self.convolution(),
             freedoms: &freedoms,
             gap: slice(&gap),
             bounds: &Bounds::none(columns),
-            local: &self.local,
+            local: &self.levels[0].local,
         };
         if let Some(hardness) = &options.hardness {
             check_load(&elastic, hardness)?;
         }
-        let (mut outcome, results) = steps.iterate(&elastic, &gap, ahead, &mut fields, tally)?;
+        let (mut outcome, results) = steps.iterate(&elastic, &gap, &mut fields, tally)?;
         let exceeded = |limits: &Bounds| {
             let mut cells = slice(&fields.pressure).iter().enumerate();
             cells.any(|(k, p)| *p > limits.limit(k))
@@ -178,13 +189,17 @@ impl Contact {
         let limits = limits.filter(|limits| !stopped && exceeded(limits));
         let problem = Problem { bounds: limits.as_ref().unwrap_or(elastic.bounds), ..elastic };
         if problem.bounds.is_limited() {
-            outcome = steps.let_yield(&problem, &gap, &mut fields, tally)?;
+            let g = fields.gap(&problem);
+            let start = yielding_pressure(&problem, slice(&fields.pressure), &g)?;
+            fields.pressure.fill(0.0);
+            outcome = steps.solve_from(start, &problem, &gap, &mut fields, tally)?;
         }
         let (iterations, work) = (tally.iterations, tally.work);
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
         report.count(iterations, work / unit, quality);
-        let mut solution =
-            steps.report(&problem, &gap, fields, (outcome, quality), results, report)?;
+        let indentation = problem.bounds.is_limited().then(|| fields.indentation(&problem));
+        let fields = (gap, indentation, fields);
+        let mut solution = steps.report(fields, (outcome, quality), results, report)?;
         solution.report.seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }
@@ -203,7 +218,7 @@ struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     fn rows(&self) -> Rows<'a> {
-        Rows::new(&self.freedoms.columns, self.plan.convolution.own_threads())
+        Rows::new(&self.freedoms.columns, self.plan.convolution().own_threads())
     }
 
     /// Whether the solve starts with nested grids.
@@ -211,58 +226,19 @@ impl<'a> Steps<'a> {
         self.options.algorithm == Algorithm::Cascade
     }
 
-    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution; at the same time
-    /// coarser solutions, since fetching memory may take long and the coarsest grids are too small for several threads.
-    /// The shape that is `given` tells whether it was sampled before.
+    /// The gap, less the prescribed motion. The shape that is `given` tells whether it was sampled before.
     fn sample<'s>(
         &self,
         given: &'s dyn Surface,
         sampled: &mut Sampled<'s>,
-        tally: &mut Tally,
-    ) -> Result<(Arc<Array2<f64>>, SolutionFields, Option<Coarser>)> {
-        let (plan, rows, options) = (self.plan, self.rows(), self.options);
-        // An approach that may be too large for a solution is looked at before.
-        let bounded = plan.datum.floats && !self.freedoms.loaded[0];
-        let (finest, ahead) = rows.both(
-            || -> Result<_> {
-                let sample = || checked_gaps(self.shape, &plan.grid, &rows);
-                let mut gap = sampled.gaps(given, sample)?;
-                self.freedoms.check_feasible(&gap)?;
-                if self.freedoms.any_prescribed() {
-                    self.freedoms.prescribe(Arc::make_mut(&mut gap));
-                }
-                Ok((gap, SolutionFields::new(plan.grid.shape(), &rows)))
-            },
-            || {
-                let ahead = self.cascades() && options.initial.is_none() && !bounded;
-                ahead.then(|| self.solve_coarser(None, tally)).flatten()
-            },
-        );
-        let (gap, fields) = finest?;
-        if bounded && self.largest_hardness() <= 0.0 {
-            self.check_gap(&gap)?;
+    ) -> Result<Arc<Array2<f64>>> {
+        let sample = || checked_gaps(self.shape, &self.plan.grid, &self.rows());
+        let mut gap = sampled.gaps(given, sample)?;
+        self.freedoms.check_feasible(&gap)?;
+        if self.freedoms.any_prescribed() {
+            self.freedoms.prescribe(Arc::make_mut(&mut gap));
         }
-        Ok((gap, fields, ahead))
-    }
-
-    /// An error where the approach is beyond full contact, which only a hardness ends.
-    fn check_gap(&self, gap: &Array2<f64>) -> Result<()> {
-        self.motion.approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap))
-    }
-
-    /// Largest hardness of the cells that may yield; 0 where none may.
-    fn largest_hardness(&self) -> f64 {
-        let hardness = self.options.hardness.as_ref().filter(|hardness| hardness.is_limited());
-        hardness.map_or(0.0, |hardness| {
-            let values = (0..self.plan.grid.shape().iter().product()).map(|cell| hardness.at(cell));
-            values.filter(|value| value.is_finite()).fold(0.0, f64::max)
-        })
-    }
-
-    /// Solutions on the coarser grids; `None` where they need the `gap` of the finest.
-    fn solve_coarser(&self, gap: Option<&Array2<f64>>, tally: &mut Tally) -> Option<Coarser> {
-        let levels = &self.plan.levels;
-        Coarser::solve(self.freedoms, gap, self.shape, levels, self.criteria, tally)
+        Ok(gap)
     }
 
     /// Solves the elastic problem from a given pressure, or from the solutions on coarser grids, whose results it
@@ -271,14 +247,19 @@ impl<'a> Steps<'a> {
         &self,
         problem: &Problem,
         gap: &Array2<f64>,
-        ahead: Option<Coarser>,
         fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<(Outcome, Vec<GridResult>)> {
         let levels = &self.plan.levels;
-        if self.check_gap(gap).is_err() {
+        let approach = self.motion.approach;
+        let possible = approach.map_or(Ok(()), |approach| self.plan.datum.check_gap(approach, gap));
+        if let Err(full_contact) = possible {
+            let hardness = self.options.hardness.as_ref().map_or(0.0, Hardness::largest);
+            if hardness <= 0.0 {
+                return Err(full_contact);
+            }
             // There is no elastic solution; that with the hardness is sought from where all cells yield.
-            fields.pressure.fill(2.0 * self.largest_hardness());
+            fields.pressure.fill(2.0 * hardness);
             let (solver, termination) = (Solver::Preconditioned, Termination::IterationLimit);
             return Ok((Outcome { solver, termination, lambda: [0.0; 3] }, Vec::new()));
         }
@@ -287,8 +268,8 @@ impl<'a> Steps<'a> {
             return Ok((outcome, Vec::new()));
         }
         if self.cascades()
-            && let Some(coarser) = ahead.or_else(|| self.solve_coarser(Some(gap), tally))
-            && let Some(mut cascade) = Cascade::after(coarser, problem, gap, levels, tally)
+            && let Some(mut cascade) =
+                Cascade::nested(problem, gap, self.shape, levels, self.criteria, tally)
         {
             let results = std::mem::take(&mut cascade.results);
             let outcome = cascade.solve_in_window(problem, fields, self.criteria, tally)?;
@@ -309,33 +290,17 @@ impl<'a> Steps<'a> {
         tally: &mut Tally,
     ) -> Result<Outcome> {
         if self.cascades() {
-            let cascade = Cascade::from(&start, problem, gap, &self.plan.levels);
+            let cascade = Cascade::from(&start, problem, gap, &self.plan.levels[0]);
             return cascade.solve_in_window(problem, fields, self.criteria, tally);
         }
         fields.pressure = start;
         polonsky_keer::solve(problem, fields, self.criteria, tally)
     }
 
-    /// Solves the problem with its hardness from the elastic solution in `fields`.
-    fn let_yield(
-        &self,
-        problem: &Problem,
-        gap: &Array2<f64>,
-        fields: &mut SolutionFields,
-        tally: &mut Tally,
-    ) -> Result<Outcome> {
-        let g = fields.gap(problem);
-        let start = yielding_pressure(problem, slice(&fields.pressure), &g)?;
-        fields.pressure.fill(0.0);
-        self.solve_from(start, problem, gap, fields, tally)
-    }
-
     /// The solution. All that it reports is computed from the pressure, with the `quality` that was found afresh.
     fn report(
         &self,
-        problem: &Problem,
-        gap: &Arc<Array2<f64>>,
-        mut fields: SolutionFields,
+        (gap, indentation, mut fields): (Arc<Array2<f64>>, Option<Array2<f64>>, SolutionFields),
         (outcome, quality): (Outcome, Quality),
         results: Vec<GridResult>,
         mut report: Report,
@@ -344,10 +309,9 @@ impl<'a> Steps<'a> {
             return Err(Error::Overflow);
         }
         let (plan, grid) = (self.plan, &self.plan.grid);
-        let indentation = (problem.bounds.is_limited()).then(|| fields.indentation(problem));
         let undeformed = match &indentation {
-            Some(deeper) => Arc::new(&**gap + deeper),
-            None => Arc::clone(gap),
+            Some(deeper) => Arc::new(&*gap + deeper),
+            None => gap,
         };
         let (approach, tilt) = self.freedoms.rigid_motion(fields.multipliers.lambda());
         let (pressure, window) = (&fields.pressure, &fields.window);
@@ -405,16 +369,8 @@ impl<'a> Steps<'a> {
             (&fields.pressure, &self.plan.grid, &self.plan.unresolved);
         let (both, loaded) = ([pressure, &fields.displacement], self.motion.load.is_some());
         let others = unresolved.errors(both, &fields.window, grid, loaded, singular);
-        let corners = corner_error(pressure, grid, self.shape, self.short_waves());
+        let corners = corner_error(pressure, grid, self.shape, unresolved.short_waves);
         Some(changes.plus(others).at_least(corners))
-    }
-
-    /// Sum of the responses α û/p̂ of both bodies to waves of the length of two cells \[1/Pa\].
-    fn short_waves(&self) -> f64 {
-        let [dx, dy] = self.plan.grid.spacing();
-        let finest = if self.plan.grid.is_line() { dy } else { dx.min(dy) };
-        let bodies = bodies(&self.plan.body, &self.plan.setup);
-        bodies.iter().map(|body| body.normal(PI / finest)).sum()
     }
 }
 
@@ -474,56 +430,4 @@ fn farthest(lines: &[[f64; 2]], side: f64, load: Option<f64>) -> f64 {
         }
     }
     moment
-}
-
-#[cfg(test)]
-mod tests {
-    use std::ops::ControlFlow;
-
-    use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
-    use crate::error::Result;
-    use crate::model::grid::Grid;
-    use crate::model::material::Elastic;
-    use crate::model::surface::Paraboloid;
-
-    /// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
-    /// of that moment carries the load, and the report is that of a stopped solve.
-    #[test]
-    fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
-        let grid = Grid::new([128, 128], [4.0, 4.0])?;
-        let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
-        let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
-        for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-            let options = Options { algorithm, ..Options::default() };
-            let mut last = 1;
-            for stop in 1.. {
-                let (mut calls, mut work) = (0, 0.0);
-                let mut progress = |report: &Report| {
-                    calls += 1;
-                    work = report.convolutions;
-                    if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-                };
-                let solution = contact.solve(&shape, &motion, options.watched(&mut progress))?;
-                let report = &solution.report;
-                let expected = match algorithm {
-                    Algorithm::Cascade => Solver::Preconditioned,
-                    Algorithm::PolonskyKeer => Solver::PolonskyKeer,
-                };
-                assert_eq!(report.solver, Some(expected));
-                assert!(report.convolutions >= work, "{stop}");
-                assert!(report.balance.force < 1e-12, "{stop}");
-                if report.converged() {
-                    last = stop;
-                    break;
-                }
-                assert_eq!((report.termination, calls), (Termination::Stopped, stop));
-                let worst = report.residual.max(report.overlap);
-                assert!(worst > options.tolerance, "{stop}: {worst:e}");
-                assert_eq!(report.discretisation, None);
-            }
-            // Three grids, or one, with several iterations each.
-            assert!(last > 10, "{last}");
-        }
-        Ok(())
-    }
 }

@@ -1,22 +1,18 @@
 //! A body on a grid, planned: coefficients, their transform, and the coarser grids.
 
-use std::f64::consts::PI;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::compliance::convolution::{Addition, Convolution};
+use crate::compliance::datum::Datum;
 use crate::compliance::ends::Ends;
 use crate::compliance::influence::{Method, coefficients_on};
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
-use crate::contact::cascade::Levels;
 use crate::contact::cascade::discretisation::Unresolved;
+use crate::contact::cascade::{Level, coarser};
 use crate::contact::options::Setup;
-use crate::contact::problem::LocalDisplacement;
-use crate::contact::solver::linear_cg;
 use crate::error::{Error, Result, all_finite, refuse_if, same_shape};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::{Threads, check_memory};
@@ -25,8 +21,8 @@ use crate::numerics::parallel::{Threads, check_memory};
 /// where the contact fills the grid, 151 where it tilts as well, 67 where it fills a ninth.
 const ARRAYS: u64 = 18;
 
-/// Arrays of a solve after the first one, whose memory the plan keeps. Measured: 46 bytes a cell.
-const LATER_ARRAYS: u64 = 7;
+/// Those of them whose memory the plan does not keep for later solves. Measured: 46 bytes a cell.
+const OWN_ARRAYS: u64 = 7;
 
 /// Arrays that a hardness adds. Measured: 40 bytes a cell.
 const YIELDING_ARRAYS: u64 = 5;
@@ -54,16 +50,13 @@ pub struct Contact {
     pub(super) body: Body,
     pub(super) grid: Grid,
     pub(super) setup: Setup,
-    pub(super) convolution: Convolution,
-    pub(super) levels: Levels,
-    pub(super) local: LocalDisplacement,
+    /// The grid and all coarser ones, from the finest on.
+    pub(super) levels: Vec<Level>,
     pub(super) datum: Datum,
     pub(super) unresolved: Unresolved,
     pub(super) ends: Ends,
     /// Operators of tractions, made when friction first needs them.
     pub(super) tangential: OnceLock<Arc<Tangential>>,
-    /// Whether a solve has begun, whose memory the plan keeps.
-    worked: AtomicBool,
 }
 
 impl Contact {
@@ -82,31 +75,22 @@ impl Contact {
         )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let additions = ends.additions(&grid, &grid, &threads)?;
-        let (finest, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
+        let (coefficients, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
         let convolution =
-            Convolution::plan_repeated(&finest, grid.is_periodic(), Arc::clone(&threads))?
-                .plus(additions);
-        let levels = Levels::plan(grid, finest, &convolution, |coarse| {
-            let coefficients = total_coefficients(&body, &setup, coarse, &threads)?;
-            let local = LocalDisplacement::new(&bodies(&body, &setup), coarse);
-            let additions = ends.additions(coarse, &grid, &threads)?;
-            Ok((datum.moved(coefficients, coarse), additions, local))
-        })?;
-        let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
-        let unresolved = Unresolved::new(&bodies(&body, &setup), &grid);
-        Ok(Self {
-            body,
-            grid,
-            setup,
-            convolution,
-            levels,
-            local,
-            datum,
-            unresolved,
-            ends,
-            tangential: OnceLock::new(),
-            worked: AtomicBool::new(false),
-        })
+            Convolution::plan_repeated(&coefficients, grid.is_periodic(), Arc::clone(&threads))?;
+        let both = bodies(&body, &setup);
+        let mut levels = vec![Level::new(grid, coefficients, convolution.plus(additions), &both)];
+        let mut finer = grid;
+        while let Some(coarse) = coarser(&finer)? {
+            let coefficients = total_coefficients(&body, &setup, &coarse, &threads)?;
+            let coefficients = datum.moved(coefficients, &coarse);
+            let convolution = levels[0].convolution.companion(&coefficients, coarse.is_periodic());
+            let convolution = convolution.plus(ends.additions(&coarse, &grid, &threads)?);
+            levels.push(Level::new(coarse, coefficients, convolution, &both));
+            finer = coarse;
+        }
+        let unresolved = Unresolved::new(&both, &grid);
+        Ok(Self { body, grid, setup, levels, datum, unresolved, ends, tangential: OnceLock::new() })
     }
 
     /// The body that shapes are pressed into.
@@ -128,7 +112,7 @@ impl Contact {
     /// coefficients are not positive definite with the datum of [`Grid::line`], it has a farther datum, which
     /// raises the displacement everywhere by the same; solutions have the datum of the grid.
     pub fn convolution(&self) -> &Convolution {
-        &self.convolution
+        &self.levels[0].convolution
     }
 
     /// The operators of tractions, made when they are first needed.
@@ -145,33 +129,37 @@ impl Contact {
             "friction needs a grid that is not periodic: give a wider grid",
         )?;
         let counterbody = self.setup.counterbody.as_ref();
-        let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);
+        let threads = Arc::new(Threads::new(Some(self.convolution().threads()))?);
         let new = Tangential::plan(&self.body, counterbody, &self.grid, &threads)?;
         Ok(Arc::clone(self.tangential.get_or_init(|| Arc::new(new))))
     }
 
     /// This plan on other threads; all large arrays are shared.
     pub(super) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
-        let convolution = self.convolution.on_threads(threads);
+        let mut levels: Vec<Level> = Vec::new();
+        for level in &self.levels {
+            let convolution = match levels.first() {
+                None => level.convolution.on_threads(threads),
+                Some(finest) => level.convolution.sharing_with(&finest.convolution),
+            };
+            levels.push(level.with(convolution));
+        }
         Self {
             body: self.body.clone(),
             grid: self.grid,
             setup: self.setup.clone(),
-            levels: self.levels.beside(&convolution),
+            levels,
             unresolved: self.unresolved,
-            convolution,
-            local: self.local.clone(),
             datum: self.datum,
             ends: self.ends.clone(),
             tangential: self.tangential.clone(),
-            worked: AtomicBool::new(false),
         }
     }
 
     /// Calls `work`, a whole solve, on the plan's threads.
     pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let [nx, ny] = self.grid.shape();
-        self.convolution.own_threads().run_inside(nx * ny, work)
+        self.convolution().own_threads().run_inside(nx * ny, work)
     }
 
     /// Bytes that a plan with its coefficients, and the arrays of one solve take between free `ends`.
@@ -185,18 +173,14 @@ impl Contact {
         Self::memory(&self.grid, &self.ends)
     }
 
-    /// Checks that there is memory for a solve, of surfaces that yield where they have a hardness.
+    /// Checks that there is memory for a solve, of surfaces that yield where they have a hardness. What the plan keeps was
+    /// checked with it.
     ///
     /// # Errors
     /// Too little memory.
     pub(super) fn check_memory_of_solve(&self, yields: bool) -> Result<()> {
-        let arrays = match self.worked.swap(true, Ordering::Relaxed) {
-            true => LATER_ARRAYS,
-            false if self.ends.any() => ARRAYS + ENDS_ARRAYS,
-            false => ARRAYS,
-        };
         let of_hardness = if yields { YIELDING_ARRAYS } else { 0 };
-        check_memory(self.grid.shape(), array(&self.grid) * (arrays + of_hardness))
+        check_memory(self.grid.shape(), array(&self.grid) * (OWN_ARRAYS + of_hardness))
     }
 }
 
@@ -276,170 +260,4 @@ fn total_coefficients(
         coefficients += &coefficients_on(&**counterbody, grid, Method::Exact, threads)?;
     }
     Ok(coefficients)
-}
-
-/// Factor between data that are tried.
-const FARTHER: f64 = 10.0;
-
-/// Number of data that are tried: far more than the stiffest layers need, whose reach is the thickness times
-/// the cube root of the ratio of moduli.
-const TRIALS: i32 = 15;
-
-/// Residual of the linear system. The error of the sum that is found is its square.
-const TOLERANCE: f64 = 1e-6;
-
-/// The datum that line contacts are solved with: where the displacement is 0.
-///
-/// In plane strain the displacement grows as A/π ln(1/y) with the distance y from the load, where A belongs
-/// to the substrates, so that it is counted from that of the bare substrate at a distance, the datum. Users
-/// see the datum at the width of the grid ([`Grid::line`]). Below a stiff layer that is wider than the grid
-/// the true displacement at this distance is far less: pressures would lift the surface, and the operator
-/// would not be positive definite. Such contacts are solved with a farther datum ℓ'. Under a load W this
-/// changes no pressure, and displacement and approach by the same A W/π ln(ℓ'/ℓ), which is taken back in the
-/// end. The method was derived here.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Datum {
-    /// A of both bodies \[1/Pa\], over the period where a grid repeats in one direction; 0 where there is no datum.
-    compliance: f64,
-    /// ℓ' \[m\].
-    distance: f64,
-    /// Width ℓ of the grid \[m\].
-    width: f64,
-    /// Datum from which on the operator is positive definite \[m\]; 0 where that of the grid does.
-    least: f64,
-    /// Whether a uniform pressure displaces nothing, as on a grid that repeats in both directions on an elastic base: a
-    /// prescribed approach is that of the mean plane of the deformed surface.
-    pub(super) floats: bool,
-}
-
-/// Mean of coefficients, relative to that of their magnitudes, which is rounding.
-const ROUNDING: f64 = 1e-12;
-
-impl Datum {
-    /// Finds the datum for the `coefficients` of `bodies` together on `grid`, and what their free ends add.
-    ///
-    /// # Errors
-    /// [`Error::Indefinite`] where the operator is not positive definite with any datum.
-    pub(crate) fn find(
-        bodies: &[&Body],
-        grid: &Grid,
-        (coefficients, additions): (&Array2<f64>, &[Addition]),
-        threads: &Arc<Threads>,
-    ) -> Result<Self> {
-        let Some(open) = open_direction(grid) else {
-            let magnitude: f64 = coefficients.iter().map(|c| c.abs()).sum();
-            let displaced = coefficients.sum().abs() > ROUNDING * magnitude;
-            return Ok(Self {
-                floats: grid.is_periodic() == [true; 2] && !displaced,
-                ..Self::default()
-            });
-        };
-        let (width, period) = (grid.size()[open], grid.size()[1 - open]);
-        let period = if grid.is_line() { 1.0 } else { period };
-        let compliance: f64 = bodies.iter().map(|body| body.asymptotes().long).sum();
-        let near =
-            Self { compliance: compliance / period, distance: width, width, ..Self::default() };
-        let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
-        if (homogeneous && additions.is_empty()) || near.compliance <= 0.0 {
-            return Ok(near);
-        }
-        for trial in 0..TRIALS {
-            let datum = Self { distance: width * FARTHER.powi(trial), ..near };
-            let moved = datum.moved(coefficients.clone(), grid);
-            let total = total_pressure((&moved, additions), grid, threads)?;
-            let Some(total) = total.filter(|&total| total > 0.0) else {
-                continue;
-            };
-            if trial == 0 {
-                return Ok(near);
-            }
-            // K − s 1ᵀ1 is positive definite as long as s 1ᵀK⁻¹1 < 1.
-            let nearer = PI / (near.compliance * grid.cell_area() * total);
-            return Ok(Self {
-                distance: FARTHER * datum.distance,
-                least: datum.distance * (-nearer).exp(),
-                ..near
-            });
-        }
-        Err(Error::Indefinite)
-    }
-
-    /// Coefficients on `grid`, whose datum is its own width, with this datum.
-    pub(crate) fn moved(&self, mut coefficients: Array2<f64>, grid: &Grid) -> Array2<f64> {
-        if let Some(open) = open_direction(grid)
-            && self.compliance > 0.0
-        {
-            let width = grid.size()[open];
-            coefficients += self.compliance * grid.cell_area() / PI * (self.distance / width).ln();
-        }
-        coefficients
-    }
-
-    /// Displacement per load per length \[m²/N\] by which this datum raises displacement and approach.
-    pub(crate) fn raise(&self) -> f64 {
-        if self.compliance > 0.0 {
-            self.compliance / PI * (self.distance / self.width).ln()
-        } else {
-            0.0
-        }
-    }
-
-    /// An error where an `approach` cannot be prescribed to a shape with these gaps, less the approach.
-    ///
-    /// # Errors
-    /// [`Error::FullContact`] where the mean of the gaps, which no pressure changes, would be 0 or less.
-    pub(crate) fn check_gap(&self, approach: f64, gap: &Array2<f64>) -> Result<()> {
-        let mean = gap.sum() / gap.len() as f64;
-        match self.floats && mean <= 0.0 {
-            true => Err(Error::FullContact { approach, most: approach + mean }),
-            false => Ok(()),
-        }
-    }
-
-    /// An error where an approach cannot be prescribed.
-    ///
-    /// # Errors
-    /// [`Error::Datum`] where the operator is not positive definite with the datum of the grid.
-    pub(crate) fn check_approach(&self) -> Result<()> {
-        if self.least > 0.0 {
-            return Err(Error::Datum {
-                width: self.width,
-                // The wider the grid, the farther its datum must lie, by a quarter of the width at last.
-                needed: 2.0 * self.least,
-            });
-        }
-        Ok(())
-    }
-}
-
-/// The direction across a line contact, or the open one of a grid that repeats along the other.
-fn open_direction(grid: &Grid) -> Option<usize> {
-    match grid.is_periodic() {
-        _ if grid.is_line() => Some(1),
-        [true, false] => Some(1),
-        [false, true] => Some(0),
-        _ => None,
-    }
-}
-
-/// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
-/// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
-fn total_pressure(
-    (coefficients, additions): (&Array2<f64>, &[Addition]),
-    grid: &Grid,
-    threads: &Arc<Threads>,
-) -> Result<Option<f64>> {
-    let repeats = grid.is_periodic();
-    let convolution = Convolution::plan_repeated(coefficients, repeats, Arc::clone(threads))?;
-    let convolution = convolution.plus(additions.to_vec());
-    let inverse = convolution.approximation(coefficients, repeats).inverse;
-    let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
-    let pressure = linear_cg::solve(
-        &vec![1.0; coefficients.len()],
-        |input, out| convolution.apply_slices(input, out, &mut first),
-        |input, out| inverse.apply_slices(input, out, &mut second),
-        TOLERANCE,
-        &mut || ControlFlow::Continue(()),
-    );
-    Ok(pressure.ok().map(|pressure| pressure.iter().sum()))
 }

@@ -137,18 +137,9 @@ impl Problem<'_> {
     /// not determine are 0: one or two cells have no tilt.
     pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64]) -> [f64; 3] {
         let sums = self.rows().each([p, u, h], [], |row, fields, []| {
-            self.fit_near([0.0; 3], row, self.bounds.row(row.number), fields)
+            fit_near([0.0; 3], row, self.bounds.row(row.number), fields)
         });
         self.freedoms.fitted(sums)
-    }
-
-    /// The sums of one row for the fit of λ − `near`.
-    fn fit_near(&self, near: [f64; 3], row: Row, limit: &[f64], fields: [&[f64]; 3]) -> FitSums {
-        let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
-        let step = |[p, u, h, _, y]: [Lanes; 5], []: [Lanes; 0]| {
-            ([], [p, (h - (base + slope * y)) + u, ZERO])
-        };
-        (self.freedoms).fit_row(row, limit, fields, [], step)
     }
 
     /// Computes the displacement `u` of a pressure that is zero outside `window`. Returns λ that makes the
@@ -185,7 +176,7 @@ impl Problem<'_> {
         let fit = rows.each(inputs, [], |row, [p, u, h], []| {
             let inside = row.within(window, [p, u, h, self.bounds.row(row.number)]);
             inside.map_or(FitSums::ZERO, |(row, [p, u, h, limit])| {
-                self.fit_near(near, row, limit, [p, u, h])
+                fit_near(near, row, limit, [p, u, h])
             })
         });
         let multipliers = Multipliers { base: near, change: self.freedoms.fitted(fit) };
@@ -233,26 +224,9 @@ impl Problem<'_> {
         });
     }
 
-    /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
-    /// that can touch join it.
-    pub(super) fn rebalance(&self, p: &mut [f64]) {
-        // Pressure of the cells that join, relative to the mean pressure of the grid; chosen by trial.
-        const JOINING_PRESSURE: f64 = 1e-3;
-        if self.freedoms.balance(p, self.bounds) {
-            return;
-        }
-        let joining = JOINING_PRESSURE * self.freedoms.typical_pressure(p.len());
-        for (p, h) in p.iter_mut().zip(self.gap) {
-            if h.is_finite() {
-                *p += joining;
-            }
-        }
-        self.freedoms.balance(p, self.bounds);
-    }
-
-    /// Restores balance up to the hardness, by [`Problem::press_springs`] where the cells whose pressure is free cannot
-    /// carry what is missing. `u` and `lambda` are those of a pressure near `p`.
-    pub(super) fn rebalance_within(&self, p: &mut [f64], u: &[f64], lambda: [f64; 3]) {
+    /// Restores balance, by [`Problem::press_springs`] where the cells whose pressure is free cannot carry what is missing,
+    /// as two cells cannot carry moments. `u` and `lambda` are those of a pressure near `p`.
+    pub(super) fn rebalance(&self, p: &mut [f64], u: &[f64], lambda: [f64; 3]) {
         if !self.freedoms.balance(p, self.bounds) {
             let mut g = vec![0.0; p.len()];
             (self.freedoms).for_each(lambda, |k, b| g[k] = self.gap[k] + u[k] - b);
@@ -260,7 +234,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Makes `p`, whose gap is `g`, a balanced pressure up to the hardness: that of a spring in each cell which a motion
+    /// Makes `p`, whose gap is `g`, a balanced pressure within the bounds: that of a spring in each cell which a motion
     /// loads and unloads. Returns whether there is one.
     pub(super) fn press_springs(&self, p: &mut [f64], g: &[f64]) -> bool {
         let rise = self.freedoms.typical_pressure(p.len());
@@ -299,18 +273,21 @@ impl Problem<'_> {
     }
 }
 
+/// The sums of one row for the fit of λ − `near`.
+fn fit_near(near: [f64; 3], row: Row, limit: &[f64], fields: [&[f64]; 3]) -> FitSums {
+    let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
+    Freedoms::fit_row(row, limit, fields, [], |[p, u, h, _, y], []| {
+        ([], [p, (h - (base + slope * y)) + u])
+    })
+}
+
 /// [`depths`] of one row; and a number that is 0 unless a displacement is not finite.
 fn depths_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> ([f64; 2], f64) {
     let overlap = multipliers.overlap(row);
-    let step =
-        |[p, limit, u, h, y]: [Lanes; 5]| ([], depths(p, limit, u, overlap([u, h, y])), [u * ZERO]);
-    let (extremes, [not_finite]) = if multipliers.tilts_along_y() {
-        update_with_largest([p, limit, u, h, row.y], [], |fields, []| step(fields))
-    } else {
-        update_with_largest([p, limit, u, h], [], |[p, limit, u, h], []| {
-            step([p, limit, u, h, ZERO])
-        })
-    };
+    let (extremes, [not_finite]) =
+        update_with_largest([p, limit, u, h, row.y], [], |[p, limit, u, h, y], []| {
+            ([], depths(p, limit, u, overlap([u, h, y])), [u * ZERO])
+        });
     (extremes, not_finite)
 }
 
@@ -350,11 +327,6 @@ impl Multipliers {
         [0, 1, 2].map(|k| self.base[k] + self.change[k])
     }
 
-    /// Whether the motion depends on y.
-    fn tilts_along_y(self) -> bool {
-        self.base[2] != 0.0 || self.change[2] != 0.0
-    }
-
     /// The overlap −g = Bλ − (u + h) of cells in a row, as a function of u, h and y.
     fn overlap(self, row: Row) -> impl Fn([Lanes; 3]) -> Lanes {
         let [[a, b], [c, d]] =
@@ -381,17 +353,12 @@ pub(crate) struct SolutionFields {
 }
 
 impl SolutionFields {
-    /// SolutionFields of zeros.
-    ///
-    /// The system hands out their memory as it is written, most of it when the memory of the iteration is
-    /// free again.
-    pub(crate) fn new(shape: [usize; 2], rows: &Rows) -> Self {
-        let zeros = || Array2::zeros(shape);
-        let (pressure, displacement) = rows.both(zeros, zeros);
+    /// Fields of zeros.
+    pub(crate) fn new(shape: [usize; 2]) -> Self {
         Self {
-            pressure,
+            pressure: Array2::zeros(shape),
             window: [0..0, 0..0],
-            displacement,
+            displacement: Array2::zeros(shape),
             multipliers: Multipliers::default(),
             quality: None,
         }

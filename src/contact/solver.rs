@@ -1,10 +1,8 @@
 //! Algorithms that solve a contact problem, and what they have in common.
 
 pub(super) mod active_set;
-pub(super) mod linear_cg;
 pub(super) mod polonsky_keer;
 pub(super) mod preconditioned;
-mod stagnation;
 
 use std::ops::ControlFlow;
 

@@ -112,10 +112,11 @@ pub(super) fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
     for (p, h) in p.iter_mut().zip(problem.gap) {
         *p = if h.is_finite() { uniform } else { 0.0 };
     }
-    if problem.bounds.is_limited() {
-        return yielding_pressure(problem, &p, problem.gap);
-    }
-    if problem.freedoms.balance(&mut p, problem.bounds) {
+    let balanced = match problem.bounds.is_limited() {
+        true => problem.press_springs(&mut p, problem.gap),
+        false => problem.freedoms.balance(&mut p, problem.bounds),
+    };
+    if balanced {
         return Ok(array(shape, p));
     }
     Err(Error::Inconsistent(

@@ -1,10 +1,12 @@
 //! The default algorithm and the reference algorithm find the same solution, for every shape and control,
 //! on coated and bare bodies.
 
+use std::ops::ControlFlow;
+
 use nacre::influence::Method;
 use nacre::{
-    Algorithm, Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Motion,
-    Paraboloid, Result, Roller, Solution, Solver, Sphere, Surface,
+    Algorithm, Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Motion, Options,
+    Paraboloid, Report, Result, Roller, Setup, Solution, Solver, Sphere, Surface, Termination,
 };
 use ndarray::Array2;
 
@@ -223,5 +225,46 @@ fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
     let most = 3 * reference.report.iterations / 2;
     let found = default.report.iterations;
     below!(found, most, reference.report.iterations);
+    Ok(())
+}
+
+/// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
+/// of that moment carries the load, and the report is that of a stopped solve.
+#[test]
+fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
+    let grid = Grid::new([128, 128], [4.0, 4.0])?;
+    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
+    let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
+    for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+        let options = Options { algorithm, ..Options::default() };
+        let mut last = 1;
+        for stop in 1.. {
+            let (mut calls, mut work) = (0, 0.0);
+            let mut progress = |report: &Report| {
+                calls += 1;
+                work = report.convolutions;
+                if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let solution = contact.solve(&shape, &motion, options.watched(&mut progress))?;
+            let report = &solution.report;
+            let expected = match algorithm {
+                Algorithm::Cascade => Solver::Preconditioned,
+                Algorithm::PolonskyKeer => Solver::PolonskyKeer,
+            };
+            assert_eq!(report.solver, Some(expected));
+            assert!(report.convolutions >= work, "{stop}");
+            assert!(report.balance.force < 1e-12, "{stop}");
+            if report.converged() {
+                last = stop;
+                break;
+            }
+            assert_eq!((report.termination, calls), (Termination::Stopped, stop));
+            let worst = report.residual.max(report.overlap);
+            assert!(worst > options.tolerance, "{stop}: {worst:e}");
+            assert_eq!(report.discretisation, None);
+        }
+        // Three grids, or one, with several iterations each.
+        assert!(last > 10, "{last}");
+    }
     Ok(())
 }

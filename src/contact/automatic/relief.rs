@@ -1,8 +1,7 @@
 //! Low places of a shape that is tilted: the places where it may touch.
 
 use crate::compliance::influence::CellInfluence;
-use crate::compliance::response::Body;
-use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
+use crate::contact::automatic::task::{Frame, Task, enclosing};
 use crate::contact::plan::bodies;
 use crate::contact::problem::patch::block;
 use crate::contact::solution::Solution;
@@ -221,8 +220,6 @@ pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<
     let mut lows = relief.lows_outside(frame);
     // Pressure pushes the surface away, so that only these can touch.
     lows.retain(|low| low.gap < solution.approach);
-    let nearby = Nearby::of(task, solution);
-    lows.retain(|low| low.gap + nearby.displacement(low.at) < solution.approach);
     if lows.is_empty() {
         return Ok(None);
     }
@@ -242,57 +239,6 @@ pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<
         }
     }
     Ok(found)
-}
-
-/// The displacement outside a grid, at least: from the displacement u at the nearest cell, without sums over the
-/// pressure.
-///
-/// At a distance d from this cell, which is m away from the contact, no pressure is more than (1 + d/m) times as
-/// far away. The displacement around a force falls as 1/r on a half-space, more slowly where the substrate is
-/// softer than the surface, and faster where it is harder: u (1 + d/m)^−q, with q = 1 or a larger one.
-struct Nearby<'a> {
-    solution: &'a Solution,
-    contact: Frame,
-    rate: i32,
-}
-
-/// Rate q at which the displacement falls on a substrate that is harder than the surface; chosen by trial.
-const FAST_DECAY: i32 = 4;
-
-impl<'a> Nearby<'a> {
-    fn of(task: &Task, solution: &'a Solution) -> Self {
-        let hard = |body: &Body| {
-            let limits = body.asymptotes();
-            limits.long < limits.short || body.local() > 0.0
-        };
-        let any_hard = hard(task.body) || task.setup.counterbody.as_ref().is_some_and(hard);
-        let (frame, spacing) = (frame_of(solution.grid()), solution.grid().spacing());
-        let window = solution.cells_in_contact().unwrap_or([0..0, 0..0]);
-        let end = |k: usize, cell: usize| frame[k][0] + spacing[k] * cell as f64;
-        Self {
-            solution,
-            contact: [0, 1].map(|k| [end(k, window[k].start), end(k, window[k].end)]),
-            rate: if any_hard { FAST_DECAY } else { 1 },
-        }
-    }
-
-    fn displacement(&self, at: [f64; 2]) -> f64 {
-        let grid = self.solution.grid();
-        let (low, spacing, shape) = (frame_of(grid), grid.spacing(), grid.shape());
-        let cell = [0, 1].map(|k| (((at[k] - low[k][0]) / spacing[k]) as usize).min(shape[k] - 1));
-        let center = [0, 1].map(|k| low[k][0] + spacing[k] * (cell[k] as f64 + 0.5));
-        let distance = (at[0] - center[0]).hypot(at[1] - center[1]);
-        let [mx, my] = [0, 1].map(|k| {
-            let [start, end] = self.contact[k];
-            (start - center[k]).max(center[k] - end).max(0.0)
-        });
-        let margin = mx.hypot(my);
-        if margin > 0.0 {
-            self.solution.displacement[cell] / (1.0 + distance / margin).powi(self.rate)
-        } else {
-            0.0
-        }
-    }
 }
 
 /// The pressure of a solution, uniform on each of a few blocks of cells.

@@ -1,9 +1,10 @@
 //! The search for the rectangle of a contact, on a coarse grid that is enlarged and reduced until it fits.
 
 use crate::compliance::response::Body;
-use crate::contact::automatic::relief::{Low, Overlap, Relief, limited, overlap};
+use crate::contact::automatic::relief::{Low, Overlap, Relief, limited};
 use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
+use crate::contact::plan::bodies;
 use crate::contact::solution::{Progress, Solution};
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
@@ -38,16 +39,12 @@ const ENLARGEMENTS: usize = 10;
 /// Reductions of the coarse grid around a contact that is small on it, by a factor of 4/3 at least.
 const REDUCTIONS: usize = 40;
 
-/// Searches that begin anew from places that the coarse grid missed.
-const RESTARTS: usize = 10;
-
 /// The search for the grid of one task. It remembers the places that the grid must hold.
 pub(super) struct Search<'a> {
     task: Task<'a>,
     options: Options,
     extent: [Extent; 2],
     held: Option<Frame>,
-    restarts: usize,
 }
 
 impl<'a> Search<'a> {
@@ -71,7 +68,6 @@ impl<'a> Search<'a> {
             },
             extent,
             held: None,
-            restarts: 0,
         })
     }
 
@@ -94,7 +90,7 @@ impl<'a> Search<'a> {
 
     /// Enlarges and reduces a coarse grid over `frame` until it fits the contact.
     fn fit(&mut self, mut frame: Frame, progress: &mut Progress) -> Result<Grid> {
-        let (mut enlargements, mut reductions) = (0, 0);
+        let (mut enlargements, mut reductions, mut elsewhere) = (0, 0, false);
         loop {
             let cells = if self.held.is_some() { HELD_CELLS } else { COARSE_CELLS };
             let grid = self.task.grid_over(frame, [cells; 2])?;
@@ -102,39 +98,32 @@ impl<'a> Search<'a> {
             let solution = self.task.solve(grid, &self.options, progress)?;
             let Some(contact) = solution.cells_in_contact() else {
                 // Nothing touches there: where nothing overlaps anywhere, any grid shows that.
-                match self.deepest() {
-                    Some(place) if self.restarts < RESTARTS => {
-                        self.restarts += 1;
-                        frame = place;
-                        continue;
-                    }
-                    _ => return Ok(grid),
+                match self.deepest().filter(|_| !elsewhere) {
+                    Some(place) => (frame, elsewhere) = (place, true),
+                    None => return Ok(grid),
                 }
+                continue;
             };
             if solution.report.termination == Termination::Stopped {
                 return Ok(grid);
             }
             let touched = touched_sides(&contact, &grid, self.extent);
-            let contact = self.with_held(contact, &grid);
-            let mut next = frame;
+            let contact = [0, 1].map(|k| {
+                let cell = |number: usize| frame[k][0] + number as f64 * grid.spacing()[k];
+                [cell(contact[k].start), cell(contact[k].end)]
+            });
+            let contact = self.held.map_or(contact, |held| enclosing(contact, held));
             let (mut grown, mut shrunk) = (false, false);
             for axis in [0, 1] {
-                let [low, high] = frame[axis];
-                let width = high - low;
-                let spacing = grid.spacing()[axis];
-                let cells_across = contact[axis].len();
+                let width = frame[axis][1] - frame[axis][0];
+                let across = contact[axis][1] - contact[axis][0];
                 // An edge that is touched moves out by the width, as far as the shape goes.
                 if touched[axis] != [false; 2] {
                     grown = true;
-                    next[axis] = moved_out(frame[axis], touched[axis], width);
-                } else if cells_across < cells / 4 {
+                    frame[axis] = moved_out(frame[axis], touched[axis], width);
+                } else if across < 0.25 * width - 0.5 * grid.spacing()[axis] {
                     shrunk = true;
-                    let contact = [
-                        low + contact[axis].start as f64 * spacing,
-                        low + contact[axis].end as f64 * spacing,
-                    ];
-                    let margin = contact[1] - contact[0];
-                    next[axis] = [contact[0] - margin, contact[1] + margin];
+                    frame[axis] = moved_out(contact[axis], [true; 2], across);
                 }
             }
             if grown {
@@ -145,17 +134,8 @@ impl<'a> Search<'a> {
             } else if shrunk && reductions < REDUCTIONS {
                 reductions += 1;
             } else {
-                let grid = self.final_grid(&solution)?;
-                if self.restarts == RESTARTS {
-                    return Ok(grid);
-                }
-                let Some(missed) = overlap(&self.task, &solution, frame_of(&grid))? else {
-                    return Ok(grid);
-                };
-                self.restarts += 1;
-                next = self.hold(missed, &solution);
+                return self.final_grid(&solution);
             }
-            frame = next;
         }
     }
 
@@ -169,19 +149,6 @@ impl<'a> Search<'a> {
             [low - margin, high + margin]
         });
         limited(wider, self.extent)
-    }
-
-    /// The cells of a contact and of the places that the grid must hold.
-    fn with_held(&self, contact: Window, grid: &Grid) -> Window {
-        let Some(held) = self.held else {
-            return contact;
-        };
-        let (frame, spacing, shape) = (frame_of(grid), grid.spacing(), grid.shape());
-        [0, 1].map(|k| {
-            let cell = |at: f64| (((at - frame[k][0]) / spacing[k]) as usize).min(shape[k] - 1);
-            let held = held[k].map(cell);
-            contact[k].start.min(held[0])..contact[k].end.max(held[1] + 1)
-        })
     }
 
     /// A rectangle around the place where the shape overlaps the undeformed surface most; `None` where it overlaps
@@ -340,7 +307,6 @@ fn approach_under(load: f64, task: &Task, widths: &impl Fn(f64) -> [f64; 2]) -> 
 /// α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the response itself,
 /// and the local compliance.
 fn compliance(task: &Task, alpha: f64) -> f64 {
-    let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
     let of = |body: &Body| {
         let limits = body.asymptotes();
         let larger = match limits.short.max(limits.long) {
@@ -349,5 +315,5 @@ fn compliance(task: &Task, alpha: f64) -> f64 {
         };
         larger + alpha * body.local()
     };
-    bodies.into_iter().flatten().map(of).sum()
+    bodies(task.body, task.setup).into_iter().map(of).sum()
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::contact::problem::bounds::{Bounds, clip, in_contact, is_free};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::numerics::dense::eliminate;
-use crate::numerics::parallel::{Lanes, ONE, Row, Total, all, sum, update, where_positive};
+use crate::numerics::parallel::{Lanes, ONE, Row, Total, all, sum, update};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -13,10 +13,6 @@ const BALANCE_TOLERANCE: f64 = 2e-13;
 
 /// Newton steps after which the balance is given up: a bound against rounding, far above the usual number.
 const STEPS: usize = 100;
-
-/// Smallest fraction of a Newton step that is tried. Where no fraction helps, only rounding is left, or the cells
-/// cannot carry the moments; chosen by trial.
-const SHORTEST_STEP: f64 = 1e-9;
 
 /// Bμ beyond which a force is given up.
 const FARTHEST: f64 = 1e30;
@@ -71,7 +67,7 @@ impl Freedoms {
         let mut mu = [0.0; 3];
         if self.loaded[0] {
             // By bisection for the force alone, since at first no pressure may be free.
-            let carries = |mu| self.mismatch(p, bounds, [mu, 0.0, 0.0], &raised).1[0] <= 0.0;
+            let carries = |mu| self.answered(p, bounds, [mu, 0.0, 0.0], &raised).mismatch[0] <= 0.0;
             let [mut low, mut high] = [-1.0, 1.0];
             while high < FARTHEST && !carries(high) {
                 high *= 2.0;
@@ -100,31 +96,30 @@ impl Freedoms {
         mut mu: [f64; 3],
         answer: impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
     ) -> bool {
-        let (mut force, mut mismatch) = self.mismatch(pressure, bounds, mu, &answer);
-        let rounding = |force: f64| 4.0 * f64::EPSILON * force.max(largest(self.target));
+        let mut found = self.answered(pressure, bounds, mu, &answer);
+        let size = |force: f64| force.max(largest(self.target));
         let mut descends = true;
         for _ in 0..STEPS {
-            if largest(mismatch) <= rounding(force) || !descends {
+            if largest(found.mismatch) <= 4.0 * f64::EPSILON * size(found.force) || !descends {
                 break;
             }
-            let step = self.solve(&self.curvature(pressure, bounds, mu, &answer), mismatch);
+            let step = self.solve(&found.gram, found.mismatch);
             let mut length = 1.0;
             descends = loop {
-                let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
-                let (trial_force, trial_mismatch) = self.mismatch(pressure, bounds, trial, &answer);
-                if largest(trial_mismatch) < largest(mismatch) {
-                    (mu, force, mismatch) = (trial, trial_force, trial_mismatch);
+                let shorter = [0, 1, 2].map(|k| mu[k] + length * step[k]);
+                let trial = self.answered(pressure, bounds, shorter, &answer);
+                if largest(trial.mismatch) < largest(found.mismatch) {
+                    (mu, found) = (shorter, trial);
                     break true;
                 }
                 length *= 0.5;
-                if length < SHORTEST_STEP {
+                // Only rounding is left, or the cells cannot carry the moments.
+                if length < f64::EPSILON.sqrt() {
                     break false;
                 }
             };
         }
-        // Multiple of the rounding of one sum that still counts as balanced; chosen by trial.
-        const ROUNDINGS: f64 = 1e3;
-        let balanced = largest(mismatch) <= ROUNDINGS * rounding(force);
+        let balanced = largest(found.mismatch) <= BALANCE_TOLERANCE * size(found.force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
                 let [new, _] = answer(all(pressure[k]), all(bounds.limit(k)), all(1.0 + b));
@@ -134,50 +129,39 @@ impl Freedoms {
         balanced
     }
 
-    /// Force of the answer to Bμ, and target less Bᵀ of it.
-    fn mismatch(
+    /// The sums of the answer to Bμ.
+    fn answered(
         &self,
         p: &[f64],
         bounds: &Bounds,
         mu: [f64; 3],
         answer: &impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
-    ) -> (f64, [f64; 3]) {
-        let mut sums = [0.0; 3];
+    ) -> Answered {
+        let (mut sums, mut gram) = ([0.0; 3], [[0.0; 3]; 3]);
         for (number, (x, row)) in self.rows().enumerate() {
             let (along, slope) = (all(1.0 + mu[0] + mu[1] * x), all(mu[2]));
             let fields = [&p[row], bounds.row(number), &self.columns[1]];
-            let row = sum(fields, |[p, limit, y]| {
-                let [p, _] = answer(p, limit, along + slope * y);
-                [p, p * y]
+            let [p, py, s, sy, syy] = sum(fields, |[p, limit, y]| {
+                let [p, rate] = answer(p, limit, along + slope * y);
+                [p, p * y, rate, rate * y, rate * y * y]
             });
-            add_moments(&mut sums, x, row);
+            add_moments(&mut sums, x, [p, py]);
+            add_gram(&mut gram, x, [s, sy, syy]);
         }
         let missing = |k: usize| {
             if self.loaded[k] { self.target[k] - sums[k] } else { 0.0 }
         };
-        (sums[0], [0, 1, 2].map(missing))
+        Answered { force: sums[0], mismatch: [0, 1, 2].map(missing), gram }
     }
+}
 
-    /// Derivative of Bᵀ of the answer to Bμ.
-    fn curvature(
-        &self,
-        p: &[f64],
-        bounds: &Bounds,
-        mu: [f64; 3],
-        answer: &impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
-    ) -> [[f64; 3]; 3] {
-        let mut gram = [[0.0; 3]; 3];
-        for (number, (x, row)) in self.rows().enumerate() {
-            let (along, slope) = (all(1.0 + mu[0] + mu[1] * x), all(mu[2]));
-            let fields = [&p[row], bounds.row(number), &self.columns[1]];
-            let row = sum(fields, |[p, limit, y]| {
-                let [_, p] = answer(p, limit, along + slope * y);
-                [p, p * y, p * y * y]
-            });
-            add_gram(&mut gram, x, row);
-        }
-        gram
-    }
+/// Sums of a pressure that answers a motion Bμ.
+struct Answered {
+    force: f64,
+    /// Target less Bᵀp.
+    mismatch: [f64; 3],
+    /// Derivative of Bᵀp with respect to μ.
+    gram: [[f64; 3]; 3],
 }
 
 /// The largest magnitude.
@@ -186,12 +170,8 @@ fn largest(values: [f64; 3]) -> f64 {
 }
 
 /// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
-///
-/// Sums with y are 0 where the tilt along y is not loaded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FitSums {
-    /// Number of cells that the step of the pass counted.
-    pub(crate) counted: f64,
     /// Force and scaled moments Bᵀp of the pressure.
     pub(crate) moments: [f64; 3],
     /// Bᵀv of the fitted values v over the contact.
@@ -208,11 +188,10 @@ impl FitSums {
 }
 
 impl Total for FitSums {
-    const ZERO: Self = Self { counted: 0.0, moments: [0.0; 3], right: [0.0; 3], gram: [0.0; 6] };
+    const ZERO: Self = Self { moments: [0.0; 3], right: [0.0; 3], gram: [0.0; 6] };
 
     fn joined(self, other: Self) -> Self {
         Self {
-            counted: self.counted + other.counted,
             moments: self.moments.joined(other.moments),
             right: self.right.joined(other.right),
             gram: self.gram.joined(other.gram),
@@ -274,75 +253,48 @@ impl Freedoms {
         sums
     }
 
-    /// Force and scaled moments of one row; the moment along y is left out where it is not loaded.
-    pub(crate) fn moments_of(&self, row: Row, values: &[f64]) -> [f64; 3] {
-        let [s, sy] = if self.loaded[2] {
-            sum([values, row.y], |[v, y]| [v, v * y])
-        } else {
-            let [s] = sum([values], |[v]| [v]);
-            [s, 0.0]
-        };
+    /// Force and scaled moments of one row.
+    pub(crate) fn moments_of(row: Row, values: &[f64]) -> [f64; 3] {
+        let [s, sy] = sum([values, row.y], |[v, y]| [v, v * y]);
         [s, s * row.x, sy]
     }
 
     /// Sums over the contact cells of one row of a field; `p` is the pressure and `limit` its bound, `r` the residual
     /// and `before` the residual of the iteration before.
     pub(crate) fn products(
-        &self,
         row: Row,
         [p, limit, r, before]: [&[f64]; 4],
         values: &[f64],
     ) -> Products {
         let inputs = [p, limit, r, before, values, row.y];
-        let terms = |[p, limit, r, before, v, y]: [Lanes; 6]| {
+        let [s, with_residual, with_last, sy] = sum(inputs, |[p, limit, r, before, v, y]| {
             let v = in_contact(p, limit, r) & v;
             [v, r * v, before * v, v * y]
-        };
-        let [s, with_residual, with_last, sy] = if self.loaded[2] {
-            sum(inputs, terms)
-        } else {
-            let [s, now, last] = sum(inputs, |fields| {
-                let [s, now, last, _] = terms(fields);
-                [s, now, last]
-            });
-            [s, now, last, 0.0]
-        };
+        });
         Products { moments: [s, s * row.x, sy], with_residual, with_last }
     }
 
     /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells whose pressure is
     /// free below its `limit`.
     ///
-    /// `step` gets the cells of three inputs, `limit` and y. It returns the new fields, and pressure, value to be
-    /// fitted, and a number to be counted.
+    /// `step` gets the cells of three inputs, `limit` and y. It returns the new fields, and pressure and value to be
+    /// fitted.
     pub(crate) fn fit_row<const N: usize>(
-        &self,
         row: Row,
         limit: &[f64],
         [a, b, c]: [&[f64]; 3],
         fields: [&mut [f64]; N],
-        step: impl Fn([Lanes; 5], [Lanes; N]) -> ([Lanes; N], [Lanes; 3]),
+        step: impl Fn([Lanes; 5], [Lanes; N]) -> ([Lanes; N], [Lanes; 2]),
     ) -> FitSums {
-        let terms = |from: [Lanes; 5], old| {
-            let (new, [p, value, counted]) = step(from, old);
-            let [weight, value] = [ONE, value].map(|value| is_free(p, from[3]) & value);
-            (new, [counted, p, weight, value])
-        };
         let inputs = [a, b, c, limit, row.y];
-        let [counted, p, py, s, sy, syy, v, vy] = if self.loaded[2] {
-            update(inputs, fields, |from, old| {
-                let y = from[4];
-                let (new, [counted, p, weight, value]) = terms(from, old);
-                let [sy, syy] = [weight * y, weight * y * y];
-                (new, [counted, p, p * y, weight, sy, syy, value, value * y])
-            })
-        } else {
-            let [counted, p, s, v] = update(inputs, fields, terms);
-            [counted, p, 0.0, s, 0.0, 0.0, v, 0.0]
-        };
+        let [p, py, s, sy, syy, v, vy] = update(inputs, fields, |from, old| {
+            let (new, [p, value]) = step(from, old);
+            let (y, free) = (from[4], is_free(p, from[3]));
+            let [weight, value] = [free & ONE, free & value];
+            (new, [p, p * y, weight, weight * y, weight * y * y, value, value * y])
+        });
         let x = row.x;
         FitSums {
-            counted,
             moments: [p, p * x, py],
             right: [v, v * x, vy],
             gram: [s, s * x, sy, s * x * x, sy * x, syy],
@@ -355,30 +307,6 @@ impl Freedoms {
         let [s, sx, sy, sxx, sxy, syy] = sums.gram;
         let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
         self.solve(&gram, sums.right)
-    }
-
-    /// Subtracts from the residual `values` their best fit Bλ over the contact cells of pressure `p`, and
-    /// makes all others 0.
-    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64], bounds: &Bounds) {
-        let inside = |k: usize| bounds.is_free(k, p[k]) || r[k] != 0.0;
-        let member: Vec<f64> = (0..p.len()).map(|k| f64::from(u8::from(inside(k)))).collect();
-        let no_limit = vec![f64::INFINITY; self.columns[1].len()];
-        let mut sums = FitSums::ZERO;
-        for (number, (x, cells)) in self.rows().enumerate() {
-            let row = Row { number, x, y: &self.columns[1] };
-            let (inputs, values) = ([&member[cells.clone()], row.y, row.y], &mut values[cells]);
-            let here = self.fit_row(row, &no_limit, inputs, [values], |[member, ..], [value]| {
-                let value = where_positive(member, value);
-                ([value], [member, value, member])
-            });
-            sums = sums.joined(here);
-        }
-        let mean = self.fitted(sums);
-        self.for_each(mean, |k, b| {
-            if inside(k) {
-                values[k] -= b;
-            }
-        });
     }
 
     /// Solves for the loaded degrees of freedom; one that the others determine (a contact of one cell has
@@ -412,7 +340,7 @@ mod tests {
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
     use crate::model::grid::Grid;
-    use crate::numerics::parallel::{Lanes, Rows, Threads, ZERO};
+    use crate::numerics::parallel::{Lanes, Rows, Threads};
 
     const CELLS: [usize; 2] = [13, 18];
     const FIT_CELLS: [usize; 2] = [9, 14];
@@ -430,20 +358,6 @@ mod tests {
             if k.is_multiple_of(7) { 0.0 } else { 0.5 + (k * 37 % 101) as f64 / 50.0 }
         };
         (0..CELLS[0] * CELLS[1]).map(p).collect()
-    }
-
-    #[test]
-    fn a_load_alone_scales_the_pressure() -> Result<()> {
-        let freedoms = freedoms([None, None])?;
-        let before = pressure();
-        let mut p = before.clone();
-        assert!(freedoms.balance(&mut p, &Bounds::none(CELLS[1])));
-        let factor = 2.0 / (freedoms.cell_area * before.iter().sum::<f64>());
-        for (p, before) in p.iter().zip(&before) {
-            assert!((p - factor * before).abs() <= 1e-13 * factor * before);
-        }
-        assert!(!freedoms.balance(&mut vec![0.0; before.len()], &Bounds::none(CELLS[1])));
-        Ok(())
     }
 
     /// The load is 2 and acts at the eccentricity; p/p_before is affine in x and y where it is positive, and the
@@ -523,14 +437,13 @@ mod tests {
         let rows = Rows::new(&freedoms.columns, &threads);
         let bounds = Bounds::none(FIT_CELLS[1]);
         let sums = rows.each([p, values, values], [], |row, fields, []| {
-            let step = |[p, v, ..]: [Lanes; 5], []: [Lanes; 0]| ([], [p, v, ZERO]);
-            freedoms.fit_row(row, bounds.row(row.number), fields, [], step)
+            let step = |[p, v, ..]: [Lanes; 5], []: [Lanes; 0]| ([], [p, v]);
+            Freedoms::fit_row(row, bounds.row(row.number), fields, [], step)
         });
         Ok(freedoms.fitted(sums))
     }
 
-    /// An exact plane over the contact is found, whatever there is beside it, and the projection leaves nothing
-    /// of it: 1e-14 is the rounding of a hundred cells.
+    /// An exact plane over the contact is found, whatever there is beside it: 1e-14 is the rounding of a hundred cells.
     #[test]
     fn a_plane_is_found() -> Result<()> {
         let freedoms = tilting()?;
@@ -545,13 +458,6 @@ mod tests {
         for k in 0..3 {
             assert!((found[k] - lambda[k]).abs() < 1e-14, "{found:?}");
         }
-        let member: Vec<f64> = p.iter().map(|p| p.max(0.0)).collect();
-        for (value, p) in values.iter_mut().zip(&p) {
-            *value = if *p > 0.0 { *value } else { 3.0 };
-        }
-        let bounds = Bounds::none(FIT_CELLS[1]);
-        freedoms.project(&mut values, &member, &vec![0.0; cells], &bounds);
-        assert!(values.iter().all(|v| v.abs() < 1e-14));
         Ok(())
     }
 
@@ -572,15 +478,10 @@ mod tests {
             assert!((found - sum).abs() < 1e-11, "{found} {sum}");
         }
         let lambda = fit(&freedoms, &p, &values)?;
-        let mut projected = values.clone();
-        let bounds = Bounds::none(FIT_CELLS[1]);
-        freedoms.project(&mut projected, &p, &vec![0.0; cells], &bounds);
         freedoms.for_each(lambda, |k, b| values[k] -= b);
         for moment in freedoms.moments(&values) {
             assert!(moment.abs() < 1e-11, "{moment:e}");
         }
-        let apart = values.iter().zip(projected).map(|(a, b)| (a - b).abs());
-        assert!(apart.fold(0.0, f64::max) < 1e-13);
         Ok(())
     }
 

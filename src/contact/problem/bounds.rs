@@ -148,33 +148,35 @@ impl Hardness {
     /// An array of another shape than the grid, and a value that is not above 0.
     pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
         let (name, requirement) = ("hardness", "above 0");
-        let values = match self {
-            Self::Uniform(value) => std::slice::from_ref(value),
-            Self::Cells(values) => {
-                same_shape(name, values, grid.shape())?;
-                values.as_slice().unwrap_or(&[])
-            }
-        };
-        match values.iter().find(|h| h.is_nan() || **h <= 0.0) {
+        if let Self::Cells(values) = self {
+            same_shape(name, values, grid.shape())?;
+        }
+        match self.values().iter().find(|h| h.is_nan() || **h <= 0.0) {
             Some(&value) => Err(Error::Parameter { name, requirement, value }),
             None => Ok(()),
         }
     }
 
-    /// Hardness of a cell by its number in C order.
-    pub(crate) fn at(&self, cell: usize) -> f64 {
+    /// The one number, or those of the cells in C order.
+    fn values(&self) -> &[f64] {
         match self {
-            Self::Uniform(value) => *value,
-            Self::Cells(values) => values.as_slice().unwrap_or(&[])[cell],
+            Self::Uniform(value) => std::slice::from_ref(value),
+            Self::Cells(values) => values.as_slice().unwrap_or(&[]),
         }
     }
 
-    /// Whether any cell may yield.
-    pub(crate) fn is_limited(&self) -> bool {
-        match self {
-            Self::Uniform(value) => value.is_finite(),
-            Self::Cells(values) => values.iter().any(|value| value.is_finite()),
+    /// Hardness of a cell by its number in C order.
+    pub(crate) fn at(&self, cell: usize) -> f64 {
+        match self.values() {
+            [uniform] => *uniform,
+            values => values[cell],
         }
+    }
+
+    /// Largest hardness of the cells that may yield; 0 where none may.
+    pub(crate) fn largest(&self) -> f64 {
+        let values = self.values().iter().filter(|value| value.is_finite());
+        values.fold(0.0, |a: f64, b| a.max(*b))
     }
 }
 

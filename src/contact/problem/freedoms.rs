@@ -330,20 +330,6 @@ mod tests {
         }
     }
 
-    /// A regular hexagon of circumradius 1, with its centre: six sides at a distance √3/2.
-    #[test]
-    fn half_planes_of_a_hexagon() {
-        let corner = |k: i32| (std::f64::consts::FRAC_PI_3 * f64::from(k)).sin_cos();
-        let mut points: Vec<[f64; 2]> = (0..6).map(|k| corner(k).into()).collect();
-        points.push([0.0, 0.0]);
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        let half_planes = convex_hull(&points);
-        assert_eq!(half_planes.len(), 6);
-        for [_, _, c] in half_planes {
-            assert!((c + 0.75_f64.sqrt()).abs() < 1e-14, "{c}");
-        }
-    }
-
     #[test]
     fn without_an_inside_there_is_none() {
         let line: Vec<[f64; 2]> = (0..5).map(|k| [f64::from(k), 0.5 * f64::from(k)]).collect();

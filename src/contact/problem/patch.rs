@@ -60,10 +60,7 @@ pub(crate) fn rows<'a>(
 
 /// Values of a window of an array, in C order as the array.
 pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
-    filled(window, |i, row| {
-        let here = [i..i + 1, window[1].clone()];
-        rows(array, &here).for_each(|values| row.copy_from_slice(values));
-    })
+    rows(array, window).flatten().copied().collect()
 }
 
 /// The smallest window that holds all cells for which `member` is true; `None` where there is no such cell.

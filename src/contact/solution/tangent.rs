@@ -13,9 +13,9 @@ use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
 use crate::contact::problem::patch::block;
-use crate::contact::solver::linear_cg::{self, Watch};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
+use crate::numerics::linear_cg::{self, Watch};
 use crate::numerics::parallel::{Threads, check_memory, dot};
 
 /// Residual of a linear solve, relative to its right side, below which it is rounding.

@@ -10,13 +10,13 @@
 //! - where a direction does not descend, as after a change of the contact it may not, the gradient takes
 //!   its place.
 
-use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
 use crate::contact::problem::{Multipliers, Problem, Quality};
 use crate::contact::problem::{SolutionFields, slice_mut};
 use crate::error::{Error, Result};
 use crate::model::grid::full_window;
+use crate::numerics::linear_cg::Conjugacy;
 use crate::numerics::parallel::dot;
 
 /// Energy below 0 that may be rounding: of the displacement, some 1e-15 of that of one cell under the sum of
@@ -67,11 +67,7 @@ pub(crate) fn solve(
         if advance(problem, &inside, &g, &search.direction, step, p) {
             search.conjugacy.restart();
         }
-        if problem.bounds.is_limited() {
-            problem.rebalance_within(p, u, found.lambda());
-        } else {
-            problem.rebalance(p);
-        }
+        problem.rebalance(p, u, found.lambda());
         tally.iterations += 1;
     }
 }

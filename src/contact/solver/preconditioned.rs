@@ -26,30 +26,24 @@
 //! Operations that share a pass over arrays are those that would otherwise take as long as the transforms.
 
 use std::mem;
-use std::ops::Range;
 
 use crate::compliance::convolution::{Approximation, Workspace};
 use crate::contact::problem::balance::Products;
 use crate::contact::problem::bounds::{clip, in_contact, is_free, not_allowed, residual};
+use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
-use crate::contact::solver::linear_cg::Conjugacy;
-use crate::contact::solver::stagnation::Course;
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, active_set};
-use crate::numerics::parallel::{
-    ONE, Rows, Total, ZERO, all, dot, sum, update, update_with_largest,
-};
+use crate::numerics::linear_cg::Conjugacy;
+use crate::numerics::parallel::{ONE, Rows, Total, ZERO, all, sum, update, update_with_largest};
 
-/// Iterations by which most contacts have converged. After them a contact of a few cells is left to
-/// [`active_set`]; chosen by trial.
+/// Iterations by which most contacts have converged. After them a contact of a few cells is left to [`active_set`]. Chosen by
+/// trial: without it, 2 of 32 eccentric rough contacts take 13 convolutions more and 2 others 11 and 26 fewer, and 2 of 3
+/// contacts on coats 1000 times harder than the body take 36 more.
 const PATIENCE: usize = 20;
 
-/// Best length along the change of a step, relative to the planned one. Outside this range so many cells have
-/// left that the plan was worth little; beyond 2 the energy would rise. Chosen by trial.
-const AS_PLANNED: Range<f64> = 0.6..1.8;
-
-/// Bounds of one change of the ratio of curvatures, and of the ratio itself; chosen by trial.
-const CHANGE_OF_RATIO: [f64; 2] = [0.8, 1.25];
-const RATIO: [f64; 2] = [0.5, 2.0];
+/// Iterations after which the reference algorithm goes on. Contacts on coats 1e3 to 1e5 times harder than the body take 250
+/// to 400.
+const LONGEST: usize = 1000;
 
 /// The iteration of one problem, with a field on all cells for each letter.
 pub(crate) struct Preconditioned<'a> {
@@ -81,11 +75,8 @@ pub(crate) struct Preconditioned<'a> {
     /// Number of cells in the contact.
     members: f64,
     lambda: [f64; 3],
-    /// Whether cells left in the last step, which went as planned otherwise.
+    /// Whether cells left in the last step.
     losing: bool,
-    /// Curvature of the energy by the exact convolution, relative to that by the periodic one, in the last
-    /// step that used both.
-    curvature_ratio: f64,
     /// Work done so far, in the unit of `Convolution::work`.
     work: f64,
 }
@@ -114,15 +105,13 @@ impl<'a> Preconditioned<'a> {
             members: 0.0,
             lambda: [0.0; 3],
             losing: true,
-            curvature_ratio: 1.0,
             work: 0.0,
         }
     }
 
     /// Solves from the balanced pressure `p`, which becomes the solution. It ends early with
-    /// [`Termination::IterationLimit`] where [`active_set`] can go on, and with the best pressure where it
-    /// stagnates. Displacements are sums over the steps and carry their rounding: a caller that needs them
-    /// computes them afresh.
+    /// [`Termination::IterationLimit`] where [`active_set`] or the reference algorithm can go on. Displacements are sums
+    /// over the steps and carry their rounding: a caller that needs them computes them afresh.
     pub(crate) fn solve(
         &mut self,
         p: &mut Vec<f64>,
@@ -130,7 +119,6 @@ impl<'a> Preconditioned<'a> {
         tally: &mut Tally,
     ) -> Outcome {
         let before = tally.work;
-        let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
             let quality = self.assess(p);
@@ -144,11 +132,10 @@ impl<'a> Preconditioned<'a> {
                 return end(Termination::Stopped);
             }
             let limited = tally.iterations >= criteria.max_iterations || quality.overflows();
-            if limited || (iterations >= PATIENCE && active_set::is_small(self.problem, p)) {
-                return end(Termination::IterationLimit);
-            }
-            if course.stagnates(iterations, quality, p) {
-                course.restore(p);
+            if limited
+                || iterations >= LONGEST
+                || (iterations >= PATIENCE && active_set::is_small(self.problem, p))
+            {
                 return end(Termination::IterationLimit);
             }
             let descends = self.step(p);
@@ -183,9 +170,9 @@ impl<'a> Preconditioned<'a> {
         let (inputs, outputs) = ([p, &self.response, problem.gap], [&mut self.u[..]]);
         let fit = self.rows.each(inputs, outputs, |row, inputs, [u]| {
             let limit = bounds.row(row.number);
-            freedoms.fit_row(row, limit, inputs, [u], |[p, response, h, ..], [u]| {
+            Freedoms::fit_row(row, limit, inputs, [u], |[p, response, h, ..], [u]| {
                 let u = u + behind * response;
-                ([u], [p, u + h, ZERO])
+                ([u], [p, u + h])
             })
         });
         self.lambda = match fit.cells() > 0.0 {
@@ -248,7 +235,7 @@ impl<'a> Preconditioned<'a> {
 
     /// Makes the direction of the next step; returns its product with the residual.
     fn search_direction(&mut self, p: &[f64]) -> f64 {
-        let ([factors @ .., descent], with_last) = self.deflate(p);
+        let (factors, [descent, with_last]) = self.deflate(p);
         let beta = self.conjugacy.beta(descent, with_last);
         let slope = self.turn(p, factors, beta);
         if slope > 0.0 {
@@ -261,7 +248,7 @@ impl<'a> Preconditioned<'a> {
     /// Preconditions the residual, z = M r, and finds the multiples of the images that must be subtracted
     /// from z so that, on the contact, it changes neither force nor moments. Returns them and the products of the rest
     /// with the residual and with that of the iteration before.
-    fn deflate(&mut self, p: &[f64]) -> ([f64; 4], f64) {
+    fn deflate(&mut self, p: &[f64]) -> ([f64; 3], [f64; 2]) {
         let (freedoms, bounds) = (self.problem.freedoms, self.problem.bounds);
         let inverse = &self.approximation.inverse;
         inverse.apply_slices(&self.r, &mut self.z, &mut self.workspace);
@@ -272,9 +259,9 @@ impl<'a> Preconditioned<'a> {
             let [p, r, before, z, images @ ..] = inputs;
             let here = [p, bounds.row(row.number), r, before];
             let mut products: [Products; 4] = Total::ZERO;
-            products[0] = freedoms.products(row, here, z);
+            products[0] = Freedoms::products(row, here, z);
             for (k, image) in images.into_iter().enumerate().filter(|(k, _)| freedoms.loaded[*k]) {
-                products[k + 1] = freedoms.products(row, here, image);
+                products[k + 1] = Freedoms::products(row, here, image);
             }
             products
         });
@@ -284,16 +271,8 @@ impl<'a> Preconditioned<'a> {
             let removed = factors.iter().zip(&of_images).map(|(f, image)| f * product(image));
             product(&of_z) - removed.sum::<f64>()
         };
-        let descent = remains(|products| products.with_residual);
-        if descent > 0.0 {
-            let [a, b, c] = factors;
-            return ([a, b, c, descent], remains(|products| products.with_last));
-        }
-        // The oblique projection failed: steepest descent, projected orthogonally.
-        self.z.copy_from_slice(&self.r);
-        freedoms.project(&mut self.z, p, &self.r, bounds);
-        self.conjugacy.restart();
-        ([0.0, 0.0, 0.0, dot(&self.r, &self.z)], 0.0)
+        let products = [|of: &Products| of.with_residual, |of: &Products| of.with_last];
+        (factors, products.map(remains))
     }
 
     /// Images of the loaded degrees of freedom; r, which has no weight there, in place of the others.
@@ -322,20 +301,17 @@ impl<'a> Preconditioned<'a> {
     }
 
     /// p ← [p + d (r·d)/(d·K d)]₊, brought into balance, with the `slope` r·d. Where the curvature d·K d is
-    /// `approximate`, the best length along the change that remains is found afterwards, and much shorter ones count.
+    /// `approximate`, a step with which the energy would rise is shortened to the least energy along its change.
     /// False, with the pressure unchanged up to rounding, where the step would not descend.
     fn advance(&mut self, p: &mut Vec<f64>, slope: f64, approximate: bool) -> bool {
         let (problem, bounds, freedoms) =
             (self.problem, self.problem.bounds, self.problem.freedoms);
-        let (operator, ratio) = match approximate {
-            true => (&self.approximation.periodic, self.curvature_ratio),
-            false => (problem.convolution, 1.0),
-        };
+        let operator = if approximate { &self.approximation.periodic } else { problem.convolution };
         operator.apply_slices(&self.direction, &mut self.response, &mut self.workspace);
         self.work += operator.work();
         let fields = [&self.direction[..], &self.response];
         let [curvature] = self.rows.each(fields, [], |_, fields, []| sum(fields, |[d, k]| [d * k]));
-        let Some(length) = best_length(slope, ratio * curvature) else {
+        let Some(length) = best_length(slope, curvature) else {
             return false;
         };
         let (inputs, outputs) = ([&p[..], &self.direction], [&mut self.change[..]]);
@@ -345,7 +321,7 @@ impl<'a> Preconditioned<'a> {
                 let next = p + all(length) * d;
                 ([clip(next, limit)], [not_allowed(next, limit)])
             });
-            (lost, freedoms.moments_of(row, next))
+            (lost, Freedoms::moments_of(row, next))
         });
         // From here on `change` is the pressure before the step.
         mem::swap(p, &mut self.change);
@@ -373,12 +349,9 @@ impl<'a> Preconditioned<'a> {
             sum(fields, |[change, r, response]| [change * r, change * response])
         });
         let best = best_length(slope, curvature).unwrap_or(0.0);
-        let of_ratio = best.clamp(CHANGE_OF_RATIO[0], CHANGE_OF_RATIO[1]);
-        self.curvature_ratio = (ratio / of_ratio).clamp(RATIO[0], RATIO[1]);
-        // Where the plan was worth little, an exact step follows.
-        self.losing &= AS_PLANNED.contains(&best);
-        if best < AS_PLANNED.start {
-            self.behind = best;
+        // Beyond twice the best length the energy rises. An exact step follows.
+        if best < 0.5 {
+            (self.behind, self.losing) = (best, false);
             let back = all(1.0 - best);
             self.rows.each([&self.change], [&mut p[..]], |_, [change], [p]| {
                 update([change], [p], |[change], [p]| ([p - back * change], []))
@@ -390,13 +363,9 @@ impl<'a> Preconditioned<'a> {
     /// Brings the pressure of this `force` into balance up to the factor that is returned.
     fn balance(&self, p: &mut [f64], force: f64) -> f64 {
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
-        if problem.bounds.is_limited() {
-            problem.rebalance_within(p, &self.u, self.lambda);
-            return 1.0;
-        }
-        let factor = freedoms.to_load(force).filter(|_| freedoms.only_force());
-        factor.unwrap_or_else(|| {
-            problem.rebalance(p);
+        let scales = freedoms.only_force() && !problem.bounds.is_limited();
+        freedoms.to_load(force).filter(|_| scales).unwrap_or_else(|| {
+            problem.rebalance(p, &self.u, self.lambda);
             1.0
         })
     }
@@ -409,123 +378,4 @@ fn best_length(slope: f64, curvature: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use ndarray::Array2;
-
-    use super::Preconditioned;
-    use crate::compliance::convolution::Convolution;
-    use crate::compliance::influence::{Method, influence_coefficients};
-    use crate::compliance::response::Body;
-    use crate::contact::options::Motion;
-    use crate::contact::problem::bounds::{Bounds, Hardness};
-    use crate::contact::problem::freedoms::Freedoms;
-    use crate::contact::problem::{LocalDisplacement, Problem};
-    use crate::error::Result;
-    use crate::model::body::{HalfSpace, Layer};
-    use crate::model::grid::Grid;
-    use crate::model::material::Elastic;
-
-    fn largest(values: impl Iterator<Item = f64>) -> f64 {
-        values.fold(0.0, |a, b| a.max(b.abs()))
-    }
-
-    /// A gap as a function of x and y.
-    type GapOf<'a> = &'a dyn Fn(f64, f64) -> f64;
-
-    #[test]
-    fn each_iteration_keeps_its_invariants() -> Result<()> {
-        let rough = |x: f64, y: f64| {
-            let height = ((127.1 * x + 311.7 * y).sin() * 43758.5).fract();
-            if x.hypot(y) > 1.3 { f64::INFINITY } else { 3e-4 * (x * x + y * y) + 1e-4 * height }
-        };
-        let crowned = |x: f64, y: f64| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2);
-        let coat = Layer::new(Elastic::new(4.0, 0.2)?, 0.4)?;
-        let coated = Body::from(HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?);
-        let bare = Body::from(Elastic::new(1.0, 0.0)?);
-        let turned = Motion { moment: [Some(3e-5), Some(-5e-6)], ..Motion::load(1e-4) };
-        let tilting = Motion { eccentricity: [Some(0.31), Some(-0.02)], ..Motion::load(1e-3) };
-        let tilted = Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) };
-        let gaps: [GapOf; 2] = [&rough, &crowned];
-        for (body, motion, gap, limit) in [
-            (&bare, Motion::load(1e-3), gaps[0], f64::INFINITY),
-            (&coated, turned, gaps[0], f64::INFINITY),
-            (&bare, tilting, gaps[1], f64::INFINITY),
-            (&coated, Motion::load(1e-3), gaps[0], 4e-3),
-            (&bare, tilted, gaps[1], f64::INFINITY),
-        ] {
-            keeps_its_invariants(body, &motion, gap, limit)?;
-        }
-        Ok(())
-    }
-
-    /// In each iteration, until the quality is 1e-10: u = K p, though it is a sum over the steps; a direction that is
-    /// not conjugate changes neither force nor moments, where the images are those of the contact; r is the overlap on
-    /// the contact; the pressure is within its bounds and in balance. To the rounding of some thousand cells.
-    fn keeps_its_invariants(body: &Body, motion: &Motion, gap: GapOf, limit: f64) -> Result<()> {
-        let grid = Grid::new([60, 55], [3.0, 2.5])?;
-        let [nx, ny] = grid.shape();
-        let coefficients = influence_coefficients(body.clone(), &grid, Method::Exact)?;
-        let convolution = Convolution::plan(&coefficients, Some(1))?;
-        let approximation = convolution.approximation(&coefficients, [false; 2]);
-        let freedoms = Freedoms::new(motion, &grid)?;
-        let (x, y) = (grid.x(), grid.y());
-        let mut h = Array2::from_shape_fn((nx, ny), |(i, j)| gap(x[i], y[j]));
-        freedoms.prescribe(&mut h);
-        let h = h.into_raw_vec_and_offset().0;
-        let hardness = Hardness::Uniform(limit);
-        let bounds = if limit.is_finite() { Bounds::of(&hardness, ny) } else { Bounds::none(ny) };
-        let problem = Problem {
-            convolution: &convolution,
-            freedoms: &freedoms,
-            gap: &h,
-            local: &LocalDisplacement::new(&[body], &grid),
-            bounds: &bounds,
-        };
-        let mut p: Vec<f64> = h.iter().map(|h| f64::from(u8::from(h.is_finite()))).collect();
-        p.iter_mut().for_each(|p| *p *= 1e-4);
-        assert!(freedoms.balance(&mut p, &bounds));
-        let mut solver = Preconditioned::new(&problem, &approximation);
-        solver.start(&p);
-        let mut workspace = convolution.workspace();
-        let (mut u, mut truncated) = (vec![0.0; p.len()], 0);
-        for iteration in 0.. {
-            assert!(iteration < 200, "{motion:?}: not converged");
-            let quality = solver.assess(&p);
-            problem.apply(&p, &mut u, &mut workspace);
-            let scale = largest(u.iter().copied());
-            let apart = largest(u.iter().zip(&solver.u).map(|(a, b)| a - b));
-            assert!(apart <= 1e-12 * scale, "{motion:?} {iteration}: {apart:e}");
-            freedoms.for_each(solver.lambda, |k, b| {
-                let overlap = b - h[k] - u[k];
-                if bounds.is_free(k, p[k]) {
-                    assert!((solver.r[k] - overlap).abs() <= 1e-12 * scale);
-                } else if p[k] <= 0.0 {
-                    assert!((solver.r[k] - overlap.max(0.0)).abs() <= 1e-12 * scale);
-                }
-            });
-            if quality.meets(1e-10) {
-                break;
-            }
-            // A conjugate direction loses the balance of the cells that left since the last one.
-            let fresh = iteration % 2 == 0;
-            if fresh {
-                solver.conjugacy.restart();
-            }
-            assert!(solver.step(&mut p), "{motion:?} {iteration}");
-            let size: f64 = solver.direction.iter().map(|d| d.abs()).sum();
-            let changed = freedoms.moments(&solver.direction);
-            for k in (0..3).filter(|&k| fresh && !solver.stale && freedoms.loaded[k]) {
-                assert!(
-                    changed[k].abs() <= 1e-13 * size,
-                    "{motion:?} {iteration}: {k} {:e}",
-                    changed[k] / size
-                );
-            }
-            assert!((0..p.len()).all(|k| (0.0..=bounds.limit(k)).contains(&p[k])));
-            assert!(freedoms.on_target(freedoms.moments(&p)), "{motion:?} {iteration}");
-            truncated += usize::from(solver.losing);
-        }
-        assert!(truncated > 0, "{motion:?}: no step on which cells leave");
-        Ok(())
-    }
-}
+mod tests;

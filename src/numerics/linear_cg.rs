@@ -1,7 +1,7 @@
 //! Preconditioned conjugate gradients for a linear system, without constraints.
 //!
 //! Hestenes & Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409, doi:10.6028/jres.049.044. [`Conjugacy`] is the
-//! recurrence of directions that all conjugate gradients of this room share.
+//! recurrence of directions that the conjugate gradients with constraints share.
 
 use std::ops::ControlFlow;
 
@@ -64,7 +64,7 @@ pub(crate) fn solve(
 
 /// Memory of the last direction: d ← z + β d.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Conjugacy {
+pub(crate) struct Conjugacy {
     /// r · z of the last iteration; `None` where the next direction is z alone.
     descent: Option<f64>,
 }
@@ -75,13 +75,13 @@ impl Conjugacy {
     ///
     /// Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 3 (1969) 35: β = (r − r_last) · z / r_last · z_last.
     /// It is that of Fletcher and Reeves where `with_last` is 0, as it is for a linear problem.
-    pub(super) fn beta(&mut self, descent: f64, with_last: f64) -> f64 {
+    pub(crate) fn beta(&mut self, descent: f64, with_last: f64) -> f64 {
         let last = self.descent.replace(descent);
         last.map_or(0.0, |last| ((descent - with_last) / last).max(0.0))
     }
 
     /// Makes the next direction z alone.
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.descent = None;
     }
 }
