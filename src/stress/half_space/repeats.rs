@@ -14,7 +14,7 @@ use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Radial};
 use crate::compliance::kernel::plane::{CellPlan, CellSource, ComponentsAt, FAR, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
-use crate::model::body::{HalfSpace, Substrate};
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::fft::Keep;
@@ -214,12 +214,16 @@ fn everywhere(body: &HalfSpace, place: &Place, axis: Axis) -> [f64; COMPONENTS] 
     } / material.shear();
     let moved = |count: usize| -> f64 {
         let layers = body.layers().iter().take(count);
-        layers.map(|layer| layer.thickness() * compliance(layer.material())).sum()
+        let of = |layer: &Layer| {
+            let springs = layer.interface().compliances()[usize::from(axis.is_some())];
+            layer.thickness() * compliance(layer.material()) + springs
+        };
+        layers.map(of).sum()
     };
     let above = moved(place.layer) + place.below_top * compliance(place.material);
     let whole = match body.substrate() {
         Substrate::Rigid => moved(body.layers().len()),
-        Substrate::Elastic(_) => 0.0,
+        Substrate::Elastic(_) | Substrate::Free => 0.0,
     };
     let mut values = [0.0; COMPONENTS];
     match axis {
@@ -256,7 +260,7 @@ mod tests {
     use super::*;
     use crate::compliance::response::interior::{Column, InPlane};
     use crate::error::Result;
-    use crate::model::body::{Interface, Layer};
+    use crate::model::body::{Interface, Layer, Spring};
     use crate::stress::section::place;
     use crate::stress::{Side, Stress, StressOptions, stress};
 
