@@ -290,7 +290,9 @@ pub(crate) fn is_free(body: &dyn Response) -> bool {
 /// compliance below 0; limits that differ where there are no lengths.
 pub(crate) fn check(body: &dyn Response) -> Result<()> {
     let Asymptotes { long, constant, short } = body.asymptotes();
-    not_negative("asymptotes().long", long)?;
+    if !is_free(body) {
+        not_negative("asymptotes().long", long)?;
+    }
     not_negative("asymptotes().short", short)?;
     finite("asymptotes().constant", constant)?;
     not_negative("local()", body.local())?;

@@ -47,8 +47,7 @@ impl Interface {
 /// ```
 ///
 /// with ⁺ the upper side. A bond line of thickness t and moduli E, ν, G that is much thinner than its layers has
-/// k_n = E (1−ν)/[(1+ν)(1−2ν) t] and k_t = G/t. Jones & Whittier, J. Appl. Mech. 34 (1967) 905,
-/// doi:10.1115/1.3607854.
+/// k_n = E (1−ν)/[(1+ν)(1−2ν) t] and k_t = G/t. Jones & Whittier, J. Appl. Mech. 34 (1967) 905.
 ///
 /// ```
 /// use nacre::{Elastic, Interface, Layer, Spring};
@@ -307,6 +306,15 @@ impl HalfSpace {
     /// Whether layers above some interface slip freely on what lies below.
     pub(crate) fn slips(&self) -> bool {
         self.layers.iter().any(|layer| layer.interface.slips())
+    }
+
+    /// This body, on a rigid base where its base is free.
+    pub(crate) fn held(&self) -> Self {
+        let substrate = match self.substrate {
+            Substrate::Free => Substrate::Rigid,
+            held => held,
+        };
+        Self { substrate, ..self.clone() }
     }
 
     /// Material at the surface, which is that of the top layer or, without layers, of the substrate.

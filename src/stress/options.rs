@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::error::{Error, Result, finite, require};
+use crate::compliance::response::refuse_free;
 use crate::model::body::HalfSpace;
 
 /// Side of an interface, for a depth that lies on one.
@@ -168,6 +169,7 @@ impl SlidingSense {
                 "friction must be 0: the tractions of this contact are known, and their stress is part of the result",
             ));
         }
+        refuse_free(body, "a body with friction")?;
         if body.slips() {
             return Err(Error::Inconsistent(
                 "friction must be 0 on a body with a frictionless interface: nothing holds the layers \

@@ -37,6 +37,11 @@ impl ResponseSlope {
     pub(crate) fn new(body: &HalfSpace, parameter: BodyParameter) -> Self {
         Self { body: body.clone(), parameter, limits: asymptote_derivatives(body, &[parameter])[0] }
     }
+
+    /// The derivative of another `body` with respect to the same number.
+    pub(crate) fn of(&self, body: &HalfSpace) -> Self {
+        Self::new(body, self.parameter)
+    }
 }
 
 impl Response for ResponseSlope {
