@@ -82,7 +82,10 @@ impl<'de> Deserialize<'de> for Interface {
                 f.write_str("\"bonded\", \"frictionless\", or the stiffnesses of a spring, normal and tangential")
             }
 
-            fn visit_str<E: serde::de::Error>(self, word: &str) -> std::result::Result<Interface, E> {
+            fn visit_str<E: serde::de::Error>(
+                self,
+                word: &str,
+            ) -> std::result::Result<Interface, E> {
                 match word {
                     "bonded" => Ok(Interface::Bonded),
                     "frictionless" => Ok(Interface::Frictionless),

@@ -20,10 +20,10 @@ mod conversion;
 mod exact;
 mod periodic;
 
-pub(crate) use periodic::PlateWaves;
 pub use conversion::Method;
 pub(crate) use conversion::memory;
 pub use exact::CellInfluence;
+pub(crate) use periodic::PlateWaves;
 
 /// Coefficients `C[i, j]` \[m/Pa\] of offsets (i dx, j dy) ≥ 0, in the shape (nx, ny) of `grid`.
 ///

@@ -439,9 +439,12 @@ impl HalfSpace {
                 return Ok(body);
             }
             BodyParameter::NormalStiffness(place) | BodyParameter::TangentialStiffness(place) => {
-                let spring = self.value(parameter).and_then(|_| self.spring(place)).ok_or(ABSENT)?;
+                let spring =
+                    self.value(parameter).and_then(|_| self.spring(place)).ok_or(ABSENT)?;
                 let spring = match parameter {
-                    BodyParameter::NormalStiffness(_) => Spring::new(Some(value), spring.tangential),
+                    BodyParameter::NormalStiffness(_) => {
+                        Spring::new(Some(value), spring.tangential)
+                    }
                     _ => Spring::new(spring.normal, Some(value)),
                 }?;
                 body.layers[place].interface = Interface::Spring(spring);

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayRef2};
 
+use crate::compliance::influence::PlateWaves;
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
 use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
-use crate::compliance::influence::PlateWaves;
 use crate::compliance::response::{is_free, refuse_free, substrate_material};
 use crate::error::{Result, all_finite, require, same_shape};
 use crate::model::body::HalfSpace;

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::error::{Error, Result, finite, require};
 use crate::compliance::response::refuse_free;
+use crate::error::{Error, Result, finite, require};
 use crate::model::body::HalfSpace;
 
 /// Side of an interface, for a depth that lies on one.

@@ -108,8 +108,7 @@ fn asymptotes_are_limits_and_so_are_their_derivatives() -> Result<()> {
 /// The bodies whose interface is a spring, bonded or frictionless, on an elastic and on a rigid base.
 fn with_interface(interface: Interface) -> Result<[HalfSpace; 2]> {
     let (hard, soft) = (Elastic::new(5.0, 0.2)?, Elastic::new(1.0, 0.35)?);
-    let layers =
-        [Layer::new(hard, 1.0)?.with_interface(interface), Layer::new(soft, 0.5)?];
+    let layers = [Layer::new(hard, 1.0)?.with_interface(interface), Layer::new(soft, 0.5)?];
     Ok([HalfSpace::new(soft, layers.clone())?, HalfSpace::new(Substrate::Rigid, layers)?])
 }
 
@@ -231,7 +230,10 @@ fn coefficients_of_a_free_plate_are_sums_of_waves() -> Result<()> {
     let (hard, soft) = (Elastic::new(5.0, 0.2)?, Elastic::new(1.0, 0.35)?);
     for (layers, cells) in [
         (vec![Layer::new(soft, 2.0)?], [12, 9]),
-        (vec![Layer::new(hard, 0.4)?.with_interface(spring(1.0, 0.3)?), Layer::new(soft, 1.0)?], [9, 16]),
+        (
+            vec![Layer::new(hard, 0.4)?.with_interface(spring(1.0, 0.3)?), Layer::new(soft, 1.0)?],
+            [9, 16],
+        ),
     ] {
         let plate = HalfSpace::new(Substrate::Free, layers)?;
         let size = [cells[0] as f64 * 1.0, cells[1] as f64 * 1.5];

@@ -148,7 +148,8 @@ impl PlateWaves {
     pub(crate) fn new(plate: &HalfSpace, grid: &Grid) -> Result<Self> {
         let spacing = grid.spacing();
         let widest = spacing[0].max(spacing[1]);
-        let requirement = "at most 4 times the thickness of the plate with a free base: take more cells";
+        let requirement =
+            "at most 4 times the thickness of the plate with a free base: take more cells";
         let fine = widest <= WIDEST_CELL * plate.thickness();
         require("spacing of the grid", widest, fine, requirement)?;
         Ok(Self { shape: grid.shape(), spacing, highest: UNSEEN / plate.thickness() })

@@ -71,8 +71,7 @@ impl Support {
         }
         let [normal, tangential] = interface.compliances().map(|c| alpha * c);
         let Compliance { c11, c12, c22, ct } = below;
-        let all =
-            Compliance { c11: c11 + normal, c12, c22: c22 + tangential, ct: ct + tangential };
+        let all = Compliance { c11: c11 + normal, c12, c22: c22 + tangential, ct: ct + tangential };
         if interface.slips() { Self::Slips(all) } else { Self::Held(all) }
     }
 }

@@ -4,9 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::super::tip::TipParameter;
 use super::basis::Waves;
-use crate::compliance::response::{
-    Body, asymptote_derivatives, normal_derivatives, refuse_free,
-};
+use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives, refuse_free};
 use crate::error::{Result, refuse_if};
 use crate::model::body::BodyParameter;
 

@@ -218,8 +218,10 @@ def test_stresses_of_short_waves_are_those_of_a_half_space() -> None:
     """Waves of a fifth of the thickness do not see the lower face: e^{−2αh} is 1e-27."""
     grid = nacre.Grid((10, 20), (1e-3, 2e-3), periodic=(True, True))
     thick = nacre.HalfSpace(nacre.FREE, [nacre.Layer(STEEL, 5e-3)])
-    pressure = 1e6 * np.cos(np.arange(10) * 2 * np.pi / 10)[:, None] * np.cos(
-        np.arange(20) * 2 * np.pi * 2 / 20
+    pressure = (
+        1e6
+        * np.cos(np.arange(10) * 2 * np.pi / 10)[:, None]
+        * np.cos(np.arange(20) * 2 * np.pi * 2 / 20)
     )
     for z in (0.0, 2e-4):
         plate = nacre.stress(thick, grid, pressure, z, displacement=True)
