@@ -98,8 +98,8 @@ class Body(Table):
     """A half-space: a substrate, and layers from the surface down; it may end along x."""
 
     substrate: AnyMaterial = Field(
-        description='Material below the layers; "rigid" is a rigid base, and "free" none: the layers '
-        "are a plate."
+        description='Material below the layers; "rigid" is a rigid base, and "free" none: the '
+        "layers are a plate."
     )
     layers: Annotated[list[Layer], Field(max_length=MOST_LAYERS)] = Field(
         [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
