@@ -178,7 +178,7 @@ impl PlateWaves {
     /// Wavenumbers that look like that of a wave, and the mean of the wave over a cell; both have signs.
     ///
     /// ```text
-    /// q = 2π (k/N + a)/dx      sin(πk/N) / π(k/N + a)      a = …, −1, 0, 1, …
+    /// q = 2π (k/N + a)/dx      sin(q dx/2) / (q dx/2)      a = …, −1, 0, 1, …
     /// ```
     fn aliases(&self, axis: usize, wave: usize) -> Vec<(f64, f64)> {
         if wave == 0 {
@@ -187,10 +187,9 @@ impl PlateWaves {
         let turns = wave as f64 / self.shape[axis] as f64;
         let step = 2.0 * PI / self.spacing[axis];
         let last = (self.highest / step).ceil() as i64 + 1;
-        let sine = (PI * turns).sin();
         let alias = |a: i64| {
             let number = turns + a as f64;
-            (step * number, sine / (PI * number))
+            (step * number, (PI * number).sin() / (PI * number))
         };
         (-last..=last).map(alias).filter(|(q, _)| q.abs() < self.highest).collect()
     }
