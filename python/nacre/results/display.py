@@ -489,6 +489,8 @@ def _moduli(*members: Planned | None) -> list[tuple[str, str]]:
         return []
     bases = [one.substrate for one in bodies]
     tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
+    if any(isinstance(base, Free) for base in bases):
+        return [("E* (surfaces)", _modulus(tops))]
     rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]
     return rows + ([("E* (surfaces)", _modulus(tops))] if tops != bases else [])
 
