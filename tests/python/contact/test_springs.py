@@ -252,3 +252,61 @@ def test_solved_contacts_on_plates_have_stresses_and_gradients() -> None:
     assert gradient["body.layers[0].thickness"] == pytest.approx(difference, rel=1e-3)
     with pytest.raises(ValueError, match="free base"):
         solution.stress(0.5e-3, friction=0.1, direction=(1, 0))
+
+
+@pytest.mark.parametrize("tangential", [0.0, 1e10])
+def test_a_force_on_a_plate_on_springs_sinks_as_hertz_says(tangential: float) -> None:
+    """The deflection is P/(8 √(k D)): Hertz, Wiedemanns Ann. 22 (1884) 449.
+
+    To it the contact adds that of the surface. What is left is of the order of P/(E h) and of the
+    deflection times the square of h over ⁴√(D/k), 7e-3 at most.
+    """
+    load, h, k = 1.0, 1e-3, 1e10
+    body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, h, nacre.Spring(k, tangential))])
+    due = load / (8 * np.sqrt(k * STEEL.plane_strain_modulus * h**3 / 12))
+    due += nacre.hertz.Point(5e-3, STEEL.plane_strain_modulus, load).approach
+    found = nacre.solve(BALL, body, load=load)
+    assert found.approach == pytest.approx(due, rel=7e-3)
+    tip = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(5e-3)).at(load=load)
+    assert found.approach == pytest.approx(tip.approach, rel=2e-4)
+
+
+def test_contacts_on_springs_are_those_of_tips() -> None:
+    for interface in (BOND, nacre.Spring(2e15, 5e13)):
+        ball = nacre.Paraboloid(5e-3, 5e-3)
+        found = nacre.solve(ball, on(interface), load=1.0)
+        tip = nacre.indent.Tip.paraboloid(5e-3)
+        due = nacre.indent.Indentation(on(interface), tip).at(load=1.0)
+        assert found.approach == pytest.approx(due.approach, rel=2e-4)
+        assert found.central_pressure == pytest.approx(due.central_pressure, rel=1e-3)
+
+
+def test_coefficients_of_a_plate_are_sums_of_waves() -> None:
+    """The difference from a half-space of the surface's material, by waves: e^{−2αh} is 1e-13."""
+    soft, hard = nacre.Elastic(1.0, 0.35), nacre.Elastic(5.0, 0.2)
+    for layers, cells in (
+        ([nacre.Layer(soft, 2.0)], (12, 9)),
+        ([nacre.Layer(hard, 0.4, nacre.Spring(1.0, 0.3)), nacre.Layer(soft, 1.0)], (9, 16)),
+    ):
+        plate = nacre.HalfSpace(nacre.FREE, layers)
+        grid = nacre.Grid(cells, (cells[0] * 1.0, cells[1] * 1.5), periodic=(True, True))
+        found = nacre.influence_coefficients(plate, grid)
+        top = nacre.HalfSpace(layers[0].material)
+        base = nacre.influence_coefficients(top, grid)
+        numbers = [np.arange(-20 * n, 20 * n + 1) for n in cells]
+        m, n = np.meshgrid(
+            *(2 * np.pi * k / length for k, length in zip(numbers, grid.size, strict=True)),
+            indexing="ij",
+        )
+        dx, dy = grid.spacing
+        alpha = np.hypot(m, n)
+        seen = (alpha > 0) & (alpha < 40)
+        response = np.zeros_like(alpha)
+        response[seen] = nacre.frequency_response(plate, alpha[seen])
+        response[seen] -= nacre.frequency_response(top, alpha[seen])
+        response *= np.sinc(m * dx / 2 / np.pi) * np.sinc(n * dy / 2 / np.pi)
+        for i, j in ((0, 0), (1, 0), (0, 3), (5, 4)):
+            wave = (response * np.cos(m * i * dx + n * j * dy)).sum() / found.size
+            # Sums over images are good to 1e-10 of the coefficient of the loaded cell.
+            assert found[i, j] - base[i, j] == pytest.approx(wave, abs=2e-10 * found[0, 0])
+        assert abs(found.sum()) < 1e-10 * found[0, 0]
