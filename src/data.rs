@@ -3,12 +3,13 @@
 //! constructors do.
 
 use ndarray::Array2;
-use serde::de::Error as _;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::Warning;
 use crate::error::{Error, Result};
-use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::model::body::{HalfSpace, Interface, Layer, Spring, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::model::surface::{
@@ -49,6 +50,59 @@ macro_rules! value {
 value! {
     Elastic by ElasticData { young: f64 = of.young(); poisson: f64 = of.poisson(); }
     of, given => Self::new(given.young, given.poisson)
+}
+
+value! {
+    Spring by SpringData {
+        normal: Option<f64> = of.normal();
+        tangential: Option<f64> = of.tangential();
+    }
+    of, given => Self::new(given.normal, given.tangential)
+}
+
+/// A word, or the numbers of a spring.
+impl Serialize for Interface {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Self::Bonded => serializer.serialize_str("bonded"),
+            Self::Frictionless => serializer.serialize_str("frictionless"),
+            Self::Spring(spring) => spring.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Interface {
+    fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
+        struct Read;
+
+        impl<'de> Visitor<'de> for Read {
+            type Value = Interface;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"bonded\", \"frictionless\", or the stiffnesses of a spring, normal and tangential")
+            }
+
+            fn visit_str<E: serde::de::Error>(
+                self,
+                word: &str,
+            ) -> std::result::Result<Interface, E> {
+                match word {
+                    "bonded" => Ok(Interface::Bonded),
+                    "frictionless" => Ok(Interface::Frictionless),
+                    _ => Err(E::unknown_variant(word, &["bonded", "frictionless"])),
+                }
+            }
+
+            fn visit_map<A: MapAccess<'de>>(
+                self,
+                map: A,
+            ) -> std::result::Result<Interface, A::Error> {
+                Spring::deserialize(MapAccessDeserializer::new(map)).map(Interface::Spring)
+            }
+        }
+
+        data.deserialize_any(Read)
+    }
 }
 
 value! {
@@ -317,7 +371,13 @@ mod tests {
             [layer.clone().with_name("DLC")?, layer.with_interface(Interface::Frictionless)];
         kept(HalfSpace::new(steel, layers.clone())?)?;
         kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
-        kept(HalfSpace::new(Substrate::Rigid, layers)?)?;
+        kept(HalfSpace::new(Substrate::Rigid, layers.clone())?)?;
+        let spring = Interface::Spring(Spring::new(Some(1e15), None)?);
+        kept(spring)?;
+        kept(HalfSpace::new(
+            Substrate::Free,
+            [layers[0].clone().with_interface(spring), layers[0].clone()],
+        )?)?;
         kept(Grid::new([4, 3], [0.1, 0.2])?.centered_at([0.3, -0.4])?)?;
         kept(Grid::new([4, 3], [0.1, 0.2])?.periodic([true, false])?)?;
         kept(Grid::line(5, 0.1)?.centered_at([0.0, 0.3])?)?;

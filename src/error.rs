@@ -87,6 +87,16 @@ pub enum Error {
          leave out coefficients that are given, or take a grid of more cells"
     )]
     Indefinite,
+    /// A plate with a free base, where its load has no equilibrium.
+    #[error(
+        "{what} must not have a free base: nothing carries a net load there, and the approach has no bound; take \
+         nacre.RIGID with a spring interface as the substrate, or a grid that is periodic along x and along y, on which \
+         a uniform pressure on the free face balances the mean"
+    )]
+    FreeBase {
+        /// The bodies, and what is computed.
+        what: &'static str,
+    },
     /// Numbers that are too large or too small to be computed with.
     #[error(
         "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish"

@@ -70,7 +70,7 @@ pub mod stress;
 pub use compliance::{convolution, ends, influence, response, traction};
 pub use model::{body, grid, hertz, material, surface};
 
-pub use body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
+pub use body::{BodyParameter, HalfSpace, Interface, Layer, Spring, Substrate};
 pub use compliance::graded::graded_layers;
 pub use contact::{
     Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,

@@ -27,9 +27,9 @@ mod value;
 mod core {
     #[pymodule_export]
     use super::arguments::plain;
-    use super::bodies::{self, PyRigid};
+    use super::bodies::{self, PyFree, PyRigid};
     #[pymodule_export]
-    use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse};
+    use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse, PySpring};
     #[pymodule_export]
     use super::coefficients::{
         PyConvolution, frequency_response, graded_layers, influence_coefficients,
@@ -69,9 +69,11 @@ mod core {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         shapes::register(module)?;
         module.add("RIGID", bodies::rigid(module.py())?)?;
+        module.add("FREE", bodies::free(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
+        module.setattr("Free", module.py().get_type::<PyFree>())?;
         // The names of `nacre.indent`.
         let py = module.py();
         module.setattr("Tip", py.get_type::<indent::PyTip>())?;

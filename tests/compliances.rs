@@ -18,4 +18,5 @@ mod compliance {
     mod influence_exact;
     mod response;
     mod response_derivatives;
+    mod springs;
 }

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from nacre import types as types
 from nacre._core import (
+    FREE,
     RIGID,
     ConvergenceError,
     Cylinder,
@@ -37,6 +38,7 @@ from nacre._core import (
     Roller,
     SampledProfile,
     Sphere,
+    Spring,
     __version__,
 )
 from nacre._tools.units import display_units
@@ -67,6 +69,7 @@ if TYPE_CHECKING:
     from nacre import torch as torch
 
 __all__ = [
+    "FREE",
     "RIGID",
     "Contact",
     "ConvergenceError",
@@ -86,6 +89,7 @@ __all__ = [
     "SampledProfile",
     "Solution",
     "Sphere",
+    "Spring",
     "__version__",
     "creep_coefficients",
     "display_units",

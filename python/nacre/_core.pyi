@@ -9,6 +9,7 @@ from typing_extensions import disjoint_base
 from nacre._tools.typing import Topography
 
 __all__ = [
+    "FREE",
     "RIGID",
     "ConvergenceError",
     "Convolution",
@@ -35,6 +36,7 @@ __all__ = [
     "Shape",
     "Solved",
     "Sphere",
+    "Spring",
     "StressPlan",
     "__version__",
     "at",
@@ -72,11 +74,13 @@ _Planned: TypeAlias = HalfSpace | Response
 _Body: TypeAlias = HalfSpace | Elastic | Response
 _Report: TypeAlias = tuple[str, Grid, _Planned, _Planned | None]
 _Ends: TypeAlias = tuple[float | None, float | None]
-_Interface: TypeAlias = Literal["bonded", "frictionless"]
+_Interface: TypeAlias = Literal["bonded", "frictionless"] | Spring
+_Substrate: TypeAlias = Elastic | Rigid | Free
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image", "spectral"]
 
 __version__: Final[str]
 RIGID: Final[Rigid]
+FREE: Final[Free]
 
 class ConvergenceError(RuntimeError):
     solution: Any
@@ -103,6 +107,21 @@ class Rigid:
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
+class Free:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Spring:
+    def __new__(cls, normal: float | None = None, tangential: float | None = None) -> Self: ...
+    @property
+    def normal(self) -> float | None: ...
+    @property
+    def tangential(self) -> float | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
 class Layer:
     def __new__(
         cls,
@@ -126,7 +145,7 @@ class Layer:
 class HalfSpace:
     def __new__(
         cls,
-        substrate: Elastic | Rigid,
+        substrate: _Substrate,
         layers: Iterable[Layer] | None = None,
         *,
         ends: _Ends | None = None,
@@ -134,7 +153,7 @@ class HalfSpace:
     @property
     def ends(self) -> _Ends: ...
     @property
-    def substrate(self) -> Elastic | Rigid: ...
+    def substrate(self) -> _Substrate: ...
     @property
     def layers(self) -> tuple[Layer, ...]: ...
     @property
@@ -613,7 +632,7 @@ def slope_of(half_angle: float) -> float: ...
 def frequency_response(body: _Body, wavenumber: Any) -> Any: ...
 def surface_compliance(body: HalfSpace | Elastic, wavenumber: Any) -> list[Any]: ...
 def graded_layers(
-    substrate: Elastic | Rigid,
+    substrate: _Substrate,
     thickness: float,
     young: float | Callable[[float], float],
     poisson: float | Callable[[float], float],

@@ -10,7 +10,7 @@
 
 use ndarray::{Array2, Zip};
 
-use crate::compliance::response::{Body, Response, check};
+use crate::compliance::response::{Body, Response, check, refuse_free};
 use crate::error::{Error, Result, require};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
@@ -23,13 +23,15 @@ mod periodic;
 pub use conversion::Method;
 pub(crate) use conversion::memory;
 pub use exact::CellInfluence;
+pub(crate) use periodic::PlateWaves;
 
 /// Coefficients `C[i, j]` \[m/Pa\] of offsets (i dx, j dy) ≥ 0, in the shape (nx, ny) of `grid`.
 ///
 /// C is even in both offsets. A local compliance of the body is part of `C[0, 0]`.
 ///
 /// # Errors
-/// Where a refinement is 0, there is too little memory, or the body's response contradicts itself.
+/// Where a refinement is 0, there is too little memory, or the body's response contradicts itself; a plate with a free
+/// base on a grid that is not periodic along x and along y, or with cells of more than four times its thickness.
 ///
 /// ```
 /// use nacre::influence::{Method, influence_coefficients};
@@ -68,6 +70,9 @@ pub(crate) fn coefficients_on(
     method: Method,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
+    if grid.is_periodic() != [true; 2] {
+        refuse_free(body, "bodies on a grid that is not periodic along x and along y")?;
+    }
     check(body)?;
     unchecked_coefficients(body, grid, method, threads)
 }

@@ -17,7 +17,7 @@ use std::any::Any;
 use std::fmt;
 
 use crate::error::{Error, Result, finite, not_negative, positive, require};
-use crate::model::body::{HalfSpace, Interface, Substrate};
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
 
 mod body;
@@ -32,7 +32,7 @@ pub use derivatives::{asymptote_derivatives, normal_derivatives};
 pub use layer::Compliance;
 pub use sampled::Sampled;
 
-use layer::Slab;
+use layer::{Slab, Support};
 
 /// Normal displacement per pressure, û_z/p̂ \[m/Pa\], at `wavenumber` α > 0 \[1/m\].
 ///
@@ -79,15 +79,15 @@ pub(crate) fn alpha_compliance(body: &HalfSpace, alpha: f64) -> Compliance {
     let below = Compliance::of_substrate(body.substrate());
     body.layers().iter().rev().fold(below, |below, layer| {
         let slab = Slab::new(layer.material(), alpha * layer.thickness());
-        slab.onto(below, layer.interface())
+        slab.onto(Support::new(below, layer.interface(), alpha))
     })
 }
 
-/// The material of what the lowest layer lies on; none where it is rigid.
+/// The material of what the lowest layer lies on; none where it is rigid or free.
 pub(crate) fn substrate_material(body: &HalfSpace) -> Option<Elastic> {
     match body.substrate() {
         Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
+        Substrate::Rigid | Substrate::Free => None,
     }
 }
 
@@ -98,9 +98,10 @@ pub(crate) fn substrate_material(body: &HalfSpace) -> Option<Elastic> {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Asymptotes {
-    /// Limit of α û_z/p̂ for α → 0 \[1/Pa\], at least 0: that of the substrate; 0 on a rigid base.
+    /// Limit of α û_z/p̂ for α → 0 \[1/Pa\], at least 0: that of the substrate; 0 on a rigid base, and infinite where
+    /// that is free.
     pub long: f64,
-    /// The next term for α → 0 \[m/Pa\]: the compression of the layers.
+    /// The next term for α → 0 \[m/Pa\]: the compression of the layers and of springs between them.
     pub constant: f64,
     /// Limit of α û_z/p̂ for α → ∞ \[1/Pa\], at least 0: that of the surface material.
     pub short: f64,
@@ -122,16 +123,18 @@ pub struct Asymptotes {
 /// ```text
 /// h [(1−2ν)/2G + ν e] / (1−ν)
 /// ```
+///
+/// Springs across an interface contribute 1/k_n. Those along it hold long waves as a bond does.
 pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
     let layers = body.layers();
     let substrate = substrate_material(body);
-    let mut constant = 0.0;
-    for group in layers.split_inclusive(|layer| layer.interface() == Interface::Frictionless) {
+    let mut constant: f64 = layers.iter().map(|layer| layer.interface().compliances()[0]).sum();
+    for group in layers.split_inclusive(|layer| layer.interface().slips()) {
         let terms = group.iter().map(|layer| {
             let (g, nu) = (layer.material().shear(), layer.material().poisson());
             (layer.thickness(), g, nu)
         });
-        let free = group.last().is_some_and(|layer| layer.interface() == Interface::Frictionless);
+        let free = group.last().is_some_and(|layer| layer.interface().slips());
         if free {
             let (push, stiffness) =
                 terms.clone().fold((0.0, 0.0), |(push, stiffness), (h, g, nu)| {
@@ -152,7 +155,7 @@ pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
         }
     }
     Asymptotes {
-        long: substrate.map_or(0.0, |material| Compliance::homogeneous(material).c11),
+        long: Compliance::of_substrate(body.substrate()).c11,
         constant,
         short: Compliance::homogeneous(body.surface_material()).c11,
     }
@@ -250,14 +253,34 @@ impl Response for HalfSpace {
         asymptotes(self)
     }
 
+    /// Long waves see springs of stiffness k as a bond beyond E/k, or the longest of their plates' own lengths, which lies
+    /// between that and the thickness h: √(hE/k) for shear, ⁴√(h³E/k) for bending.
     fn lengths(&self) -> Option<[f64; 2]> {
         let top = self.layers().first()?.thickness();
-        Some([top, self.thickness()])
+        let softest = (self.layers().iter())
+            .flat_map(|layer| layer.interface().compliances())
+            .fold(0.0, f64::max);
+        let materials = self.layers().iter().map(Layer::material).chain(substrate_material(self));
+        let stiffest = materials.map(|one| one.plane_strain_modulus()).fold(0.0, f64::max);
+        Some([top, self.thickness().max(softest * stiffest)])
     }
 
     fn half_space(&self) -> Option<&HalfSpace> {
         Some(self)
     }
+}
+
+/// Refuses a plate with a free base; `what` names the bodies of what is computed.
+pub(crate) fn refuse_free(body: &dyn Response, what: &'static str) -> Result<()> {
+    match is_free(body) {
+        true => Err(Error::FreeBase { what }),
+        false => Ok(()),
+    }
+}
+
+/// Whether the body is a plate with a free base.
+pub(crate) fn is_free(body: &dyn Response) -> bool {
+    body.half_space().is_some_and(|body| body.substrate() == Substrate::Free)
 }
 
 /// Checks what a response says of itself, where that costs little.
@@ -267,7 +290,9 @@ impl Response for HalfSpace {
 /// compliance below 0; limits that differ where there are no lengths.
 pub(crate) fn check(body: &dyn Response) -> Result<()> {
     let Asymptotes { long, constant, short } = body.asymptotes();
-    not_negative("asymptotes().long", long)?;
+    if !is_free(body) {
+        not_negative("asymptotes().long", long)?;
+    }
     not_negative("asymptotes().short", short)?;
     finite("asymptotes().constant", constant)?;
     not_negative("local()", body.local())?;

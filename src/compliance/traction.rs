@@ -21,8 +21,8 @@ use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::kernel::loads::{EXCHANGED, ODD, TractionDisplacement};
 use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
-use crate::compliance::response::Body;
 use crate::compliance::response::interior::Place;
+use crate::compliance::response::{Body, refuse_free};
 use crate::error::{Error, Result};
 use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::model::grid::Grid;
@@ -83,8 +83,8 @@ fn half_space(body: &Body) -> Result<&HalfSpace> {
     let layers = body.half_space().ok_or(Error::Inconsistent(
         "friction needs bodies with a substrate and layers: the response along the surface of this body is not known",
     ))?;
-    let slips = |layer: &Layer| layer.interface() == Interface::Frictionless;
-    if layers.layers().iter().any(slips) {
+    refuse_free(&**body, "bodies with friction")?;
+    if layers.slips() {
         return Err(Error::Inconsistent(
             "friction needs bodies without frictionless interfaces: nothing holds the layers above one against tractions",
         ));

@@ -8,7 +8,7 @@ use crate::compliance::convolution::{Addition, Convolution};
 use crate::compliance::datum::Datum;
 use crate::compliance::ends::Ends;
 use crate::compliance::influence::{Method, coefficients_on};
-use crate::compliance::response::Body;
+use crate::compliance::response::{Body, refuse_free};
 use crate::compliance::traction::Tangential;
 use crate::contact::cascade::discretisation::Unresolved;
 use crate::contact::cascade::{Level, coarser};
@@ -66,6 +66,11 @@ impl Contact {
     /// Given coefficients that do not suit the grid, no threads, or too little memory.
     pub fn plan(body: impl Into<Body>, grid: Grid, setup: Setup) -> Result<Self> {
         let body = body.into();
+        if grid.is_periodic() != [true; 2] {
+            for body in bodies(&body, &setup) {
+                refuse_free(&**body, "bodies on a grid that is not periodic along x and along y")?;
+            }
+        }
         let ends = Ends::of(&bodies(&body, &setup));
         check_memory(grid.shape(), Self::memory(&grid, &ends))?;
         ends.check(&grid)?;

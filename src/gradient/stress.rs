@@ -7,7 +7,7 @@ use super::seed::{Measure, Seed, StressOutput, StressPlace, bilinear};
 use super::state::Linearised;
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result, positive, require};
-use crate::model::body::{BodyParameter, HalfSpace, Interface};
+use crate::model::body::{BodyParameter, HalfSpace};
 use crate::stress::{Section, Side, StressOptions, Tensor, Weights};
 
 /// Step of differences with respect to a number of the body, relative to it. By Richardson's extrapolation they are in error
@@ -188,8 +188,7 @@ impl StressSeed {
     /// Whether the stress depends on the coefficient of friction: a direction is known, and nothing slips inside the body.
     pub(super) fn slides(&self, solution: &Solution) -> bool {
         let known = self.output.direction.or(solution.report.rolling_direction).is_some();
-        let mut layers = self.body.layers().iter();
-        known && layers.all(|layer| layer.interface() == Interface::Bonded)
+        known && !self.body.slips()
     }
 }
 

@@ -1,18 +1,94 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-use crate::error::{Error, Result, finite, positive, refuse_if, require};
+use crate::error::{Error, Result, finite, not_negative, positive, refuse_if, require};
 use crate::model::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Interface {
     /// Displacements and tractions are continuous.
     #[default]
     Bonded,
     /// The two sides slip without shear traction and never separate.
     Frictionless,
+    /// The two sides are joined by springs: an imperfect bond.
+    Spring(Spring),
+}
+
+impl Interface {
+    /// Whether nothing holds the two sides against each other along the interface.
+    pub fn slips(self) -> bool {
+        match self {
+            Self::Bonded => false,
+            Self::Frictionless => true,
+            Self::Spring(spring) => spring.tangential == Some(0.0),
+        }
+    }
+
+    /// Compliances \[m/Pa\] of the interface across and along it; 0 where its sides do not move apart, and along it where
+    /// they slip.
+    pub(crate) fn compliances(self) -> [f64; 2] {
+        let of = |stiffness: Option<f64>| match stiffness {
+            Some(k) if k > 0.0 => 1.0 / k,
+            _ => 0.0,
+        };
+        match self {
+            Self::Spring(spring) => [of(spring.normal), of(spring.tangential)],
+            Self::Bonded | Self::Frictionless => [0.0; 2],
+        }
+    }
+}
+
+/// Springs between the two sides of an interface: tractions are continuous, and the displacement jumps by traction over
+/// stiffness.
+///
+/// ```text
+/// u_z⁺ − u_z⁻ = −σ_zz/k_n      u_x⁺ − u_x⁻ = −σ_xz/k_t      u_y⁺ − u_y⁻ = −σ_yz/k_t
+/// ```
+///
+/// with ⁺ the upper side. A bond line of thickness t and moduli E, ν, G that is much thinner than its layers has
+/// k_n = E (1−ν)/[(1+ν)(1−2ν) t] and k_t = G/t. Jones & Whittier, J. Appl. Mech. 34 (1967) 905.
+///
+/// ```
+/// use nacre::{Elastic, Interface, Layer, Spring};
+/// // An adhesive of 1 µm, E = 1 GPa and ν = 0.35.
+/// let spring = Spring::new(Some(1.6e15), Some(3.7e14))?;
+/// let coating = Layer::new(Elastic::new(420e9, 0.3)?, 2e-6)?.with_interface(Interface::Spring(spring));
+/// assert!(!coating.interface().slips());
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    normal: Option<f64>,
+    tangential: Option<f64>,
+}
+
+impl Spring {
+    /// Springs of these stiffnesses \[Pa/m\] across and along the interface; `None` where its sides do not move apart.
+    ///
+    /// # Errors
+    /// Unless `normal` is finite and above 0, and `tangential` finite and at least 0; 0 slips freely. Where both are
+    /// `None`, which is a bonded interface.
+    pub fn new(normal: Option<f64>, tangential: Option<f64>) -> Result<Self> {
+        refuse_if(
+            normal.is_none() && tangential.is_none(),
+            "normal or tangential must be given: an interface that is rigid in both is \"bonded\"",
+        )?;
+        normal.map(|k| positive("normal", k)).transpose()?;
+        let tangential = tangential.map(|k| not_negative("tangential", k)).transpose()?;
+        // −0 is 0.
+        Ok(Self { normal, tangential: tangential.map(|k| k + 0.0) })
+    }
+
+    /// Stiffness across the interface \[Pa/m\]; `None` where it is rigid.
+    pub fn normal(&self) -> Option<f64> {
+        self.normal
+    }
+
+    /// Stiffness along the interface \[Pa/m\]; `None` where it is rigid.
+    pub fn tangential(&self) -> Option<f64> {
+        self.tangential
+    }
 }
 
 /// One layer of uniform thickness, and the interface **below** it.
@@ -94,6 +170,12 @@ pub enum Substrate {
     Elastic(Elastic),
     /// A rigid base.
     Rigid,
+    /// Nothing: the lower face of the lowest layer is free of tractions, and the body is a plate.
+    ///
+    /// A net load on a free plate has no equilibrium, and long waves bend it as α⁻⁴: it has a response, influence
+    /// coefficients and contacts on grids that are periodic along x and along y, where a uniform pressure on the free
+    /// face, as that of a fluid, balances the mean. All else is refused by [`Error::FreeBase`].
+    Free,
 }
 
 impl From<Elastic> for Substrate {
@@ -124,7 +206,8 @@ impl HalfSpace {
     /// A half-space of `layers`, from the surface down, on `substrate`.
     ///
     /// # Errors
-    /// Where the substrate is rigid and there is no layer. A rigid counterbody is `None`.
+    /// Where the substrate is rigid or free and there is no layer (a rigid counterbody is `None`); where the interface of
+    /// the lowest layer on a free base is not bonded.
     pub fn new(
         substrate: impl Into<Substrate>,
         layers: impl IntoIterator<Item = Layer>,
@@ -134,6 +217,15 @@ impl HalfSpace {
         refuse_if(
             layers.is_empty() && substrate == Substrate::Rigid,
             "layers must hold at least one layer where the substrate is rigid",
+        )?;
+        refuse_if(
+            layers.is_empty() && substrate == Substrate::Free,
+            "layers must hold at least one layer where the base is free: the layers are the plate",
+        )?;
+        let lowest = layers.last().map(Layer::interface);
+        refuse_if(
+            substrate == Substrate::Free && lowest.is_some_and(|one| one != Interface::Bonded),
+            "interface of the lowest layer must be \"bonded\" (the default) on a free base: nothing lies below it",
         )?;
         Ok(Self { substrate, layers, ends: [None; 2] })
     }
@@ -153,7 +245,8 @@ impl HalfSpace {
     /// ```
     ///
     /// # Errors
-    /// Unless the coordinates are finite and the first is below the second; where the substrate is rigid.
+    /// Unless the coordinates are finite and the first is below the second; where the substrate is rigid or free, and
+    /// where springs join layers.
     pub fn with_ends(self, ends: [Option<f64>; 2]) -> Result<Self> {
         for end in ends.into_iter().flatten() {
             finite("ends", end)?;
@@ -165,6 +258,15 @@ impl HalfSpace {
         refuse_if(
             ends != [None; 2] && self.substrate == Substrate::Rigid,
             "ends must not be given for a body on a rigid substrate: its face is not free there",
+        )?;
+        refuse_if(
+            ends != [None; 2] && self.substrate == Substrate::Free,
+            "ends must not be given for a plate with a free base: what its end does is not known",
+        )?;
+        let springs = |layer: &Layer| matches!(layer.interface, Interface::Spring(_));
+        refuse_if(
+            ends != [None; 2] && self.layers.iter().any(springs),
+            "ends must not be given for a body whose layers are joined by springs: what its end does is not known",
         )?;
         Ok(Self { ends: ends.map(|end| end.map(|x| x + 0.0)), ..self })
     }
@@ -201,12 +303,28 @@ impl HalfSpace {
         self.layers.iter().map(Layer::thickness).sum()
     }
 
+    /// Whether layers above some interface slip freely on what lies below.
+    pub(crate) fn slips(&self) -> bool {
+        self.layers.iter().any(|layer| layer.interface.slips())
+    }
+
+    /// This body, on a rigid base where its base is free.
+    pub(crate) fn held(&self) -> Self {
+        let substrate = match self.substrate {
+            Substrate::Free => Substrate::Rigid,
+            held => held,
+        };
+        Self { substrate, ..self.clone() }
+    }
+
     /// Material at the surface, which is that of the top layer or, without layers, of the substrate.
     pub fn surface_material(&self) -> Elastic {
         match (self.layers.first(), self.substrate) {
             (Some(layer), _) => layer.material(),
             (None, Substrate::Elastic(material)) => material,
-            (None, Substrate::Rigid) => unreachable!("the constructor asks for a layer"),
+            (None, Substrate::Rigid | Substrate::Free) => {
+                unreachable!("the constructor asks for a layer")
+            }
         }
     }
 }
@@ -238,12 +356,16 @@ pub enum BodyParameter {
     Poisson(usize),
     /// Thickness of this layer.
     Thickness(usize),
+    /// Stiffness of the springs across the interface below this layer.
+    NormalStiffness(usize),
+    /// Stiffness of the springs along the interface below this layer.
+    TangentialStiffness(usize),
 }
 
 impl BodyParameter {
     /// The name in case files below the body's: `layers[0].thickness`, `substrate.young`.
     pub fn path(&self, body: &HalfSpace) -> String {
-        let (Self::Young(layer) | Self::Poisson(layer) | Self::Thickness(layer)) = *self;
+        let layer = self.layer();
         let (place, inner) = match layer < body.layers().len() {
             true => (format!("layers[{layer}]"), ".material"),
             false => ("substrate".to_owned(), ""),
@@ -252,22 +374,39 @@ impl BodyParameter {
             Self::Young(_) => format!("{place}{inner}.young"),
             Self::Poisson(_) => format!("{place}{inner}.poisson"),
             Self::Thickness(_) => format!("{place}.thickness"),
+            Self::NormalStiffness(_) => format!("{place}.interface.normal"),
+            Self::TangentialStiffness(_) => format!("{place}.interface.tangential"),
         }
+    }
+
+    /// The layer that has the parameter; the number of layers stands for the substrate.
+    pub fn layer(self) -> usize {
+        let (Self::Young(layer)
+        | Self::Poisson(layer)
+        | Self::Thickness(layer)
+        | Self::NormalStiffness(layer)
+        | Self::TangentialStiffness(layer)) = self;
+        layer
     }
 }
 
 impl HalfSpace {
-    /// All numbers of the body: Young's modulus, Poisson's ratio and thickness of each layer, then Young's modulus and
-    /// Poisson's ratio of the substrate, unless that is rigid.
+    /// All numbers of the body: Young's modulus, Poisson's ratio and thickness of each layer, and the stiffnesses of the
+    /// springs below it that are above 0; then Young's modulus and Poisson's ratio of the substrate, if that is elastic.
     pub fn parameters(&self) -> Vec<BodyParameter> {
-        use BodyParameter::{Poisson, Thickness, Young};
+        use BodyParameter::{NormalStiffness, Poisson, TangentialStiffness, Thickness, Young};
         let layers = self.layers.len();
-        let of_layers = (0..layers).flat_map(|k| [Young(k), Poisson(k), Thickness(k)]);
-        let of_substrate = match self.substrate {
-            Substrate::Elastic(_) => vec![Young(layers), Poisson(layers)],
-            Substrate::Rigid => vec![],
-        };
-        of_layers.chain(of_substrate).collect()
+        let mut all = Vec::new();
+        for k in 0..layers {
+            all.extend([Young(k), Poisson(k), Thickness(k)]);
+            let springs = [NormalStiffness(k), TangentialStiffness(k)];
+            // Long waves have no derivative where the sides slip freely.
+            all.extend(springs.into_iter().filter(|one| self.value(*one).is_some_and(|k| k > 0.0)));
+        }
+        if let Substrate::Elastic(_) = self.substrate {
+            all.extend([Young(layers), Poisson(layers)]);
+        }
+        all
     }
 
     /// Value of a parameter; `None` for one that the body does not have.
@@ -278,6 +417,8 @@ impl HalfSpace {
                 self.material(place).map(|material| material.poisson())
             }
             BodyParameter::Thickness(place) => self.layers.get(place).map(Layer::thickness),
+            BodyParameter::NormalStiffness(place) => self.spring(place)?.normal,
+            BodyParameter::TangentialStiffness(place) => self.spring(place)?.tangential,
         }
     }
 
@@ -297,6 +438,18 @@ impl HalfSpace {
                 layer.thickness = Layer::new(layer.material, value)?.thickness;
                 return Ok(body);
             }
+            BodyParameter::NormalStiffness(place) | BodyParameter::TangentialStiffness(place) => {
+                let spring =
+                    self.value(parameter).and_then(|_| self.spring(place)).ok_or(ABSENT)?;
+                let spring = match parameter {
+                    BodyParameter::NormalStiffness(_) => {
+                        Spring::new(Some(value), spring.tangential)
+                    }
+                    _ => Spring::new(spring.normal, Some(value)),
+                }?;
+                body.layers[place].interface = Interface::Spring(spring);
+                return Ok(body);
+            }
             BodyParameter::Young(place) => (place, Elastic::new(value, known(place)?.poisson())?),
             BodyParameter::Poisson(place) => (place, Elastic::new(known(place)?.young(), value)?),
         };
@@ -305,6 +458,14 @@ impl HalfSpace {
             None => body.substrate = Substrate::Elastic(material),
         }
         Ok(body)
+    }
+
+    /// The springs below a layer, if there are any.
+    fn spring(&self, place: usize) -> Option<Spring> {
+        match self.layers.get(place)?.interface {
+            Interface::Spring(spring) => Some(spring),
+            Interface::Bonded | Interface::Frictionless => None,
+        }
     }
 
     /// Material of a layer, or of the substrate, which has the number of layers.

@@ -1,4 +1,4 @@
-//! `nacre.Elastic`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.Response`, `nacre.RIGID`.
+//! `nacre.Elastic`, `nacre.Spring`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.Response`, `nacre.RIGID`, `nacre.FREE`.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 
-use super::arguments::{Real, Repr, ends, items, read_only, real, real_array, word, word_of};
+use super::arguments::{Real, Repr, ends, items, read_only, real, real_array};
 use super::value::{self, Arguments, Value, class};
 use crate::compliance::response::{Body, Sampled};
-use crate::model::body::{HalfSpace, Layer, Substrate};
+use crate::model::body::{HalfSpace, Interface, Layer, Spring, Substrate};
 use crate::model::material::Elastic;
 
 class! {
@@ -79,6 +79,108 @@ pub(super) fn rigid(py: Python<'_>) -> PyResult<Bound<'_, PyRigid>> {
     Ok(RIGID.get_or_try_init(py, || Py::new(py, PyRigid))?.bind(py).clone())
 }
 
+/// Type of `nacre.FREE`, a base without tractions.
+#[pyclass(name = "Free", module = "nacre", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyFree;
+
+#[pymethods]
+impl PyFree {
+    fn __repr__(&self) -> &'static str {
+        "FREE"
+    }
+
+    fn __reduce__(&self) -> &'static str {
+        "FREE"
+    }
+}
+
+/// The one object `nacre.FREE`.
+pub(super) fn free(py: Python<'_>) -> PyResult<Bound<'_, PyFree>> {
+    static FREE: PyOnceLock<Py<PyFree>> = PyOnceLock::new();
+    Ok(FREE.get_or_try_init(py, || Py::new(py, PyFree))?.bind(py).clone())
+}
+
+class! {
+    /// Springs between the two sides of an interface: an imperfect bond.
+    ///
+    /// Tractions pass, and the displacement jumps by traction over stiffness.
+    ///
+    /// Parameters
+    /// ----------
+    /// normal : float, optional
+    ///     Stiffness across the interface [Pa/m], above 0. By default its sides do not move apart.
+    /// tangential : float, optional
+    ///     Stiffness along the interface [Pa/m], at least 0; 0 slips freely. By default its sides do not slip.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If neither is given, which is a bonded interface; if a stiffness is not finite or out of range.
+    ///
+    /// Notes
+    /// -----
+    /// A film of thickness t and constants E, nu, G that is much thinner than the layers next to it has the stiffnesses
+    /// ``E (1 - nu) / ((1 + nu) (1 - 2 nu) t)`` and ``G / t``. Springs hold against tension as against pressure. Jones &
+    /// Whittier, Waves at a flexibly bonded interface, J. Appl. Mech. 34 (1967) 905.
+    ///
+    /// Examples
+    /// --------
+    /// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+    /// >>> bond = nacre.Spring(normal=1.6e15, tangential=3.7e14)
+    /// >>> nacre.Layer(dlc, thickness=2e-6, interface=bond).interface.tangential
+    /// 370000000000000.0
+    PySpring(Spring) is "Spring" of "nacre";
+    |of, py|
+    arguments {
+        /// Stiffness across the interface [Pa/m]; None where it is rigid.
+        normal: Option<f64> = of.normal();
+        /// Stiffness along the interface [Pa/m]; None where it is rigid.
+        tangential: Option<f64> = of.tangential();
+    }
+    attributes {}
+    methods {
+        #[new]
+        #[pyo3(signature = (normal=None, tangential=None))]
+        fn new(normal: Option<Real>, tangential: Option<Real>) -> PyResult<Self> {
+            Ok(Self(Spring::new(normal.map(|k| k.0), tangential.map(|k| k.0))?))
+        }
+    }
+}
+
+/// Interface from an argument: a word, or springs.
+pub(super) struct PyInterface(Interface);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for PyInterface {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(spring) = object.extract::<PySpring>() {
+            return Ok(Self(Interface::Spring(spring.0)));
+        }
+        match object.extract::<&str>() {
+            Ok("bonded") => Ok(Self(Interface::Bonded)),
+            Ok("frictionless") => Ok(Self(Interface::Frictionless)),
+            Ok(other) => Err(PyValueError::new_err(format!(
+                "interface must be \"bonded\", \"frictionless\" or a nacre.Spring, got {other:?}"
+            ))),
+            Err(_) => Err(PyTypeError::new_err(format!(
+                "interface must be \"bonded\", \"frictionless\" or a nacre.Spring, got {}",
+                Repr(&object)
+            ))),
+        }
+    }
+}
+
+/// Object for an interface.
+fn interface(py: Python<'_>, of: Interface) -> PyResult<Bound<'_, PyAny>> {
+    match of {
+        Interface::Bonded => "bonded".into_bound_py_any(py),
+        Interface::Frictionless => "frictionless".into_bound_py_any(py),
+        Interface::Spring(spring) => PySpring(spring).into_bound_py_any(py),
+    }
+}
+
 class! {
     /// A layer of uniform thickness, and the interface below it.
     ///
@@ -88,9 +190,10 @@ class! {
     ///     Material of the layer.
     /// thickness : float
     ///     Thickness [m], above 0.
-    /// interface : {"bonded", "frictionless"}, optional
+    /// interface : {"bonded", "frictionless"} or Spring, optional
     ///     Interface below the layer. At a bonded one displacement and traction are continuous; a
-    ///     frictionless one slips freely and never opens.
+    ///     frictionless one slips freely and never opens; at a `Spring` the displacement jumps by traction over
+    ///     stiffness.
     /// name : str, optional
     ///     Name of the layer, which results show: any text on one line but a number and "substrate".
     ///
@@ -113,22 +216,21 @@ class! {
         material: PyElastic = PyElastic(of.material());
         /// Thickness [m].
         thickness: f64 = of.thickness();
-        /// Interface below the layer: "bonded" or "frictionless".
-        interface: String = word_of(&of.interface());
+        /// Interface below the layer: "bonded", "frictionless" or a `Spring`.
+        interface: Bound<'py, PyAny> = interface(py, of.interface())?;
         /// Name of the layer; None where it has none.
         name: Option<String> = of.name().map(String::from);
     }
     methods {
         #[new]
-        #[pyo3(signature = (material, thickness, interface="bonded", name=None))]
+        #[pyo3(signature = (material, thickness, interface=PyInterface(Interface::Bonded), name=None))]
         fn new(
             material: PyElastic,
             thickness: Real,
-            interface: &str,
+            interface: PyInterface,
             name: Option<&str>,
         ) -> PyResult<Self> {
-            let interface = word("interface", interface)?;
-            let layer = Layer::new(material.0, thickness.0)?.with_interface(interface);
+            let layer = Layer::new(material.0, thickness.0)?.with_interface(interface.0);
             Ok(Self(match name {
                 Some(name) => layer.with_name(name)?,
                 None => layer,
@@ -145,7 +247,7 @@ impl Value for PyLayer {
         Ok(vec![
             ("material", PyElastic(self.0.material()).into_bound_py_any(py)?),
             ("thickness", self.0.thickness().into_bound_py_any(py)?),
-            ("interface", word_of(&self.0.interface()).into_bound_py_any(py)?),
+            ("interface", interface(py, self.0.interface())?),
             ("name", self.0.name().into_bound_py_any(py)?),
         ])
     }
@@ -156,8 +258,10 @@ class! {
     ///
     /// Parameters
     /// ----------
-    /// substrate : Elastic or nacre.RIGID
-    ///     Material below the layers.
+    /// substrate : Elastic, nacre.RIGID or nacre.FREE
+    ///     Material below the layers. With `nacre.FREE` the layers are a plate, whose lower face has no tractions: it takes
+    ///     part in contacts on grids that are periodic along x and along y, where a uniform pressure on that face balances
+    ///     the mean, and is refused elsewhere.
     /// layers : sequence of Layer, optional
     ///     Layers from the surface down.
     /// ends : tuple of float, optional
@@ -167,8 +271,8 @@ class! {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the substrate is rigid and there is no layer, or there are ends; if the ends are not finite or not
-    ///     in ascending order.
+    ///     If the substrate is rigid or free and there is no layer, or there are ends; if the interface of the lowest layer
+    ///     of a plate is not bonded; if the ends are not finite or not in ascending order, or layers are joined by springs.
     ///
     /// Notes
     /// -----
@@ -198,7 +302,7 @@ class! {
     PyHalfSpace(HalfSpace) is "HalfSpace" of "nacre";
     |of, py|
     attributes {
-        /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
+        /// Material below the layers: an `Elastic`, `nacre.RIGID` or `nacre.FREE`.
         substrate: Bound<'py, PyAny> = base(py, of.substrate())?;
         /// Layers from the surface down.
         layers: Bound<'py, PyTuple> = PyTuple::new(py, of.layers().iter().cloned().map(PyLayer))?;
@@ -416,6 +520,7 @@ fn base(py: Python<'_>, substrate: Substrate) -> PyResult<Bound<'_, PyAny>> {
     match substrate {
         Substrate::Elastic(material) => PyElastic(material).into_bound_py_any(py),
         Substrate::Rigid => Ok(rigid(py)?.into_any()),
+        Substrate::Free => Ok(free(py)?.into_any()),
     }
 }
 
@@ -424,10 +529,13 @@ pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     if object.cast::<PyRigid>().is_ok() {
         return Ok(Substrate::Rigid);
     }
+    if object.cast::<PyFree>().is_ok() {
+        return Ok(Substrate::Free);
+    }
     match object.extract::<PyElastic>() {
         Ok(material) => Ok(material.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "substrate must be an Elastic or nacre.RIGID, got {}",
+            "substrate must be an Elastic, nacre.RIGID or nacre.FREE, got {}",
             Repr(object)
         ))),
     }

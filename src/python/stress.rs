@@ -172,7 +172,7 @@ fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<
         return Ok(Vec::new());
     };
     let layers = body.layers().len();
-    let count = layers + usize::from(body.substrate() != Substrate::Rigid);
+    let count = layers + usize::from(matches!(body.substrate(), Substrate::Elastic(_)));
     let number = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
         Ok(number) => Ok(number.0),
         Err(_) => {

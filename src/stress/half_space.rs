@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayRef2};
 
+use crate::compliance::influence::PlateWaves;
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
 use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
-use crate::compliance::response::substrate_material;
+use crate::compliance::response::{is_free, refuse_free, substrate_material};
 use crate::error::{Result, all_finite, require, same_shape};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
@@ -122,7 +123,7 @@ impl HalfSpacePlan {
         let repeats = threads.run(|| Repeats::plan(body, grid));
         // One per cent more than the diagonal, for rounding.
         let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
-        let kernels = threads.run(|| Kernels::new(body, grid, 1.0, reach));
+        let kernels = threads.run(|| Kernels::new(&body.held(), grid, 1.0, reach));
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let shape = grid.shape();
         let loaded = loaded_cells(shape, &[&pressure, uniform]);
@@ -342,16 +343,28 @@ fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
     Ok(())
 }
 
+/// Refuses a plate with a free base where its load has no equilibrium, or cells are much wider than it is thick.
+fn check_base(body: &HalfSpace, grid: &Grid) -> Result<()> {
+    if !is_free(body) {
+        return Ok(());
+    }
+    if grid.is_periodic() != [true; 2] {
+        refuse_free(body, "a body on a grid that is not periodic along x and along y")?;
+    }
+    PlateWaves::new(body, grid).map(|_| ())
+}
+
 /// `pressure` in C order.
 ///
 /// # Errors
-/// Lengths and moduli outside of [`MAGNITUDES`]; a pressure that is not finite or not of the grid's shape.
+/// A plate with a free base on a grid that is not periodic along x and along y; lengths and moduli outside of [`MAGNITUDES`]; a pressure that is not finite or not of the grid's shape.
 pub(super) fn checked_pressure(
     body: &HalfSpace,
     grid: &Grid,
     pressure: &ArrayRef2<f64>,
 ) -> Result<Vec<f64>> {
     check_magnitudes(body, grid)?;
+    check_base(body, grid)?;
     same_shape("pressure", pressure, grid.shape())?;
     all_finite("pressure", pressure)?;
     Ok(pressure.iter().copied().collect())

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
+use crate::compliance::response::refuse_free;
 use crate::error::{Error, Result, finite, require};
-use crate::model::body::{HalfSpace, Interface, Layer};
+use crate::model::body::HalfSpace;
 
 /// Side of an interface, for a depth that lies on one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -168,8 +169,8 @@ impl SlidingSense {
                 "friction must be 0: the tractions of this contact are known, and their stress is part of the result",
             ));
         }
-        let slips = |layer: &Layer| layer.interface() == Interface::Frictionless;
-        if body.layers().iter().any(slips) {
+        refuse_free(body, "a body with friction")?;
+        if body.slips() {
             return Err(Error::Inconsistent(
                 "friction must be 0 on a body with a frictionless interface: nothing holds the layers \
                  above it against the traction",

@@ -46,6 +46,11 @@ pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
             requirement: "above the rigid substrate (on it, with side \"above\")",
             value: z,
         }),
+        Substrate::Free => Err(Error::Parameter {
+            name: "z",
+            requirement: "in the plate (on its free base, with side \"above\")",
+            value: z,
+        }),
     }
 }
 

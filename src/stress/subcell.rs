@@ -104,7 +104,8 @@ impl SubcellStress {
         let pressure = &*margin.around(pressure);
         let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
         let reach = near.farthest();
-        let kernels = threads.run(|| Kernels::new(body, grid, Cuts::SMALLEST, reach));
+        // A free base does not see what has neither force nor moment.
+        let kernels = threads.run(|| Kernels::new(&body.held(), grid, Cuts::SMALLEST, reach));
         let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),

@@ -1,6 +1,6 @@
 //! Bodies in the formats of the reference data.
 
-use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
+use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Spring, Substrate};
 use serde_json::Value;
 
 use crate::support::reference::{list, number};
@@ -14,9 +14,14 @@ pub(crate) fn body(case: &Value) -> Result<HalfSpace> {
 pub(crate) fn body_by([e, nu, h]: [&str; 3], case: &Value, unit: f64) -> Result<HalfSpace> {
     let material = |value: &Value| Elastic::new(number(value, e), number(value, nu));
     let layer = |layer: &Value| {
-        let interface = match layer["interface"].as_str() {
-            Some("bonded") | None => Interface::Bonded,
-            Some("frictionless") => Interface::Frictionless,
+        let interface = match &layer["interface"] {
+            Value::Null => Interface::Bonded,
+            Value::String(word) if word == "bonded" => Interface::Bonded,
+            Value::String(word) if word == "frictionless" => Interface::Frictionless,
+            Value::Object(spring) => {
+                let stiffness = |key: &str| spring[key].as_f64();
+                Interface::Spring(Spring::new(stiffness("normal"), stiffness("tangential"))?)
+            }
             other => panic!("interface {other:?}"),
         };
         let made = Layer::new(material(layer)?, number(layer, h) * unit)?;
@@ -25,6 +30,7 @@ pub(crate) fn body_by([e, nu, h]: [&str; 3], case: &Value, unit: f64) -> Result<
     let layers: Result<Vec<Layer>> = list(case, "layers").iter().map(layer).collect();
     let substrate = match &case["substrate"] {
         Value::Object(_) => material(&case["substrate"])?.into(),
+        Value::String(word) if word == "free" => Substrate::Free,
         _ => Substrate::Rigid,
     };
     HalfSpace::new(substrate, layers?)

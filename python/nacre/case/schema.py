@@ -32,6 +32,7 @@ from nacre.results.outputs import OUTPUTS
 
 CONSTANTS = described(nacre.Elastic)
 LAYER = described(nacre.Layer)
+SPRING = described(nacre.Spring)
 GRID = described(nacre.Grid)
 LINE = described(nacre.Grid.line)
 SOLVE = described(nacre.solve)
@@ -60,12 +61,29 @@ AnyMaterial = Annotated[
 ]
 
 
+class Spring(Table):
+    """Springs between the two sides of an interface."""
+
+    normal: Number | None = Field(None, description=SPRING["normal"])
+    tangential: Number | None = Field(None, description=SPRING["tangential"])
+
+    def make(self) -> nacre.Spring:
+        """Return the springs."""
+        return nacre.Spring(self.normal, self.tangential)
+
+
+AnyInterface = Annotated[
+    Literal["bonded", "frictionless"] | Spring,
+    said('"bonded", "frictionless", or a table with normal and tangential'),
+]
+
+
 class Layer(Table):
     """A layer, the interface below it, and the name that results show."""
 
     material: AnyMaterial = Field(description=LAYER["material"])
     thickness: Number = Field(description=LAYER["thickness"])
-    interface: Literal["bonded", "frictionless"] = Field("bonded", description=LAYER["interface"])
+    interface: AnyInterface = Field("bonded", description=LAYER["interface"])
     name: str | None = Field(None, description=LAYER["name"])
 
 
@@ -80,7 +98,8 @@ class Body(Table):
     """A half-space: a substrate, and layers from the surface down; it may end along x."""
 
     substrate: AnyMaterial = Field(
-        description='Material below the layers; "rigid" is a rigid base.'
+        description='Material below the layers; "rigid" is a rigid base, and "free" none: the '
+        "layers are a plate."
     )
     layers: Annotated[list[Layer], Field(max_length=MOST_LAYERS)] = Field(
         [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
@@ -257,20 +276,27 @@ class Bodies(Table):
 
     def _body(self, name: str, body: Body) -> nacre.HalfSpace:
         with at(f"{name}.substrate"):
-            rigid = self._is_rigid(body)
-            substrate = nacre.RIGID if rigid else self._material(body.substrate)
+            base = self._base(body)
+            substrate = self._material(body.substrate) if base is None else base
         layers = []
         for number, layer in enumerate(body.layers):
             with at(f"{name}.layers[{number}]"):
                 with at("material"):
                     material = self._material(layer.material)
-                layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
+                with at("interface"):
+                    interface = layer.interface
+                    interface = interface.make() if isinstance(interface, Spring) else interface
+                layers.append(nacre.Layer(material, layer.thickness, interface, layer.name))
         ends = None if body.ends is None else (body.ends[0], body.ends[1])
         with at(name):
             return nacre.HalfSpace(substrate, layers, ends=ends)
 
-    def _is_rigid(self, body: Body) -> bool:
-        return body.substrate == "rigid" and "rigid" not in self.materials
+    def _base(self, body: Body) -> Any:
+        """Return the base that the substrate names, or None if that is a material."""
+        named = body.substrate
+        if not isinstance(named, str) or named in self.materials:
+            return None
+        return {"rigid": nacre.RIGID, "free": nacre.FREE}.get(named)
 
     def _material(self, named: str | Material) -> nacre.Elastic:
         if isinstance(named, str):
@@ -338,7 +364,7 @@ class CaseTable(Bodies):
         if body is None:
             return {}
         named = [*(layer.material for layer in body.layers)]
-        named += [] if self._is_rigid(body) else [body.substrate]
+        named += [body.substrate] if self._base(body) is None else []
         found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
         return {
             name: [getattr(material, name, None) for material in found]

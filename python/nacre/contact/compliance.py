@@ -155,7 +155,7 @@ def influence_coefficients(
 
 
 def graded_layers(
-    substrate: core.Elastic | core.Rigid,
+    substrate: core.Elastic | core.Rigid | core.Free,
     thickness: float,
     young: float | Callable[[float], float],
     poisson: float | Callable[[float], float],
@@ -176,7 +176,7 @@ def graded_layers(
 
     Parameters
     ----------
-    substrate : Elastic or nacre.RIGID
+    substrate : Elastic, nacre.RIGID or nacre.FREE
         Material below the coating.
     thickness : float
         Thickness of the coating [m].

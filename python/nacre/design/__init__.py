@@ -32,7 +32,7 @@ Values = Sequence[float] | npt.NDArray[np.float64]
 
 def coating_chart(
     shape: core.Shape,
-    substrate: core.Elastic | core.Rigid,
+    substrate: core.Elastic | core.Rigid | core.Free,
     *,
     thickness: Values,
     young: Values,

@@ -272,9 +272,9 @@ def _reach(
         depth = 1.25 * float(narrow)
     elif not 0 < depth < np.inf:
         raise ValueError(f"depth must be finite and above 0, got {depth:g}")
-    # A rigid base has no stresses to show.
-    rigid = not hasattr(body.substrate, "young")
-    return body, min(depth, body.interfaces[-1]) if rigid else depth
+    # A rigid or a free base has no stresses to show.
+    no_base = not hasattr(body.substrate, "young")
+    return body, min(depth, body.interfaces[-1]) if no_base else depth
 
 
 def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:

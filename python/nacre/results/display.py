@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Elastic, HalfSpace, Response, Rigid
+from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.results.quantities import CONTACT, FRICTION, Quantity
@@ -466,7 +466,8 @@ def _body(name: str, body: Planned | None) -> list[tuple[str, str]]:
     layers = [
         (
             f"  {_named(number, layer.name)}",
-            f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}",
+            f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}"
+            f"{_spring(layer.interface)}",
         )
         for number, layer in enumerate(body.layers)
     ]
@@ -488,16 +489,29 @@ def _moduli(*members: Planned | None) -> list[tuple[str, str]]:
         return []
     bases = [one.substrate for one in bodies]
     tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
+    if any(isinstance(base, Free) for base in bases):
+        return [("E* (surfaces)", _modulus(tops))]
     rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]
     return rows + ([("E* (surfaces)", _modulus(tops))] if tops != bases else [])
 
 
-def _modulus(materials: Sequence[Elastic | Rigid]) -> str:
+def _modulus(materials: Sequence[Elastic | Rigid | Free]) -> str:
     compliance = sum(1 / m.plane_strain_modulus for m in materials if isinstance(m, Elastic))
     return written(1 / compliance, "Pa") if compliance else "rigid"
 
 
-def _material(material: Elastic | Rigid) -> str:
+def _spring(interface: str | Spring) -> str:
+    """Describe the springs below a layer."""
+    if not isinstance(interface, Spring):
+        return ""
+    named = (("normal", interface.normal), ("tangential", interface.tangential))
+    stiffnesses = [f"{name} {written(k, 'Pa/m', 3)}" for name, k in named if k is not None]
+    return f", on springs: {', '.join(stiffnesses)}"
+
+
+def _material(material: Elastic | Rigid | Free) -> str:
     if isinstance(material, Rigid):
         return "a rigid base"
+    if isinstance(material, Free):
+        return "a free base"
     return f"E {written(material.young, 'Pa', 3)}, ν {material.poisson:g}"

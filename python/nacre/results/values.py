@@ -32,6 +32,7 @@ FIELDS: dict[type, tuple[str, ...]] = {
     and issubclass(
         kind,
         core.Elastic
+        | core.Spring
         | core.Layer
         | core.HalfSpace
         | core.LogarithmicProfile
@@ -114,6 +115,8 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"array": [list(array.shape), hashlib.sha256(array.tobytes()).hexdigest()]}
         if isinstance(value, core.Rigid):
             return "rigid"
+        if isinstance(value, core.Free):
+            return "free"
         if digest and type(value) is RESULTS.get("Solution"):
             return {"Solution": of(value.pressure)}
         if digest and type(value) is RESULTS.get("FrictionSolution"):
@@ -217,6 +220,8 @@ def _decoded(data: Any) -> Any:
         return tuple(_decoded(item) for item in data)
     if data == "rigid":
         return core.RIGID
+    if data == "free":
+        return core.FREE
     if not isinstance(data, dict):
         return data
     if {"format", "nacre", "kind"} <= data.keys():

@@ -88,9 +88,9 @@ def _planes(
     plan = solution.stress_plan(**planned)
     on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in plan.body.interfaces]
     above = np.any(on, axis=0) if on else np.full(depths.shape, False)
-    # A rigid base has no side below.
-    rigid = isinstance(plan.body.substrate, core.Rigid)
-    below = ~on[-1] if rigid else np.full(depths.shape, True)
+    # Only an elastic base has a side below.
+    elastic = isinstance(plan.body.substrate, core.Elastic)
+    below = ~on[-1] if not elastic else np.full(depths.shape, True)
     asked = {name: value for name, value in options.items() if name not in planned}
     parts = []
     if above.any():

@@ -206,7 +206,7 @@ impl QuarterSpace {
         let body = body.into();
         let Substrate::Elastic(material) = body.substrate() else {
             return Err(Error::Inconsistent(
-                "body must not have a rigid substrate: its face is not free there",
+                "body must have an elastic substrate: the face of a layer on a rigid base is not free",
             ));
         };
         not_negative("distance", distance)?;

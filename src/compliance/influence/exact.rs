@@ -31,7 +31,7 @@ use crate::compliance::kernel::quadrature::{CellRules, Rules};
 use crate::compliance::kernel::rectangle::potential;
 use crate::compliance::kernel::series::{Order, Series, TransformKind};
 use crate::compliance::kernel::table::Precise;
-use crate::compliance::response::{Body, Response, check, size};
+use crate::compliance::response::{Body, Response, check, refuse_free, size};
 use crate::error::{Error, Result, positive};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -68,6 +68,7 @@ impl CellInfluence {
     /// Unless the lengths are finite and above 0; a response that contradicts itself.
     pub fn plan(body: impl Into<Body>, spacing: [f64; 2], reach: f64) -> Result<Self> {
         let body = body.into();
+        refuse_free(&*body, "the body around one cell")?;
         check(&*body)?;
         Self::plan_on(&*body, spacing, NEAREST_RIM, reach, &Threads::new(None)?)
     }

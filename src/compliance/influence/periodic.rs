@@ -1,17 +1,21 @@
 //! Influence coefficients of grids that repeat: sums over images ([`crate::compliance::images`]), or waves.
 //!
-//! The mean of the coefficients is û/p̂(0) under a pressure everywhere on a rigid base, and taken as 0 on an elastic one;
-//! where one direction is open, it is that of the line contact.
+//! The mean of the coefficients is û/p̂(0) under a pressure everywhere on a rigid base, and taken as 0 on an elastic one
+//! and on a plate with a free base; where one direction is open, it is that of the line contact.
+//!
+//! Sums over the images of a plate with a free base diverge. It is the same plate on a rigid base, and waves of the
+//! difference, which falls as e^{−2αH} with the thickness H of the plate: derived here.
 
+use std::any::Any;
 use std::f64::consts::PI;
 
 use ndarray::{Array2, Axis, Zip};
 
 use super::exact::{CellInfluence, WHOLE_CELLS, strip_coefficients, strips_apart};
 use crate::compliance::images::CellImages;
-use crate::compliance::response::Response;
-use crate::error::{Error, Result};
-use crate::model::body::Substrate;
+use crate::compliance::response::{Response, ResponseSlope, is_free};
+use crate::error::{Error, Result, require};
+use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::fft::inverse_even;
 use crate::numerics::parallel::Threads;
@@ -79,6 +83,9 @@ pub(super) fn coefficients(
     grid: &Grid,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
+    if let (true, Some(plate)) = (is_free(body), body.half_space()) {
+        return of_plate(body, plate, grid, threads);
+    }
     let (spacing, size) = (grid.spacing(), grid.size());
     let images = CellImages::plan(grid, RINGS);
     let rows = (0..images.kept()[0]).map(|i| i as f64 * spacing[0]);
@@ -93,6 +100,99 @@ pub(super) fn coefficients(
     };
     images.with_mean(&mut whole, &mean);
     Ok(whole)
+}
+
+/// Coefficients of a plate with a free base, or of its derivative with respect to a number.
+fn of_plate(
+    body: &dyn Response,
+    plate: &HalfSpace,
+    grid: &Grid,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let held = plate.held();
+    let held: Box<dyn Response> = match (body as &dyn Any).downcast_ref::<ResponseSlope>() {
+        Some(slope) => Box::new(slope.of(&held)),
+        None => Box::new(held),
+    };
+    let waves = PlateWaves::new(plate, grid)?;
+    let difference = |k: usize, l: usize| match (k, l) {
+        (0, 0) => -uniform(&*held),
+        _ => waves.sum([k, l], |[m, n]| {
+            let alpha = m.hypot(n);
+            [(body.normal(alpha) - held.normal(alpha)) / alpha]
+        })[0],
+    };
+    let difference = inverse_even(grid.shape(), grid.shape(), difference, threads);
+    Ok(coefficients(&*held, grid, threads)? + difference)
+}
+
+/// Waves of loads that are uniform over the cells of a grid that repeats along x and along y, on a plate with a free
+/// base: those that look alike at the centres of the cells are summed.
+#[derive(Debug)]
+pub(crate) struct PlateWaves {
+    shape: [usize; 2],
+    spacing: [f64; 2],
+    /// Largest wavenumber that is summed.
+    highest: f64,
+}
+
+/// Sides of cells, in thicknesses of the plate, up to which waves are summed: 3200 alias each other then.
+const WIDEST_CELL: f64 = 4.0;
+
+/// αH beyond which a free base is not seen: e^{−44} is below rounding.
+const UNSEEN: f64 = 44.0;
+
+impl PlateWaves {
+    /// # Errors
+    /// Where cells are much wider than the plate is thick.
+    pub(crate) fn new(plate: &HalfSpace, grid: &Grid) -> Result<Self> {
+        let spacing = grid.spacing();
+        let widest = spacing[0].max(spacing[1]);
+        let requirement =
+            "at most 4 times the thickness of the plate with a free base: take more cells";
+        let fine = widest <= WIDEST_CELL * plate.thickness();
+        require("spacing of the grid", widest, fine, requirement)?;
+        Ok(Self { shape: grid.shape(), spacing, highest: UNSEEN / plate.thickness() })
+    }
+
+    /// Sums of `response` at the wave vectors (m, n) that look like wave (k, l), times the transforms of a cell.
+    pub(crate) fn sum<const N: usize>(
+        &self,
+        waves: [usize; 2],
+        response: impl Fn([f64; 2]) -> [f64; N],
+    ) -> [f64; N] {
+        let [along, across] = [0, 1].map(|axis| self.aliases(axis, waves[axis]));
+        let mut sum = [0.0; N];
+        for (m, weight_m) in &along {
+            for (n, weight_n) in &across {
+                if m.hypot(*n) < self.highest {
+                    let values = response([*m, *n]);
+                    let pairs = sum.iter_mut().zip(values);
+                    pairs.for_each(|(sum, value)| *sum += weight_m * weight_n * value);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Wavenumbers that look like that of a wave, and the mean of the wave over a cell; both have signs.
+    ///
+    /// ```text
+    /// q = 2π (k/N + a)/dx      sin(q dx/2) / (q dx/2)      a = …, −1, 0, 1, …
+    /// ```
+    fn aliases(&self, axis: usize, wave: usize) -> Vec<(f64, f64)> {
+        if wave == 0 {
+            return vec![(0.0, 1.0)];
+        }
+        let turns = wave as f64 / self.shape[axis] as f64;
+        let step = 2.0 * PI / self.spacing[axis];
+        let last = (self.highest / step).ceil() as i64 + 1;
+        let alias = |a: i64| {
+            let number = turns + a as f64;
+            (step * number, (PI * number).sin() / (PI * number))
+        };
+        (-last..=last).map(alias).filter(|(q, _)| q.abs() < self.highest).collect()
+    }
 }
 
 /// Coefficients with which waves of the grid are displaced by û/p̂ at their wave number.

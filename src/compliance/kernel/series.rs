@@ -20,6 +20,7 @@ use std::f64::consts::{E, LN_2, PI};
 
 use rayon::prelude::*;
 
+use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::material::Elastic;
@@ -400,8 +401,8 @@ pub(crate) struct Spectrum {
 impl Spectrum {
     /// The spectrum of `body` for distances in `range`; none where the body is homogeneous.
     pub(crate) fn new(body: &HalfSpace, range: [f64; 2]) -> Option<Self> {
-        let top = body.layers().first()?;
-        let mesh = LogMesh::new(top.thickness(), body.thickness(), range);
+        let [top, longest] = body.lengths()?;
+        let mesh = LogMesh::new(top, longest, range);
         let columns = mesh.wavenumbers().map(|alpha| (alpha, Column::new(body, alpha))).collect();
         Some(Self { mesh, columns })
     }

@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 
 use super::COMPONENTS;
 use super::series::{Order, Series, Spectrum, TransformKind, homogeneous};
+use crate::compliance::response::Response;
 use crate::compliance::response::interior::{InPlane, Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
@@ -99,7 +100,8 @@ pub(crate) struct LinePlan {
     width: f64,
     /// Distance from the load at which the displacement is 0.
     datum: f64,
-    thickness: f64,
+    /// The longest length of the body.
+    longest: f64,
     /// None where the body is homogeneous.
     spectrum: Option<Spectrum>,
 }
@@ -113,7 +115,7 @@ impl LinePlan {
             cells: grid.shape()[1],
             width,
             datum,
-            thickness: body.thickness(),
+            longest: body.lengths().map_or(0.0, |[_, longest]| longest),
             spectrum: Spectrum::new(body, [0.4 * finest * width, 2.0 * datum]),
         }
     }
@@ -151,7 +153,7 @@ impl LinePlan {
         StripKernel {
             outputs: L::OUTPUTS,
             closed: homogeneous(material, L::functions).map(|[c0, c1]| Closed { c0, c1, depth }),
-            rest: self.rest::<N, L>(place, self.thickness + depth),
+            rest: self.rest::<N, L>(place, self.longest + depth),
             datum: self.datum,
         }
     }
@@ -176,7 +178,7 @@ impl LinePlan {
         for (alpha, values) in differences {
             // Below this wavenumber nothing is seen at any distance of interest, but D − D(0)
             // cancels.
-            let seen = (alpha * self.thickness.max(self.datum) / 1e-10).powi(2);
+            let seen = (alpha * self.longest.max(self.datum) / 1e-10).powi(2);
             for k in 0..N {
                 let value = if L::OUTPUTS[k].displacement {
                     let image = images[k].c0 * (-alpha * image_depth).exp();

@@ -16,11 +16,12 @@
 //! ∂(α c11)/∂h = α vᵀ R v     R = A D + D Aᵀ − D diag(0, 2G/η) D     A = ((0, −1), (1, −2))     η = 1 − ν
 //! ```
 //!
-//! which is 0 for a layer like what it lies on.
+//! which is 0 for a layer like what it lies on. Springs of stiffness k below a layer add α/k to C: with the traction t
+//! that they carry, −α (t/k)² is the derivative with respect to k.
 
-use super::layer::{Compliance, Slab, of_energy};
+use super::layer::{Compliance, Slab, Support, of_energy};
 use super::{Asymptotes, Response, substrate_material};
-use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer};
+use crate::model::body::{BodyParameter, HalfSpace, Layer};
 use crate::model::material::Elastic;
 
 /// Derivative of a half-space's response with respect to one of its numbers, as a response that influence coefficients
@@ -35,6 +36,11 @@ pub(crate) struct ResponseSlope {
 impl ResponseSlope {
     pub(crate) fn new(body: &HalfSpace, parameter: BodyParameter) -> Self {
         Self { body: body.clone(), parameter, limits: asymptote_derivatives(body, &[parameter])[0] }
+    }
+
+    /// The derivative of another `body` with respect to the same number.
+    pub(crate) fn of(&self, body: &HalfSpace) -> Self {
+        Self::new(body, self.parameter)
     }
 }
 
@@ -61,8 +67,8 @@ impl Response for ResponseSlope {
 /// State of one layer under a unit pressure on the surface.
 struct LayerState {
     slab: Slab,
-    /// Compliance of what lies below, times α.
-    below: Compliance,
+    /// What lies below.
+    below: Support,
     /// Traction on top.
     top: [f64; 2],
     /// Traction at the bottom.
@@ -101,8 +107,8 @@ pub fn normal_derivatives(
     let mut states: Vec<LayerState> = Vec::with_capacity(layers.len());
     for layer in layers.iter().rev() {
         let slab = Slab::new(layer.material(), alpha * layer.thickness());
-        let below = compliance;
-        compliance = slab.onto(below, layer.interface());
+        let below = Support::new(compliance, layer.interface(), alpha);
+        compliance = slab.onto(below);
         states.push(LayerState {
             slab,
             below,
@@ -113,18 +119,18 @@ pub fn normal_derivatives(
     }
     states.reverse();
     let mut traction = [1.0, 0.0];
-    for (state, layer) in states.iter_mut().zip(layers) {
+    for state in &mut states {
         state.top = traction;
-        (state.bottom, state.displacement) =
-            state.slab.through(state.below, layer.interface(), traction);
+        (state.bottom, state.displacement) = state.slab.through(state.below, traction);
         traction = state.bottom;
     }
     for (parameter, out) in parameters.iter().zip(out) {
-        let (BodyParameter::Young(place)
-        | BodyParameter::Poisson(place)
-        | BodyParameter::Thickness(place)) = *parameter;
+        let place = parameter.layer();
         *out = match (layers.get(place), substrate_material(body)) {
-            (Some(layer), _) => of_layer(*parameter, layer, &states[place], alpha),
+            (Some(layer), _) => {
+                let value = body.value(*parameter).unwrap_or(0.0);
+                of_layer(*parameter, value, layer, &states[place], alpha)
+            }
             (None, Some(material)) if place == layers.len() => {
                 of_substrate(*parameter, material, traction)
             }
@@ -134,9 +140,19 @@ pub fn normal_derivatives(
     compliance.c11
 }
 
-/// Derivative with respect to a number of `layer`.
-fn of_layer(parameter: BodyParameter, layer: &Layer, state: &LayerState, alpha: f64) -> f64 {
+/// Derivative with respect to a number of `layer`, which has this `value`; 0 for springs that it does not have.
+fn of_layer(
+    parameter: BodyParameter,
+    value: f64,
+    layer: &Layer,
+    state: &LayerState,
+    alpha: f64,
+) -> f64 {
     let material = layer.material();
+    let spring = |traction: f64| match value > 0.0 {
+        true => -alpha * (traction / value).powi(2),
+        false => 0.0,
+    };
     let stretch = || -state.slab.energy(state.top, state.displacement);
     match parameter {
         BodyParameter::Young(_) => stretch() / material.young(),
@@ -146,33 +162,35 @@ fn of_layer(parameter: BodyParameter, layer: &Layer, state: &LayerState, alpha: 
             // G = E/2(1+ν) falls by G/(1+ν) per unit of ν.
             fixed - stretch() / (1.0 + material.poisson())
         }
-        BodyParameter::Thickness(_) => alpha * thickening(material, layer.interface(), state),
+        BodyParameter::Thickness(_) => alpha * thickening(material, state),
+        BodyParameter::NormalStiffness(_) => spring(state.bottom[0]),
+        BodyParameter::TangentialStiffness(_) => spring(state.bottom[1]),
     }
 }
 
-/// vᵀ R v, the derivative per α times thickness. Above a frictionless interface, where C has no inverse, it is the same
+/// vᵀ R v, the derivative per α times thickness. Where the layer slips or is free, and C has no inverse, it is the same
 /// form in tractions and displacements:
 ///
 /// ```text
 /// P² ε/2Gη − 2 (ν/η) P V − (2G/η) V²      ε = 1 − 2ν
 /// ```
-fn thickening(material: Elastic, interface: Interface, state: &LayerState) -> f64 {
+fn thickening(material: Elastic, state: &LayerState) -> f64 {
     let (g, nu) = (material.shear(), material.poisson());
     let eta = 1.0 - nu;
     let [p, tau] = state.bottom;
-    match interface {
-        Interface::Bonded => {
+    match state.below {
+        Support::Held(below) => {
             let far = Compliance::homogeneous(material);
-            let d11 = state.below.c11 - far.c11;
-            let d12 = state.below.c12 - far.c12;
-            let d22 = state.below.c22 - far.c22;
+            let d11 = below.c11 - far.c11;
+            let d12 = below.c12 - far.c12;
+            let d22 = below.c22 - far.c22;
             let stiff = 2.0 * g / eta;
             let r11 = -d12 * (2.0 + stiff * d12);
             let r12 = d11 - d22 - d12 * (2.0 + stiff * d22);
             let r22 = 2.0 * d12 - d22 * (4.0 + stiff * d22);
             p * p * r11 + 2.0 * p * tau * r12 + tau * tau * r22
         }
-        Interface::Frictionless => {
+        Support::Slips(_) | Support::Free => {
             let [_, v] = state.displacement;
             (p * p * (1.0 - 2.0 * nu) / (2.0 * g) - 2.0 * v * (nu * p + g * v)) / eta
         }
@@ -193,7 +211,7 @@ fn of_substrate(parameter: BodyParameter, material: Elastic, [p, tau]: [f64; 2])
             -form(c11, c12) / e
         }
         BodyParameter::Poisson(_) => form(-4.0 * nu, -1.0 - 4.0 * nu) / e,
-        BodyParameter::Thickness(_) => 0.0,
+        _ => 0.0,
     }
 }
 
@@ -231,11 +249,17 @@ pub fn asymptote_derivatives(body: &HalfSpace, parameters: &[BodyParameter]) -> 
 /// Derivative of the compression of the layers, `constant` of [`Asymptotes`], with respect to `parameter`.
 fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
     let layers = body.layers();
-    let (BodyParameter::Young(place)
-    | BodyParameter::Poisson(place)
-    | BodyParameter::Thickness(place)) = parameter;
+    let place = parameter.layer();
     let substrate = substrate_material(body);
-    let loose = layers.iter().rposition(|layer| layer.interface() == Interface::Frictionless);
+    match parameter {
+        BodyParameter::NormalStiffness(_) => {
+            let stiffness = body.value(parameter).filter(|k| *k > 0.0);
+            return stiffness.map_or(0.0, |k| -1.0 / (k * k));
+        }
+        BodyParameter::TangentialStiffness(_) => return 0.0,
+        BodyParameter::Young(_) | BodyParameter::Poisson(_) | BodyParameter::Thickness(_) => {}
+    }
+    let loose = layers.iter().rposition(|layer| layer.interface().slips());
     let first_held = loose.map_or(0, |last| last + 1);
     if place >= layers.len() {
         let held = layers[first_held..].iter();
@@ -251,12 +275,12 @@ fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
     }
     let starts = layers[..place]
         .iter()
-        .rposition(|layer| layer.interface() == Interface::Frictionless)
+        .rposition(|layer| layer.interface().slips())
         .map_or(0, |last| last + 1);
     let ends = place
         + layers[place..]
             .iter()
-            .position(|layer| layer.interface() == Interface::Frictionless)
+            .position(|layer| layer.interface().slips())
             .map_or(0, |more| more + 1);
     free_layer(&layers[starts..ends], &layers[place], parameter)
 }
@@ -282,6 +306,7 @@ fn held_layer(layer: &Layer, substrate: Option<Elastic>, parameter: BodyParamete
             let steeper = 2.0 * f / (e * (1.0 - nu) * (1.0 - nu));
             h * (steeper - factor * (2.0 * (1.0 + g) + per_g * g / (1.0 + nu)))
         }
+        BodyParameter::NormalStiffness(_) | BodyParameter::TangentialStiffness(_) => 0.0,
     }
 }
 
@@ -295,7 +320,7 @@ fn held_by(layer: &Layer, substrate: Elastic, parameter: BodyParameter) -> f64 {
         * match parameter {
             BodyParameter::Young(_) => -g / es,
             BodyParameter::Poisson(_) => -(1.0 + 4.0 * nus) * e / (es * (1.0 + nu)),
-            BodyParameter::Thickness(_) => 0.0,
+            _ => 0.0,
         }
 }
 
@@ -319,6 +344,7 @@ fn free_layer(group: &[Layer], layer: &Layer, parameter: BodyParameter) -> f64 {
             h / (eta * eta),
             h * e * 2.0 * nu * plane * plane,
         ],
+        BodyParameter::NormalStiffness(_) | BodyParameter::TangentialStiffness(_) => [0.0; 3],
     };
     d_alone + stretch * (2.0 * d_push - stretch * d_stiffness)
 }

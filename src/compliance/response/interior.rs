@@ -9,8 +9,8 @@
 //! σ_LL = −[ν P + 2G αV]/(1−ν)      σ_TT = −ν [P + 2G αV]/(1−ν)      σ_LT = i G αU
 //! ```
 
-use super::layer::{Compliance, Slab};
-use crate::model::body::{HalfSpace, Interface};
+use super::layer::{Compliance, Slab, Support};
+use crate::model::body::HalfSpace;
 use crate::model::material::Elastic;
 
 /// Place of a plane: its depth, and the layer that it lies in.
@@ -112,12 +112,14 @@ struct Loads {
     twist: f64,
 }
 
-/// A half-space at one wavenumber: the compliance below each layer, and the traction on it.
+/// A half-space at one wavenumber: what is below each layer, and the traction on it.
 #[derive(Debug)]
 pub(crate) struct Column {
     alpha: f64,
     /// Compliance and loads at the top of each layer and of the substrate.
     tops: Vec<(Compliance, Loads)>,
+    /// What is below each layer.
+    supports: Vec<Support>,
 }
 
 impl Column {
@@ -125,27 +127,30 @@ impl Column {
     pub(crate) fn new(body: &HalfSpace, alpha: f64) -> Self {
         let layers = body.layers();
         let mut compliances = vec![Compliance::of_substrate(body.substrate())];
+        let mut supports = Vec::with_capacity(layers.len());
         let slabs: Vec<Slab> = layers
             .iter()
             .map(|layer| Slab::new(layer.material(), alpha * layer.thickness()))
             .collect();
         for (slab, layer) in slabs.iter().zip(layers).rev() {
             let below = compliances[compliances.len() - 1];
-            compliances.push(slab.onto(below, layer.interface()));
+            let support = Support::new(below, layer.interface(), alpha);
+            compliances.push(slab.onto(support));
+            supports.push(support);
         }
         compliances.reverse();
+        supports.reverse();
         let mut loads = Loads { pressure: [1.0, 0.0], shear: [0.0, 1.0], twist: 1.0 };
         let mut tops = vec![(compliances[0], loads)];
-        for ((slab, layer), below) in slabs.iter().zip(layers).zip(&compliances[1..]) {
-            let interface = layer.interface();
+        for ((slab, support), below) in slabs.iter().zip(&supports).zip(&compliances[1..]) {
             loads = Loads {
-                pressure: slab.through(*below, interface, loads.pressure).0,
-                shear: slab.through(*below, interface, loads.shear).0,
-                twist: slab.twist_through(*below, interface, loads.twist).0,
+                pressure: slab.through(*support, loads.pressure).0,
+                shear: slab.through(*support, loads.shear).0,
+                twist: slab.twist_through(*support, loads.twist).0,
             };
             tops.push((*below, loads));
         }
-        Self { alpha, tops }
+        Self { alpha, tops, supports }
     }
 
     /// Fields at `place`.
@@ -157,23 +162,22 @@ impl Column {
         if place.below_top <= 0.0 {
             return on_top(compliance, loads);
         }
-        let (next, _) = self.tops[place.layer + 1];
+        let next = self.supports[place.layer];
         let rest = layer.thickness() - place.below_top;
-        let (below, interface) = if rest > 0.0 {
-            let lower = Slab::new(layer.material(), self.alpha * rest);
-            (lower.onto(next, layer.interface()), Interface::Bonded)
+        let below = if rest > 0.0 {
+            Support::Held(Slab::new(layer.material(), self.alpha * rest).onto(next))
         } else {
-            (next, layer.interface())
+            next
         };
         let upper = Slab::new(layer.material(), self.alpha * place.below_top);
         let state = |traction| {
-            let ([p, tau], [w, v]) = upper.through(below, interface, traction);
+            let ([p, tau], [w, v]) = upper.through(below, traction);
             InPlane { p, tau, w, v }
         };
         UnitFields {
             pressure: state(loads.pressure),
             shear: state(loads.shear),
-            twist: upper.twist_through(below, interface, loads.twist),
+            twist: upper.twist_through(below, loads.twist),
         }
     }
 }

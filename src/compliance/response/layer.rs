@@ -31,11 +31,13 @@ impl Compliance {
         Self { c11, c12: (1.0 - 2.0 * nu) / (2.0 * g), c22: c11, ct: 1.0 / g }
     }
 
-    /// α times the compliance of what the lowest layer lies on; 0 of a rigid base.
+    /// α times the compliance of what the lowest layer lies on; 0 of a rigid base, infinite where that is free.
     pub(super) fn of_substrate(substrate: Substrate) -> Self {
+        let base = |c: f64| Self { c11: c, c12: 0.0, c22: c, ct: c };
         match substrate {
             Substrate::Elastic(material) => Self::homogeneous(material),
-            Substrate::Rigid => Self { c11: 0.0, c12: 0.0, c22: 0.0, ct: 0.0 },
+            Substrate::Rigid => base(0.0),
+            Substrate::Free => base(f64::INFINITY),
         }
     }
 
@@ -47,6 +49,30 @@ impl Compliance {
             c22: self.c22 * factor,
             ct: self.ct * factor,
         }
+    }
+}
+
+/// What is below a layer: compliances times α, those of an interface included, and how they hold the layer.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Support {
+    /// All tractions pass.
+    Held(Compliance),
+    /// The shear traction is 0.
+    Slips(Compliance),
+    /// No traction passes: the bottom face of a plate.
+    Free,
+}
+
+impl Support {
+    /// A body of compliance `below`, and the `interface` on it, at wavenumber `alpha`: springs of stiffness k add α/k.
+    pub(super) fn new(below: Compliance, interface: Interface, alpha: f64) -> Self {
+        if below.c11.is_infinite() {
+            return Self::Free;
+        }
+        let [normal, tangential] = interface.compliances().map(|c| alpha * c);
+        let Compliance { c11, c12, c22, ct } = below;
+        let all = Compliance { c11: c11 + normal, c12, c22: c22 + tangential, ct: ct + tangential };
+        if interface.slips() { Self::Slips(all) } else { Self::Held(all) }
     }
 }
 
@@ -200,21 +226,20 @@ impl Slab {
         }
     }
 
-    /// α times the compliance of the top face of this layer on a body of compliance `below`.
+    /// α times the compliance of the top face of this layer on `below`.
     ///
-    /// Bonded, with all terms positive:
+    /// Held, with all terms positive:
     ///
     /// ```text
     /// X = (C⁻¹ + H22)⁻¹ = (C + det C · adj H22) / (1 + tr(C H22) + det C · det H22)
     /// C_top = H11 + H12 X H12ᵀ
     /// ```
     ///
-    /// Frictionless: C⁻¹ becomes diag(1/c11, 0).
-    pub(super) fn onto(&self, below: Compliance, interface: Interface) -> Compliance {
+    /// Where it slips, C⁻¹ becomes diag(1/c11, 0), and 0 where it is free: X = H22⁻¹.
+    pub(super) fn onto(&self, below: Support) -> Compliance {
         let Symmetric(k11, k12, k22) = self.h22;
-        let Compliance { c11, c12, c22, ct } = below;
-        let (x, twist) = match interface {
-            Interface::Bonded => {
+        let (x, twist) = match below {
+            Support::Held(Compliance { c11, c12, c22, ct }) => {
                 let det = c11 * c22 - c12 * c12;
                 let den = 1.0 + c11 * k11 + 2.0 * c12 * k12 + c22 * k22 + det * self.det_h22;
                 let x = Symmetric(
@@ -224,10 +249,14 @@ impl Slab {
                 );
                 (x, ct / (1.0 + ct * self.twist.h22))
             }
-            Interface::Frictionless => {
+            Support::Slips(Compliance { c11, .. }) => {
                 let den = c11 * self.det_h22 + k22;
                 let x = Symmetric(c11 * k22 / den, -c11 * k12 / den, (1.0 + c11 * k11) / den);
                 (x, 1.0 / self.twist.h22)
+            }
+            Support::Free => {
+                let den = self.det_h22;
+                (Symmetric(k22 / den, -k12 / den, k11 / den), 1.0 / self.twist.h22)
             }
         };
         let [[a, b], [c, d]] = self.h12;
@@ -240,28 +269,22 @@ impl Slab {
         }
     }
 
-    /// Traction at the bottom face of this layer, on a body of compliance `below`, under `traction`
-    /// (P, τ) on its top, and α times the displacement of the layer's side of that face.
+    /// Traction at the bottom face of this layer, on `below`, under `traction` (P, τ) on its top, and α times the
+    /// displacement of the layer's side of that face.
     ///
-    /// Bonded, with f = H12ᵀ t and M = H22 C:
+    /// Held, with f = H12ᵀ t and M = H22 C:
     ///
     /// ```text
     /// D = 1 + tr M + det M      t_bot = (I + adj M) f / D      u_bot = (C + det C · adj H22) f / D
     /// ```
     ///
-    /// Frictionless: the limit for C⁻¹ = diag(1/c11, 0), where the shear traction is 0.
-    pub(super) fn through(
-        &self,
-        below: Compliance,
-        interface: Interface,
-        [p, tau]: [f64; 2],
-    ) -> ([f64; 2], [f64; 2]) {
+    /// Where it slips, the limit for C⁻¹ = diag(1/c11, 0), where the shear traction is 0; where it is free, for C⁻¹ = 0.
+    pub(super) fn through(&self, below: Support, [p, tau]: [f64; 2]) -> ([f64; 2], [f64; 2]) {
         let Symmetric(k11, k12, k22) = self.h22;
-        let Compliance { c11, c12, c22, .. } = below;
         let [[a, b], [c, d]] = self.h12;
         let (f1, f2) = (a * p + c * tau, b * p + d * tau);
-        match interface {
-            Interface::Bonded => {
+        match below {
+            Support::Held(Compliance { c11, c12, c22, .. }) => {
                 let det = c11 * c22 - c12 * c12;
                 let (m11, m12) = (k11 * c11 + k12 * c12, k11 * c12 + k12 * c22);
                 let (m21, m22) = (k12 * c11 + k22 * c12, k12 * c12 + k22 * c22);
@@ -274,30 +297,28 @@ impl Slab {
                 ];
                 (traction, displacement)
             }
-            Interface::Frictionless => {
+            Support::Slips(Compliance { c11, .. }) => {
                 let den = c11 * self.det_h22 + k22;
                 let pressure = (k22 * f1 - k12 * f2) / den;
                 let lateral = ((1.0 + c11 * k11) * f2 - c11 * k12 * f1) / den;
                 ([pressure, 0.0], [c11 * pressure, lateral])
             }
+            Support::Free => {
+                let den = self.det_h22;
+                ([0.0; 2], [(k22 * f1 - k12 * f2) / den, (k11 * f2 - k12 * f1) / den])
+            }
         }
     }
 
-    /// Traction Q at the bottom face of this layer under the twist `q` on its top, and α times the
-    /// displacement U there.
-    pub(super) fn twist_through(
-        &self,
-        below: Compliance,
-        interface: Interface,
-        q: f64,
-    ) -> (f64, f64) {
+    /// Traction Q at the bottom face of this layer under the twist `q` on its top, and α times the displacement U there.
+    pub(super) fn twist_through(&self, below: Support, q: f64) -> (f64, f64) {
         let f = self.twist.h12 * q;
-        match interface {
-            Interface::Bonded => {
-                let q = f / (1.0 + below.ct * self.twist.h22);
-                (q, below.ct * q)
+        match below {
+            Support::Held(Compliance { ct, .. }) => {
+                let q = f / (1.0 + ct * self.twist.h22);
+                (q, ct * q)
             }
-            Interface::Frictionless => (0.0, f / self.twist.h22),
+            Support::Slips(_) | Support::Free => (0.0, f / self.twist.h22),
         }
     }
 

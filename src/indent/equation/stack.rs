@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::super::tip::TipParameter;
 use super::basis::Waves;
-use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives};
+use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives, refuse_free};
 use crate::error::{Result, refuse_if};
 use crate::model::body::BodyParameter;
 
@@ -85,6 +85,9 @@ impl Stack {
     }
 
     fn with_resolution(bodies: &[Body], finer: f64) -> Result<Self> {
+        for body in bodies {
+            refuse_free(&**body, "bodies that are indented")?;
+        }
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
         refuse_if(
             bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0),

@@ -3,18 +3,24 @@
 //! The mean over a period is that of a uniform load with which the body does not stretch along the periods: under the
 //! pressure p, σ_zz = −p and σ_xx = σ_yy = −ν p/(1 − ν) in every layer. Where one direction is open, it is that of a
 //! strip.
+//!
+//! Sums over the images of a plate with a free base diverge. It is the same plate on a rigid base, and waves of the
+//! difference: derived here.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use ndarray::Array2;
 use rayon::prelude::*;
 
 use crate::compliance::images::CellImages;
+use crate::compliance::influence::PlateWaves;
 use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Radial};
 use crate::compliance::kernel::plane::{CellPlan, CellSource, ComponentsAt, FAR, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
-use crate::compliance::response::interior::Place;
-use crate::model::body::{HalfSpace, Substrate};
+use crate::compliance::response::interior::{Column, Place};
+use crate::compliance::response::is_free;
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::fft::Keep;
@@ -37,6 +43,8 @@ pub(in crate::stress) struct Repeats {
     strips: Option<LinePlan>,
     /// The direction that is open.
     open: usize,
+    /// Waves on a plate with a free base.
+    plate: Option<PlateWaves>,
     body: HalfSpace,
     grid: Grid,
 }
@@ -63,7 +71,8 @@ impl Repeats {
         let line = Grid::line(grid.shape()[open], grid.size()[open]);
         let strips = line.ok().filter(|_| periodic != [true; 2]);
         Some(Self {
-            block: CellPlan::new(body, sides, 1.0, reach),
+            block: CellPlan::new(&body.held(), sides, 1.0, reach),
+            plate: is_free(body).then(|| PlateWaves::new(body, grid).ok()).flatten(),
             block_half: sides.map(|side| 0.5 * side),
             strips: strips.map(|line| LinePlan::new(body, &line, 1.0)),
             open,
@@ -110,6 +119,7 @@ impl Repeats {
             },
         );
         let uniform = self.uniform(place, axis);
+        let base = self.of_free_base(place, source.odd);
         let kept = self.images.kept();
         let starts: Vec<usize> = (0..kept[0]).step_by(ROWS_TOGETHER).collect();
         let near: Vec<Vec<f64>> = starts
@@ -121,7 +131,10 @@ impl Repeats {
                 let sum = Array2::from_shape_fn((kept[0], kept[1]), |(i, j)| {
                     let (block, row) = (i / ROWS_TOGETHER, i % ROWS_TOGETHER);
                     let rows = near[block].len() / (C * kept[1]);
-                    near[block][(component * rows + row) * kept[1] + j] + far[component][[i, j]]
+                    let base = base.as_ref().map_or(0.0, |base| base[component][[i, j]]);
+                    near[block][(component * rows + row) * kept[1] + j]
+                        + far[component][[i, j]]
+                        + base
                 });
                 let mut whole = self.images.whole(&sum, source.odd[component]);
                 let means: Vec<f64> = uniform.iter().map(|values| values[component]).collect();
@@ -164,6 +177,66 @@ impl Repeats {
             source.rows(range, &mut keep);
         }
         sums
+    }
+
+    /// What a free base adds to the coefficients of C components under pressure, without their means.
+    ///
+    /// ```text
+    /// p = cos mx cos ny:   σ_xx = (c² σ_LL + s² σ_TT) cos mx cos ny      σ_xy = −cs (σ_LL − σ_TT) sin mx sin ny
+    ///                      σ_xz = c τ sin mx cos ny     u_x = −c V/α sin mx cos ny     c = m/α, s = n/α
+    /// ```
+    fn of_free_base<const C: usize>(
+        &self,
+        place: &Place,
+        odd: [[bool; 2]; C],
+    ) -> Option<[Array2<f64>; C]> {
+        let (plate, held) = (self.plate.as_ref()?, self.body.held());
+        let response = |[m, n]: [f64; 2]| {
+            let alpha = m.hypot(n);
+            let at = |body: &HalfSpace| Column::new(body, alpha).at(body, place).pressure;
+            let (free, held) = (at(&self.body), at(&held));
+            let ((a, b), (c, d)) =
+                (free.lateral_stress(place.material), held.lateral_stress(place.material));
+            let (along, across) = (a - c, b - d);
+            let (p, tau) = (free.p - held.p, free.tau - held.tau);
+            let (w, v) = ((free.w - held.w) / alpha, (free.v - held.v) / alpha);
+            let (c, s) = (m / alpha, n / alpha);
+            let all = [
+                c * c * along + s * s * across,
+                s * s * along + c * c * across,
+                -p,
+                -c * s * (along - across),
+                s * tau,
+                c * tau,
+                -c * v,
+                -s * v,
+                w,
+            ];
+            std::array::from_fn::<f64, C, _>(|k| all[k])
+        };
+        let (shape, [columns, rows]) = (self.grid.shape(), self.images.kept());
+        let spectrum: Vec<[f64; C]> = (0..columns * rows)
+            .into_par_iter()
+            .map(|number| match number {
+                0 => [0.0; C],
+                _ => plate.sum([number / rows, number % rows], response),
+            })
+            .collect();
+        // (wave, offset): half a period of either stands for the whole.
+        let waves = |axis: usize, odd: bool| {
+            let (kept, n) = (self.images.kept()[axis], shape[axis]);
+            Array2::from_shape_fn((kept, kept), |(k, i)| {
+                let phase = 2.0 * PI * (k * i % n) as f64 / n as f64;
+                let twice = if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
+                twice / n as f64 * if odd { phase.sin() } else { phase.cos() }
+            })
+        };
+        Some(std::array::from_fn(|component| {
+            let [odd_x, odd_y] = odd[component];
+            let amplitudes =
+                Array2::from_shape_fn((columns, rows), |(k, l)| spectrum[k * rows + l][component]);
+            waves(0, odd_x).t().dot(&amplitudes).dot(&waves(1, odd_y))
+        }))
     }
 
     /// Components under a unit load on all cells, where both directions repeat; otherwise those at each offset along
@@ -214,12 +287,16 @@ fn everywhere(body: &HalfSpace, place: &Place, axis: Axis) -> [f64; COMPONENTS] 
     } / material.shear();
     let moved = |count: usize| -> f64 {
         let layers = body.layers().iter().take(count);
-        layers.map(|layer| layer.thickness() * compliance(layer.material())).sum()
+        let of = |layer: &Layer| {
+            let springs = layer.interface().compliances()[usize::from(axis.is_some())];
+            layer.thickness() * compliance(layer.material()) + springs
+        };
+        layers.map(of).sum()
     };
     let above = moved(place.layer) + place.below_top * compliance(place.material);
     let whole = match body.substrate() {
         Substrate::Rigid => moved(body.layers().len()),
-        Substrate::Elastic(_) => 0.0,
+        Substrate::Elastic(_) | Substrate::Free => 0.0,
     };
     let mut values = [0.0; COMPONENTS];
     match axis {
@@ -256,7 +333,7 @@ mod tests {
     use super::*;
     use crate::compliance::response::interior::{Column, InPlane};
     use crate::error::Result;
-    use crate::model::body::{Interface, Layer};
+    use crate::model::body::{Interface, Layer, Spring};
     use crate::stress::section::place;
     use crate::stress::{Side, Stress, StressOptions, stress};
 

@@ -439,16 +439,23 @@ def test_bodies_grids_and_motions_can_be_described() -> None:
     layer = {"material": {"young": 1e9, "poisson": 0.5}, "thickness": 1e-3}
     found = Case(
         base(
-            body={"substrate": "rigid", "layers": [layer | {"interface": "frictionless"}]},
+            body={
+                "substrate": "rigid",
+                "layers": [
+                    layer | {"interface": {"normal": 1e12, "tangential": 2e11}},
+                    layer | {"interface": "frictionless"},
+                ],
+            },
             counterbody={"substrate": {"young": 3, "poisson": 0.1}, "ends": [-1, float("inf")]},
             grid={"cells": 64, "width": 2, "center": 0.5},
             solve={"approach": 1, "tilt": [1, 2], "moment": {"y": 3}, "threads": 2},
         )
     ).arguments()
     soft = nacre.Layer(nacre.Elastic(1e9, 0.5), 1e-3, "frictionless")
+    joined = nacre.Layer(soft.material, 1e-3, nacre.Spring(1e12, 2e11))
     assert found == {
         "shape": nacre.Sphere(1),
-        "body": nacre.HalfSpace(nacre.RIGID, [soft]),
+        "body": nacre.HalfSpace(nacre.RIGID, [joined, soft]),
         "counterbody": nacre.HalfSpace(nacre.Elastic(3, 0.1), ends=(-1, None)),
         "grid": nacre.Grid.line(64, 2, 0.5),
         "approach": 1,

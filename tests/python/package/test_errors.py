@@ -18,6 +18,7 @@ GRID = nacre.Grid(shape=(16, 20), size=(4e-4, 4e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
 ENDS = nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-5))
 ROLLER = nacre.Roller(5e-3, flat_length=8e-4, crown_radius=1.0, length=1e-3)
+PLATE = nacre.HalfSpace(nacre.FREE, [nacre.Layer(STEEL, 1e-3)])
 HEIGHTS = np.zeros((4, 5))
 NAN_AT_1_2 = np.where(np.arange(20).reshape(4, 5) == 7, NAN, 0.0)
 TOO_LARGE = (2**20, 2**20)
@@ -29,7 +30,21 @@ VALUES = {
     "Elastic(-10**400, 0.3)": r"young must be .*above 0, got -inf",
     "Elastic(1.0, -1.0)": r"poisson must be above -1.*got -1",
     "Layer(STEEL, -1e-6)": r"thickness must be .*above 0, got -(0\.000001|1e-6)",
-    "Layer(STEEL, 1.0, 'glued')": r"interface must be .*bonded.*frictionless.*glued",
+    "Layer(STEEL, 1.0, 'glued')": r"interface must be .*bonded.*frictionless.*Spring.*glued",
+    "Spring()": r"normal or tangential must be given.*bonded",
+    "Spring(0.0)": r"normal must be finite and above 0, got 0",
+    "Spring(INF)": r"normal must be finite and above 0, got inf",
+    "Spring(1.0, -1.0)": r"tangential must be finite and at least 0, got -1",
+    "HalfSpace(nacre.FREE)": r"layers must .*at least one.*free",
+    "HalfSpace(nacre.FREE, [Layer(STEEL, 1.0, 'frictionless')])": r"interface of the lowest .*",
+    "HalfSpace(nacre.FREE, [Layer(STEEL, 1.0)], ends=(0.0, None))": r"ends must not .*free base",
+    "HalfSpace(STEEL, [Layer(STEEL, 1.0, Spring(1.0))], ends=(0.0, None))": r"ends .*springs",
+    "solve(BALL, PLATE, load=1.0)": r"must not have a free base.*RIGID.*periodic",
+    "solve(BALL, STEEL, PLATE, load=1.0)": r"must not have a free base",
+    "Contact(PLATE, GRID)": r"must not have a free base",
+    "slide(BALL, PLATE, load=1.0, friction=0.1)": r"must not have a free base",
+    "nacre.indent.Indentation(PLATE, nacre.indent.Tip.sphere(1e-6))": r"must not have a free base",
+    "influence_coefficients(PLATE, GRID)": r"must not have a free base",
     "Layer(STEEL, 1.0, name='')": r"name must be a text .*other than a number.*got \"\"",
     "Layer(STEEL, 1.0, name='substrate')": r"name must be .*got \"substrate\"",
     "HalfSpace(RIGID)": r"layers must .*at least one.*rigid",
@@ -159,9 +174,9 @@ TYPES = {
     "Elastic(1.0, None)": r"(?s)number.*poisson",
     "Layer('steel', 1.0)": r"(?s)Elastic.*material",
     "Layer(STEEL, 'thin')": r"(?s)number.*thickness",
-    "Layer(STEEL, 1.0, 3)": r"(?s)str.*interface",
-    "HalfSpace('steel')": r"substrate must be an Elastic or .*RIGID, got .*steel",
-    "HalfSpace(None)": r"substrate must be an Elastic or .*RIGID, got None",
+    "Layer(STEEL, 1.0, 3)": r"interface must be .*Spring, got 3",
+    "HalfSpace('steel')": r"substrate must be an Elastic, .*RIGID or .*FREE, got .*steel",
+    "HalfSpace(None)": r"substrate must be an Elastic, .*RIGID or .*FREE, got None",
     "HalfSpace(STEEL, [STEEL])": r"layers must be a sequence of Layer, got Elastic.* in it",
     "HalfSpace(STEEL, Layer(STEEL, 1.0))": r"layers must be a sequence of Layer, got Layer",
     "HalfSpace(STEEL, ends=1.0)": r"ends must be a pair of numbers or None, got 1\.0",

@@ -22,6 +22,7 @@ MADE: dict[str, list[dict[str, Any]]] = {
     "Layer": [
         {"material": STEEL, "thickness": 1e-6, "interface": "frictionless", "name": "skin"},
     ],
+    "Spring": [{"normal": 2e15, "tangential": 3e14}],
     "HalfSpace": [{"substrate": STEEL, "layers": (COATING,), "ends": (-1e-2, 2e-2)}],
     "Response": [{"values": None, "local": 1e-13}],
     "Grid": [
@@ -82,7 +83,7 @@ TABLES = {
     "Elastic": "Material",
     "HalfSpace": "Body",
     "Grid.line": "Grid",
-    **{name: name for name in ("Layer", "Grid", "HeightMap")},
+    **{name: name for name in ("Layer", "Spring", "Grid", "HeightMap")},
     **{name: name for name in ("LogarithmicProfile", "SampledProfile")},
 }
 """Tables of case files where the name of the class does not say them."""

@@ -34,7 +34,12 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "frictionless layer": nacre.Layer(DLC, thickness=1e-5 / 3, interface="frictionless"),
     "named layer": nacre.Layer(DLC, thickness=1e-5 / 3, name="DLC"),
     "layer of an odd name": nacre.Layer(DLC, thickness=1e-5 / 3, name='it\'s 2\\3 "µm"'),
+    "spring": nacre.Spring(1e15 / 3, 1e14 / 7),
+    "spring along": nacre.Spring(tangential=0.0),
+    "layer on springs": nacre.Layer(DLC, 1e-5 / 3, nacre.Spring(normal=1e15 / 3)),
     "rigid": nacre.RIGID,
+    "free": nacre.FREE,
+    "plate": nacre.HalfSpace(nacre.FREE, [nacre.Layer(DLC, 1e-3 / 3)]),
     "half-space": nacre.HalfSpace(STEEL),
     "coated": COATED,
     "two layers on a rigid base": FLOATING,
@@ -234,6 +239,7 @@ def test_a_hundred_thousand_shapes_can_be_added() -> None:
 
 def test_rigid_is_one_object() -> None:
     assert copy.deepcopy(nacre.RIGID) is nacre.RIGID
+    assert copy.deepcopy(nacre.FREE) is pickle.loads(pickle.dumps(nacre.FREE)) is nacre.FREE
     assert pickle.loads(pickle.dumps(nacre.RIGID)) is nacre.RIGID
     assert FLOATING.substrate is nacre.RIGID
 
