@@ -497,6 +497,8 @@ class FrictionSteps:
 class StressPlan:
     @property
     def body(self) -> HalfSpace: ...
+    @property
+    def edge(self) -> _Field: ...
 
 @final
 class Convolution:

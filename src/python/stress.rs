@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,6 +33,12 @@ impl PyStressPlan {
     #[getter]
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace(self.0.body().clone())
+    }
+
+    /// Points of the edge of the contact (n, 2).
+    #[getter]
+    fn edge<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        Array2::from(self.0.edge()).into_pyarray(py)
     }
 }
 

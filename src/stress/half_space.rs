@@ -102,6 +102,11 @@ impl Loading {
     fn components(&self) -> usize {
         components(self.displacement)
     }
+
+    /// μ times the unit vector of the traction.
+    pub(super) fn friction(&self) -> [f64; 2] {
+        self.friction
+    }
 }
 
 /// Number of components: six stresses, and three displacements where they are asked for.

@@ -6,6 +6,7 @@ use super::field::{Peak, Percent, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
+use super::subcell::CellPoint;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive};
@@ -418,24 +419,26 @@ impl<'a, 'b> Planes<'a, 'b> {
         Tensor::new(self.fields.each_ref().map(|field| field[cell]))
     }
 
-    fn peak(&self, largest: Largest, place: &Place) -> Peak {
-        let grid = &self.plan.whole.grid;
-        let ny = grid.shape()[1];
-        let Largest { value, cell } = largest;
-        let [i, j] = [cell / ny, cell % ny];
-        let window = [i..i + 1, j..j + 1];
+    fn peak(&self, Largest { value, cell }: Largest, place: &Place) -> Peak {
+        let ny = self.plan.whole.grid.shape()[1];
+        let centre = CellPoint { cell: [cell / ny, cell % ny], within: [0.0; 2] };
+        self.peak_at(value, &centre, place)
+    }
+
+    fn peak_at(&self, value: f64, point: &CellPoint, place: &Place) -> Peak {
+        let [x, y] = self.plan.position(point);
+        let window = point.cell.map(|cell| cell..cell + 1);
         let places = std::slice::from_ref(place);
         let error = self.plan.uncertainties(places, self.friction, &window);
-        Peak {
-            value,
-            position: [grid.x()[i], grid.y()[j], place.depth],
-            uncertainty: error.map(|errors| errors[0]),
-        }
+        Peak { value, position: [x, y, place.depth], uncertainty: error.map(|errors| errors[0]) }
     }
 
     /// The largest von Mises stress, principal stress and shear stress at `place`.
     fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
         self.evaluate(place)?;
+        if let (true, Some(solved)) = (place.depth == 0.0, &self.plan.whole.solved) {
+            solved.subcell.set_tractions_at_centres(self.friction, &mut self.fields);
+        }
         let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
         for cell in 0..self.fields[0].len() {
             let tensor = self.tensor(cell);
@@ -449,7 +452,71 @@ impl<'a, 'b> Planes<'a, 'b> {
                 shear.offer(0.5 * (first - last), cell);
             }
         }
-        ControlFlow::Continue([von_mises, tension, shear].map(|one| self.peak(one, place)))
+        let peaks = [von_mises, tension, shear].map(|one| self.peak(one, place));
+        if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
+    }
+
+    /// The peaks of the surface, or those at the edge of the contact where they are larger. Between the centres of cells
+    /// stresses at the surface fall off from the edge as the root of the distance.
+    fn with_edge(&mut self, mut peaks: [Peak; 3], place: &Place) -> ControlFlow<(), [Peak; 3]> {
+        let points = self.plan.edge_points();
+        let Some(at) = self.evaluation.point_stress(place) else {
+            return ControlFlow::Continue(peaks);
+        };
+        let ny = self.plan.whole.grid.shape()[1];
+        // Where the largest values are, from those in the cells of the edge.
+        let in_cells =
+            points.iter().map(|point| three(&self.tensor(point.cell[0] * ny + point.cell[1])));
+        let in_cells: Vec<_> = in_cells.collect();
+        let mut known: Vec<Option<[f64; 3]>> = vec![None; points.len()];
+        let (residual, part) = (self.residual[place.layer], self.done as f64 / self.planned as f64);
+        let mut value = |k: usize, which: usize| -> ControlFlow<(), f64> {
+            if known[k].is_none() {
+                let mut told = |_| (self.progress)(part.min(1.0));
+                let mut sum = self.evaluation.at_point(place, &at, &points[k], &mut told)?;
+                sum[..2].iter_mut().for_each(|s| *s += residual);
+                known[k] = Some(three(&Tensor::new(sum)));
+            }
+            ControlFlow::Continue(known[k].map_or(f64::NEG_INFINITY, |values| values[which]))
+        };
+        let mut found = Vec::new();
+        for which in 0..3 {
+            let mut starts: Vec<usize> = (0..points.len()).collect();
+            starts.sort_by(|a, b| in_cells[*b][which].total_cmp(&in_cells[*a][which]));
+            starts.truncate(EDGE_STARTS);
+            let mut best: Option<(usize, f64)> = None;
+            for k in starts {
+                let value = value(k, which)?;
+                if best.is_none_or(|(_, largest)| value > largest) {
+                    best = Some((k, value));
+                }
+            }
+            let Some((mut k, mut largest)) = best else {
+                break;
+            };
+            let mut step = self.plan.whole.half_width() * FIRST_STEP_ALONG_EDGE;
+            let shortest =
+                0.5 * self.plan.whole.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
+            while step > shortest {
+                let mut moved = false;
+                for beside in self.plan.along_edge(&points, k, step) {
+                    let value = value(beside, which)?;
+                    if value > largest {
+                        (k, largest, moved) = (beside, value, true);
+                    }
+                }
+                if !moved {
+                    step *= 0.5;
+                }
+            }
+            found.push((which, largest, points[k]));
+        }
+        for (which, value, point) in found {
+            if value > peaks[which].value {
+                peaks[which] = self.peak_at(value, &point, place);
+            }
+        }
+        ControlFlow::Continue(peaks)
     }
 
     /// Extremes of the traction at `place`: the largest and the smallest σ_zz, and the largest √(σ_xz² + σ_yz²).
@@ -481,6 +548,18 @@ impl<'a, 'b> Planes<'a, 'b> {
         ControlFlow::Continue(self.peak(largest, below))
     }
 }
+
+/// Von Mises stress, largest principal stress and largest shear stress.
+fn three(tensor: &Tensor) -> [f64; 3] {
+    let [first, _, last] = tensor.principal();
+    [tensor.von_mises(), first, 0.5 * (first - last)]
+}
+
+/// Points of the edge from the cells with the largest values, at which a search along the edge starts.
+const EDGE_STARTS: usize = 4;
+
+/// First step of a search along the edge, in half-widths of the contact; steps are halved down to half a cell.
+const FIRST_STEP_ALONG_EDGE: f64 = 0.25;
 
 /// Depths below the top of a layer, in half-widths of the contact: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).

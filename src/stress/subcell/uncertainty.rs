@@ -28,7 +28,7 @@ use crate::compliance::response::interior::{Column, Place};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 
-use super::edge::{BAND, edge_distances};
+use super::edge::{BAND, around, edge_distances};
 use super::reconstruction::Reconstruction;
 
 // With these shares, the estimate is some three times the error (`tests/stress/resolution.rs`).
@@ -116,6 +116,11 @@ impl Uncertainty {
             (0..COUNT).map(wave).collect()
         };
         Self { shape, known, waves: grid.spacing().map(waves) }
+    }
+
+    /// Whether the pressure is known within a cell and those beside it.
+    pub(super) fn is_known_around(&self, cell: [usize; 2]) -> bool {
+        around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
     }
 
     /// Largest steps of `pressure` that are felt in the cells of `window`.
