@@ -117,7 +117,8 @@ pub(super) fn stress_summary(py: Python<'_>, of: Of, given: Given<'_>) -> PyResu
         yield_stress: by_layer(&given, "yield_stress", &body)?,
         strength: by_layer(&given, "strength", &body)?,
     };
-    let options = options(&given, &body)?;
+    let mut options = options(&given, &body)?;
+    options.refine = given.number("refine")?;
     let summary = watched(py, given.callable("progress")?, move |progress| {
         let options = options.watched(progress);
         match of {

@@ -97,7 +97,7 @@ impl<'a> PressureSource<'a> {
 
     /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
     /// reconstructed within cells, and while ends are planned; the rest is quick.
-    fn plan(
+    pub(super) fn plan(
         &self,
         threads: Option<usize>,
         progress: &mut StressProgress,

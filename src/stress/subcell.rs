@@ -127,7 +127,7 @@ impl SubcellStress {
         self.uncertainty.steps(&self.given, &self.margin.window(window))
     }
 
-    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
+    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells along x and along y, where the
     /// pressure has these steps.
     pub(super) fn uncertainty(
         &self,
@@ -135,7 +135,7 @@ impl SubcellStress {
         place: &Place,
         friction: [f64; 2],
         steps: LocalSteps,
-    ) -> f64 {
+    ) -> [f64; 2] {
         self.uncertainty.at(body, place, friction, steps)
     }
 

@@ -703,6 +703,7 @@ class Stressed:
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
+        refine: float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> StressSummary:
@@ -722,6 +723,12 @@ class Stressed:
             is not known.
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
+        refine : float, optional
+            Largest estimated error of the extremes, as a part of them, such as 0.05. A patch around
+            each place where the cells leave a larger one is solved again on finer cells, until
+            the error is below it or the patch has as many cells as the grid. By default the cells
+            of the grid are used. Not for `nacre.slide` and `nacre.roll`, periodic grids, surfaces
+            that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
             seconds.
@@ -734,7 +741,8 @@ class Stressed:
         Raises
         ------
         ValueError
-            If an argument is out of range, or the counterbody is rigid.
+            If an argument is out of range, or the counterbody is rigid; if there is nothing to
+            `refine` from.
         MemoryError
             If the grid does not fit.
 

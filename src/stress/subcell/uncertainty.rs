@@ -149,7 +149,7 @@ impl Uncertainty {
         LocalSteps([along, across])
     }
 
-    /// Estimated error \[Pa\] of the components of the stress at `place`, under pressure and `friction` times
+    /// Estimated errors \[Pa\] of the components of the stress at `place`, from waves along x and along y, under pressure and `friction` times
     /// it, where the pressure has these steps.
     pub(super) fn at(
         &self,
@@ -157,7 +157,7 @@ impl Uncertainty {
         place: &Place,
         friction: [f64; 2],
         LocalSteps(steps): LocalSteps,
-    ) -> f64 {
+    ) -> [f64; 2] {
         let friction = friction[0].hypot(friction[1]);
         let material = place.material;
         let error = |(steps, wave): (AxisSteps, &Wave)| {
@@ -177,9 +177,10 @@ impl Uncertainty {
             let in_plane = pairs.map(|(pressed, sheared)| pressed + friction * sheared);
             pressure * in_plane.fold(friction * twisted, f64::max)
         };
-        let waves = self.waves.iter().zip(steps);
-        let waves = waves.flat_map(|(waves, steps)| waves.iter().map(move |wave| (steps, wave)));
-        waves.map(error).fold(0.0, f64::max)
+        [0, 1].map(|axis| {
+            let waves = self.waves[axis].iter().map(|wave| error((steps[axis], wave)));
+            waves.fold(0.0, f64::max)
+        })
     }
 }
 
