@@ -194,7 +194,7 @@ impl Points {
         let cell =
             [0, 1].map(|axis| (position[axis].round().max(0.0) as usize).min(self.cells[axis] - 1));
         let within = [0, 1].map(|axis| position[axis] - cell[axis] as f64);
-        (within != [0.0; 2]).then_some(CellPoint { cell, within })
+        within.iter().any(|u| *u != 0.0).then_some(CellPoint { cell, within })
     }
 
     /// Number of values of a plane: of the cells, and of the two faces.

@@ -569,7 +569,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             ControlFlow::Continue(known[k].map_or(f64::NEG_INFINITY, |values| values[which]))
         };
         let mut found = Vec::new();
-        for which in 0..3 {
+        for which in [0, 1, 2] {
             let mut starts: Vec<usize> = (0..points.len()).collect();
             starts.sort_by(|a, b| in_cells[*b][which].total_cmp(&in_cells[*a][which]));
             starts.truncate(EDGE_STARTS);

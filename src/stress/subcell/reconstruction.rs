@@ -341,7 +341,7 @@ impl Cut {
 }
 
 /// Side of the smallest piece at a point, in cells. What pressure c √d adds within it to the stress of a traction is missed:
-/// (2/π) c √(2 s) of μ. With a side d of cells, that is 0.03 √(d/a) μ p0 for Hertz' pressure on a half-width a.
+/// (2/π) c √(2 s) of μ. With a side d of cells, that is 0.02 √(d/a) μ p0 for Hertz' pressure on a half-width a.
 pub(super) const SMALLEST_AT_POINT: f64 = 1.0 / 4096.0;
 
 /// Growth of steps away from a point. Uniform pressure on a step from d to 1.5 d makes the stress of c √d there by 0.7 % too large.
