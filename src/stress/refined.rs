@@ -17,8 +17,8 @@
 //!
 //! of which the difference is interpolated likewise: in bodies without ends it is the stress of p'. The method was derived here.
 //!
-//! The patch reaches two half-widths of the contact to each side of the place, and counts within one: at its border the
-//! pressure of the grid, which is uniform over cells, is at least a half-width away.
+//! A patch holds the places of extremes that are within a width of the contact. It counts within a quarter of the half-width of
+//! them and ends a half-width farther off, where the pressure of the grid follows, which is uniform over cells.
 
 use std::ops::ControlFlow;
 
@@ -39,8 +39,12 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::Surface;
 
-/// Half side of a patch, and of the part of it that counts, in half-widths of the contact.
-const REACH: [f64; 2] = [2.0, 1.0];
+/// Distance, in half-widths of the contact, within which extremes are found on one patch: from edge to edge.
+const NEAR: f64 = 2.0;
+
+/// Margins around the places of extremes, in half-widths of the contact: of the cells that count, as extremes may move, and of
+/// the patch.
+const MARGINS: [f64; 2] = [0.25, 1.25];
 
 /// Fewest cells of which a patch may have as many, however small the grid is.
 const FEWEST_CELLS: usize = 1 << 14;
@@ -234,16 +238,21 @@ impl Refined<'_> {
         let mut left = self.uncertain(&mut summary);
         while let Some(worst) = left.first().copied() {
             let places: Vec<_> = summary.peaks().into_iter().map(|peak| peak.map(|p| *p)).collect();
-            let centre = places[worst].map_or([0.0; 3], |peak| peak.position);
-            let inner = self.window(centre, REACH[1] * half_width);
-            let is_inside = |which: &usize| {
-                let at = places[*which].map_or([f64::NAN; 3], |peak| peak.position);
-                [0, 1].into_iter().all(|axis| inner[axis].contains(&self.cell(axis, at[axis])))
+            let at = |which: usize| places[which].map_or([0.0; 3], |peak| peak.position);
+            let is_near = |which: &usize| {
+                let far = |axis: usize| (at(*which)[axis] - at(worst)[axis]).abs();
+                far(0).max(far(1)) <= NEAR * half_width
             };
-            let (here, others): (Vec<usize>, Vec<usize>) =
-                left.into_iter().partition(|which| *which == worst || is_inside(which));
+            let (here, others): (Vec<usize>, Vec<usize>) = left.into_iter().partition(is_near);
             left = others;
-            let window = self.window(centre, REACH[0] * half_width);
+            let around = |reach: f64| {
+                let windows = here.iter().map(|which| self.window(at(*which), reach * half_width));
+                windows.fold(self.window(at(worst), 0.0), |a, b| {
+                    [0, 1]
+                        .map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
+                })
+            };
+            let (inner, window) = (around(MARGINS[0]), around(MARGINS[1]));
             let rows = Span::of(body, self.solution.grid()).rows;
             let is_whole = rows.start <= window[0].start && window[0].end <= rows.end;
             let at_end = body.ends() != [None; 2]
