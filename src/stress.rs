@@ -39,6 +39,7 @@ mod field;
 mod half_space;
 mod options;
 mod plan;
+mod refined;
 mod section;
 mod subcell;
 mod summary;
@@ -135,17 +136,23 @@ impl Solution {
     }
 
     /// Peaks in each layer and tractions at each interface of one of the bodies, compared with
-    /// `strengths`; see [`StressPlan::summary`]. The pressure is that of [`Solution::stress`].
+    /// `strengths`; see [`StressPlan::summary`]. The pressure is that of [`Solution::stress`]. With
+    /// [`StressOptions::refine`], extremes that are more uncertain are found on finer cells around them.
     ///
     /// # Errors
-    /// As [`Solution::stress`], and a strength that is not finite and above 0.
+    /// As [`Solution::stress`], and a strength that is not finite and above 0. With `refine`, one that is not between 0 and
+    /// 1, a periodic grid, a surface that has yielded, given coefficients, and a patch that does not converge.
     pub fn stress_summary<'a>(
         &self,
         member: Member,
         strengths: &Strengths,
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressSummary> {
-        summary_once(&self.source(member)?, strengths, options.into())
+        let asked = options.into();
+        match asked.options().refine {
+            Some(target) => self.refined_summary(member, strengths, target, asked),
+            None => summary_once(&self.source(member)?, strengths, asked),
+        }
     }
 
     /// A plan of the stress in one of the bodies, evaluated any number of times without planning again. The pressure is

@@ -516,6 +516,8 @@ class FrictionSteps:
 class StressPlan:
     @property
     def body(self) -> HalfSpace: ...
+    @property
+    def edge(self) -> _Field: ...
 
 @final
 class Convolution:

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,6 +33,12 @@ impl PyStressPlan {
     #[getter]
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace(self.0.body().clone())
+    }
+
+    /// Points of the edge of the contact (n, 2).
+    #[getter]
+    fn edge<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        Array2::from(self.0.edge()).into_pyarray(py)
     }
 }
 
@@ -109,7 +117,8 @@ pub(super) fn stress_summary(py: Python<'_>, of: Of, given: Given<'_>) -> PyResu
         yield_stress: by_layer(&given, "yield_stress", &body)?,
         strength: by_layer(&given, "strength", &body)?,
     };
-    let options = options(&given, &body)?;
+    let mut options = options(&given, &body)?;
+    options.refine = given.number("refine")?;
     let summary = watched(py, given.callable("progress")?, move |progress| {
         let options = options.watched(progress);
         match of {

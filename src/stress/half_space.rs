@@ -103,6 +103,11 @@ impl Loading {
     fn components(&self) -> usize {
         components(self.displacement)
     }
+
+    /// μ times the unit vector of the traction.
+    pub(super) fn friction(&self) -> [f64; 2] {
+        self.friction
+    }
 }
 
 /// Number of components: six stresses, and three displacements where they are asked for.
@@ -186,8 +191,25 @@ impl HalfSpacePlan {
     ) -> Option<Array1<f64>> {
         let subcell = &self.solved.as_ref()?.subcell;
         let steps = subcell.steps(window);
-        let error = |place: &Place| subcell.uncertainty(&self.body, place, friction, steps);
+        let error = |place: &Place| {
+            let [along, across] = subcell.uncertainty(&self.body, place, friction, steps);
+            along.max(across)
+        };
         Some(places.iter().map(error).collect())
+    }
+
+    /// Those errors at one place, from the size of the cells along x and along y.
+    pub(super) fn uncertainties_by_axis(
+        &self,
+        place: &Place,
+        friction: [f64; 2],
+        window: &Window,
+    ) -> [f64; 2] {
+        let of = |solved: &SolvedPressure| {
+            let steps = solved.subcell.steps(window);
+            solved.subcell.uncertainty(&self.body, place, friction, steps)
+        };
+        self.solved.as_ref().map_or([0.0; 2], of)
     }
 
     /// Pressure that is taken as uniform over cells for stresses.

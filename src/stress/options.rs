@@ -59,6 +59,10 @@ pub struct StressOptions {
     pub residual: Vec<f64>,
     /// Whether displacements are evaluated too. Default: no.
     pub displacement: bool,
+    /// Largest estimated error of the extremes of a [`Solution::stress_summary`](crate::Solution::stress_summary), as a part of
+    /// them, above 0 and below 1: places where the cells leave a larger one are solved again on finer cells. Fields have no use
+    /// for it. Default: none, the cells of the grid.
+    pub refine: Option<f64>,
     /// Threads of the plan that a single call makes. An evaluation of a
     /// [`StressPlan`](crate::StressPlan) uses the plan's threads instead. Default: all of the
     /// machine's.
@@ -74,6 +78,7 @@ impl Default for StressOptions {
             direction: None,
             residual: Vec::new(),
             displacement: false,
+            refine: None,
             threads: None,
         }
     }

@@ -12,7 +12,7 @@ use super::half_space::{
 };
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
-use super::subcell::{BodyPair, STRESSES, SubcellStress};
+use super::subcell::{BodyPair, CellPoint, PointStress, STRESSES, SubcellStress};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
@@ -97,7 +97,7 @@ impl<'a> PressureSource<'a> {
 
     /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
     /// reconstructed within cells, and while ends are planned; the rest is quick.
-    fn plan(
+    pub(super) fn plan(
         &self,
         threads: Option<usize>,
         progress: &mut StressProgress,
@@ -250,6 +250,49 @@ impl StressPlan {
         Some(cells.map_or(ends.clone(), |cells| cells + &ends))
     }
 
+    /// Points (x, y) of the smooth edge of a solved contact, at most one in a cell, in the order of the grid. There
+    /// the stress that friction and pressure make at the surface has a kink, and its largest values:
+    /// [`Section::Axis`](crate::Section::Axis) gives them. Empty where the edge is not known within cells: sharp edges, rough
+    /// surfaces, contacts of few cells, coatings as thick as a cell, pressures that were given, and periodic grids.
+    pub fn edge(&self) -> Vec<[f64; 2]> {
+        self.edge_points().iter().map(|point| self.position(point)).collect()
+    }
+
+    /// Coordinates x and y of a point.
+    pub(super) fn position(&self, point: &CellPoint) -> [f64; 2] {
+        let grid = &self.whole.grid;
+        let (centres, spacing) = ([grid.x(), grid.y()], grid.spacing());
+        [0, 1].map(|axis| centres[axis][point.cell[axis]] + point.within[axis] * spacing[axis])
+    }
+
+    /// Numbers of the `points` of the edge that are nearest to places a `step` away from one of them, to both sides along
+    /// the edge.
+    pub(super) fn along_edge(&self, points: &[CellPoint], from: usize, step: f64) -> Vec<usize> {
+        let Some(solved) = &self.whole.solved else { return Vec::new() };
+        let Some([tx, ty]) = solved.subcell.tangent(&points[from]) else { return Vec::new() };
+        let [x, y] = self.position(&points[from]);
+        let nearest = |[x, y]: [f64; 2]| {
+            let far = |k: &usize| {
+                let at = self.position(&points[*k]);
+                (at[0] - x).hypot(at[1] - y)
+            };
+            (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
+        };
+        let places = [step, -step].map(|step| [x + step * tx, y + step * ty]);
+        places.into_iter().filter_map(nearest).filter(|k| *k != from).collect()
+    }
+
+    /// Points of the edge that the body has.
+    pub(super) fn edge_points(&self) -> Vec<CellPoint> {
+        let solved = self.whole.solved.as_ref();
+        let mut points = solved.map_or_else(Vec::new, |solved| solved.subcell.edge());
+        points.retain(|point| {
+            let row = point.cell[0];
+            self.span.rows.contains(&row) && self.span.has(row as f64 + point.within[0])
+        });
+        points
+    }
+
     /// The body.
     pub fn body(&self) -> &HalfSpace {
         &self.whole.body
@@ -314,6 +357,34 @@ impl<'a> Evaluation<'a> {
             }
         }
         ControlFlow::Continue(sums)
+    }
+
+    /// Stresses at `place` below a point of a solved contact, of which `at` gives those of the whole half-space. What free ends
+    /// and known tractions add is interpolated between the centres of cells.
+    pub(super) fn at_point(
+        &self,
+        place: &Place,
+        at: &PointStress,
+        point: &CellPoint,
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), [f64; STRESSES]> {
+        progress(0.0)?;
+        let plan = self.plan;
+        let mut sum = plan.whole.threads.run(|| at.at(point));
+        let around = plan.span.around(point, plan.whole.grid.shape());
+        for part in &plan.parts {
+            for (cell, weight) in &around {
+                let mut found = [[0.0; COMPONENTS]];
+                part.points(place, false, &[*cell], &mut found, progress)?;
+                sum.iter_mut().zip(found[0]).for_each(|(sum, value)| *sum += weight * value);
+            }
+        }
+        ControlFlow::Continue(sum)
+    }
+
+    /// What gives stresses at `place` of the whole half-space below any point of a solved contact.
+    pub(super) fn point_stress(&self, place: &Place) -> Option<PointStress<'a>> {
+        self.plan.whole.point_stress(place, self.loading.friction())
     }
 
     /// The components at `place` on the face of an end that lies between the rows `row` − 1 and `row`, for each of them
@@ -485,6 +556,8 @@ impl<'a> Request<'a> {
     }
 
     /// Evaluates a single point, which needs no other cells than those that it is interpolated from.
+    ///
+    /// In a solved contact stresses are those at the point itself: between centres they may have a kink at the edge.
     fn fill_point(
         &self,
         evaluation: &Evaluation,
@@ -497,6 +570,16 @@ impl<'a> Request<'a> {
         for (k, value) in here.iter_mut().enumerate() {
             let parts = found.iter().zip(&weights);
             value[0] = parts.map(|(components, weight)| weight * components[k]).sum();
+        }
+        let known = |point: &CellPoint| {
+            let solved = evaluation.plan.whole.solved.as_ref();
+            solved.is_some_and(|solved| solved.subcell.has_point(point))
+        };
+        if let Some(point) = self.points.between().filter(known)
+            && let Some(at) = evaluation.point_stress(place)
+        {
+            let found = evaluation.at_point(place, &at, &point, progress)?;
+            here.iter_mut().zip(found).for_each(|(value, found)| value[0] = found);
         }
         ControlFlow::Continue(())
     }

@@ -6,6 +6,7 @@ use ndarray::Array1;
 
 use super::half_space::MAGNITUDES;
 use super::options::{Section, Side};
+use super::subcell::CellPoint;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result, finite, not_negative, require};
 use crate::model::body::{HalfSpace, Substrate};
@@ -185,6 +186,22 @@ impl Points {
         pairs.filter(|(_, weight)| *weight != 0.0).collect()
     }
 
+    /// A single point that is not the centre of a cell, in its cell; none for other points, and for those on the face of an end.
+    pub(super) fn between(&self) -> Option<CellPoint> {
+        if self.shape != [1; 2] || self.face().is_some() {
+            return None;
+        }
+        let position = |axis: usize| {
+            self.interpolation[axis]
+                .map_or(0.0, |at| at.lower as f64 + (at.upper as f64 - at.lower as f64) * at.weight)
+        };
+        let position = [position(0), position(1)];
+        let cell =
+            [0, 1].map(|axis| (position[axis].round().max(0.0) as usize).min(self.cells[axis] - 1));
+        let within = [0, 1].map(|axis| position[axis] - cell[axis] as f64);
+        within.iter().any(|u| *u != 0.0).then_some(CellPoint { cell, within })
+    }
+
     /// Number of values of a plane: of the cells, and of the two faces.
     pub(super) fn of_plane(&self) -> usize {
         (self.cells[0] + 2) * self.cells[1]
@@ -287,6 +304,29 @@ impl Span {
     /// Whether the body is at the place `at`, in rows.
     pub(super) fn has(&self, at: f64) -> bool {
         (self.reach[0]..=self.reach[1]).contains(&at)
+    }
+
+    /// The cells of the body around a point, and their weights in a linear interpolation along both axes.
+    pub(super) fn around(
+        &self,
+        CellPoint { cell, within }: &CellPoint,
+        shape: [usize; 2],
+    ) -> Vec<([usize; 2], f64)> {
+        let along = |axis: usize| {
+            let ends = if axis == 0 { self.rows.clone() } else { 0..shape[1] };
+            let beside = cell[axis].checked_add_signed(if within[axis] < 0.0 { -1 } else { 1 });
+            match beside.filter(|beside| ends.contains(beside)) {
+                Some(beside) => {
+                    let weight = within[axis].abs();
+                    vec![(cell[axis], 1.0 - weight), (beside, weight)]
+                }
+                None => vec![(cell[axis], 1.0)],
+            }
+        };
+        let (rows, columns) = (along(0), along(1));
+        let pairs =
+            rows.iter().flat_map(|(i, wx)| columns.iter().map(move |(j, wy)| ([*i, *j], wx * wy)));
+        pairs.filter(|(_, weight)| *weight != 0.0).collect()
     }
 
     /// Makes the values of a `plane` NaN where there is no body.

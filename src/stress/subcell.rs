@@ -51,6 +51,9 @@
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
 
 use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
 use crate::compliance::kernel::plane::{Kernel, Kernels};
@@ -66,9 +69,9 @@ mod near;
 mod reconstruction;
 mod uncertainty;
 
+pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
-pub(super) use near::{NearTable, STRESSES};
-use reconstruction::Cuts;
+use reconstruction::{Cuts, SMALLEST_AT_POINT};
 pub(super) use uncertainty::BodyPair;
 use uncertainty::{LocalSteps, Uncertainty};
 
@@ -77,6 +80,8 @@ use uncertainty::{LocalSteps, Uncertainty};
 #[derive(Debug)]
 pub(super) struct SubcellStress {
     kernels: Kernels,
+    /// Kernels down to the smallest pieces at a point, made at the first.
+    point_kernels: OnceLock<Kernels>,
     near: NearPlan,
     uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
@@ -111,6 +116,7 @@ impl SubcellStress {
             uniform: margin.middle(&near.reconstruction.uniform),
             margin,
             kernels,
+            point_kernels: OnceLock::new(),
             uncertainty,
             near,
             given: pressure.to_vec(),
@@ -122,7 +128,7 @@ impl SubcellStress {
         self.uncertainty.steps(&self.given, &self.margin.window(window))
     }
 
-    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
+    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells along x and along y, where the
     /// pressure has these steps.
     pub(super) fn uncertainty(
         &self,
@@ -130,7 +136,7 @@ impl SubcellStress {
         place: &Place,
         friction: [f64; 2],
         steps: LocalSteps,
-    ) -> f64 {
+    ) -> [f64; 2] {
         self.uncertainty.at(body, place, friction, steps)
     }
 
@@ -145,40 +151,51 @@ impl SubcellStress {
         if !self.near.reaches(place.depth) {
             return NearTable::default();
         }
-        let [fx, fy] = friction;
-        let none = [0.0; COMPONENTS];
-        let sum = |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
-            std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
-        };
-        match &self.kernels {
-            Kernels::Line(plan) => {
-                let normal = plan.strips::<6, strip::StripPressure>(place);
-                let along = (fx != 0.0).then(|| plan.strips::<3, strip::StripAlong>(place));
-                let across = (fy != 0.0).then(|| plan.strips::<6, strip::StripAcross>(place));
-                self.near.table(place.depth, |[_, y], [_, half]| {
-                    let along = along.as_ref().map_or(none, |strips| strips.at(y, half));
-                    let across = across.as_ref().map_or(none, |strips| strips.at(y, half));
-                    sum(normal.at(y, half), along, across)
-                })
-            }
-            Kernels::Plane(plan) => {
-                let slides = fx != 0.0 || fy != 0.0;
-                let normal = Kernel::new::<PressureStress>(plan, place);
-                let lateral = slides.then(|| Kernel::new::<TractionStress>(plan, place));
-                self.near.table(place.depth, |[x, y], [a, b]| -> Components {
-                    let pressed = normal.at::<PressureStress>([x, y], [a, b]);
-                    let Some(lateral) = &lateral else {
-                        return sum(pressed, none, none);
-                    };
-                    let stresses = |at, half| lateral.at::<TractionStress>(at, half);
-                    let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
-                    // Traction along y is traction along x with both exchanged.
-                    let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
-                    let across = across.map(|values| EXCHANGED.map(|k| values[k]));
-                    sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
-                })
+        self.near.table(place.depth, rectangle_stress(&self.kernels, place, friction))
+    }
+
+    /// Points of the edge of the contact, at most one in a cell; none where the grid repeats.
+    pub(super) fn edge(&self) -> Vec<CellPoint> {
+        if self.margin.is_empty() { self.near.edge() } else { Vec::new() }
+    }
+
+    /// Unit vector along the edge at one of its points; none where it has no direction, as in line contact.
+    pub(super) fn tangent(&self, point: &CellPoint) -> Option<[f64; 2]> {
+        self.near.tangent(point)
+    }
+
+    /// Sets the tractions at the surface, in the cells near an edge, to those at their centres: a cell that the edge crosses has
+    /// the mean of a pressure that is larger on one side of it.
+    pub(super) fn set_tractions_at_centres(&self, friction: [f64; 2], stresses: &mut [Vec<f64>]) {
+        if !self.margin.is_empty() {
+            return;
+        }
+        for (cell, p) in self.near.central_pressures() {
+            for (k, factor) in tractions(friction) {
+                stresses[k][cell] = -factor * p;
             }
         }
+    }
+
+    /// Whether the pressure around a point is known within cells, and its stress with it.
+    pub(super) fn has_point(&self, point: &CellPoint) -> bool {
+        self.margin.is_empty() && self.uncertainty.is_known_around(point.cell)
+    }
+
+    /// What gives stresses at `place` below any point of a grid that does not repeat.
+    pub(super) fn point_stress<'a>(
+        &'a self,
+        (body, grid): (&HalfSpace, &'a Grid),
+        place: &Place,
+        friction: [f64; 2],
+        threads: &Threads,
+    ) -> PointStress<'a> {
+        let [lx, ly] = grid.size();
+        // Not on the threads: one that waits for the kernels cannot be asked to make them.
+        let kernels = || threads.run(|| Kernels::new(body, grid, SMALLEST_AT_POINT, lx.hypot(ly)));
+        let kernels = self.point_kernels.get_or_init(kernels);
+        let stress = threads.run(|| rectangle_stress(kernels, place, friction));
+        PointStress { subcell: self, grid, depth: place.depth, friction, stress }
     }
 
     /// Adds the stresses of a table to those of the uniform part, one plane of each component; at the
@@ -210,6 +227,105 @@ impl SubcellStress {
             for (k, factor) in tractions(friction) {
                 stresses[k] = -factor * p;
             }
+        }
+    }
+}
+
+/// Stresses at (x, y) from the centre of a rectangle of half sides (a, b).
+type RectangleStress<'a> = Box<dyn Fn([f64; 2], [f64; 2]) -> Components + Send + Sync + 'a>;
+
+/// Stresses at one depth below any point.
+pub(super) struct PointStress<'a> {
+    subcell: &'a SubcellStress,
+    grid: &'a Grid,
+    depth: f64,
+    friction: [f64; 2],
+    stress: RectangleStress<'a>,
+}
+
+impl PointStress<'_> {
+    /// Stresses below a point: a sum over all loaded cells, and over the pieces of those nearby, ever finer towards the
+    /// point. On the threads of the caller.
+    pub(super) fn at(&self, point: &CellPoint) -> Components {
+        let Self { subcell, stress, .. } = self;
+        // No piece may end at the point itself.
+        let farthest = 0.5 - SMALLEST_AT_POINT;
+        let within = point.within.map(|u| u.clamp(-farthest, farthest));
+        let point = &CellPoint { within, ..*point };
+        let ([nx, ny], spacing) = (self.grid.shape(), self.grid.spacing());
+        let half = spacing.map(|d| 0.5 * d);
+        let row = |i: usize| {
+            let mut sum = [0.0; STRESSES];
+            let pressures = subcell.uniform[i * ny..(i + 1) * ny].iter().enumerate();
+            for (j, p) in pressures.filter(|(_, p)| **p != 0.0) {
+                let from = [0, 1].map(|axis| {
+                    let cells = point.cell[axis] as f64 - [i, j][axis] as f64;
+                    (cells + point.within[axis]) * spacing[axis]
+                });
+                let values = stress(from, half);
+                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += p * value);
+            }
+            sum
+        };
+        let rows: Vec<Components> = (0..nx).into_par_iter().map(row).collect();
+        // In the order of the rows, whatever the number of threads.
+        let mut sum = rows.into_iter().fold([0.0; STRESSES], added);
+        if subcell.near.reaches(self.depth) {
+            sum = added(sum, subcell.near.sum_at_point(point, self.depth, stress));
+        }
+        if self.depth == 0.0 {
+            let mean = subcell.given[subcell.near.number(point.cell)];
+            let p = subcell.near.pressure_at(point, mean);
+            for (k, factor) in tractions(self.friction) {
+                sum[k] = -factor * p;
+            }
+        }
+        sum
+    }
+}
+
+fn added(a: Components, b: Components) -> Components {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// Stresses at `place`, at (x, y) from the centre of a rectangle of half sides (a, b) under unit pressure and `friction`
+/// times it. On the threads of the caller.
+fn rectangle_stress<'a>(
+    kernels: &'a Kernels,
+    place: &Place,
+    [fx, fy]: [f64; 2],
+) -> RectangleStress<'a> {
+    let none = [0.0; COMPONENTS];
+    let sum = move |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
+        std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
+    };
+    match kernels {
+        Kernels::Line(plan) => {
+            let normal = plan.strips::<6, strip::StripPressure>(place);
+            let along = (fx != 0.0).then(|| plan.strips::<3, strip::StripAlong>(place));
+            let across = (fy != 0.0).then(|| plan.strips::<6, strip::StripAcross>(place));
+            Box::new(move |[_, y], [_, half]| {
+                let along = along.as_ref().map_or(none, |strips| strips.at(y, half));
+                let across = across.as_ref().map_or(none, |strips| strips.at(y, half));
+                sum(normal.at(y, half), along, across)
+            })
+        }
+        Kernels::Plane(plan) => {
+            let slides = fx != 0.0 || fy != 0.0;
+            let normal = Kernel::new::<PressureStress>(plan, place);
+            let lateral = slides.then(|| Kernel::new::<TractionStress>(plan, place));
+            Box::new(move |[x, y], [a, b]| {
+                let pressed = normal.at::<PressureStress>([x, y], [a, b]);
+                let Some(lateral) = &lateral else {
+                    return sum(pressed, none, none);
+                };
+                let stresses = |at, half| lateral.at::<TractionStress>(at, half);
+                let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
+                // Traction along y is traction along x with both exchanged.
+                let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
+                let across = across.map(|values| EXCHANGED.map(|k| values[k]));
+                sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
+            })
         }
     }
 }

@@ -6,9 +6,11 @@ use super::field::{Peak, Percent, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
+use super::refined::Beside;
+use super::subcell::CellPoint;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
-use crate::error::{Result, positive};
+use crate::error::{Result, positive, refuse_if};
 use crate::model::body::{HalfSpace, Layer};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::{check_memory, memory_of};
@@ -102,8 +104,7 @@ impl StressSummary {
     /// Warnings about what the cells do not resolve: layers and interfaces whose extremes have an estimated
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
-        let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
-        let negligible = NEGLIGIBLE_ERROR * peaks.fold(0.0, f64::max);
+        let negligible = self.negligible_error();
         let unresolved = |peaks: &[(&str, &Peak)]| -> Option<String> {
             let ratio = |(name, peak): &(&str, &Peak)| {
                 let error = peak.uncertainty.filter(|error| *error > negligible)?;
@@ -139,6 +140,64 @@ impl StressSummary {
     }
 }
 
+impl StressSummary {
+    /// Error below which an extreme counts as known.
+    pub(super) fn negligible_error(&self) -> f64 {
+        let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
+        NEGLIGIBLE_ERROR * peaks.fold(0.0, f64::max)
+    }
+
+    /// All extremes, those of the layers first; none for a jump on a rigid base, and for what is no tension.
+    pub(super) fn peaks(&mut self) -> Vec<Option<&mut Peak>> {
+        let tension = |peak: &&mut Peak| peak.value > 0.0;
+        let layers = self.layers.iter_mut().flat_map(|layer| {
+            let LayerSummary { von_mises, tension: pulled, shear, .. } = layer;
+            [Some(von_mises), Some(pulled).filter(tension), Some(shear)]
+        });
+        let interfaces = self.interfaces.iter_mut().flat_map(|face| {
+            let InterfaceSummary { tension: pulled, compression, shear, jump, .. } = face;
+            let pulled = Some(pulled).filter(tension);
+            [pulled, Some(compression), Some(shear), jump.as_mut()]
+        });
+        layers.chain(interfaces).collect()
+    }
+
+    /// Sets the safety factors anew.
+    pub(super) fn compare(&mut self, strengths: &Strengths) {
+        self.layers.iter_mut().for_each(|layer| layer.compare(strengths));
+    }
+}
+
+/// The place of an extreme of [`StressSummary::peaks`] with this number, in a body of these layers.
+pub(super) fn place_of(body: &HalfSpace, which: usize, peak: Peak) -> Place {
+    let depth = peak.position[2];
+    let substrate = usize::from(substrate_material(body).is_some());
+    let count = body.layers().len();
+    let (layer, is_below) = match which.checked_sub(3 * (count + substrate)) {
+        None => (which / 3, false),
+        Some(which) if which % 4 == 3 => (which / 4 + 1, true),
+        Some(which) => (which / 4, false),
+    };
+    let top: f64 = body.layers()[..layer.min(count)].iter().map(Layer::thickness).sum();
+    let below_top = if is_below { 0.0 } else { (depth - top).max(0.0) };
+    let own = body.layers().get(layer).map(Layer::material);
+    let material = own.or(substrate_material(body)).unwrap_or(body.layers()[count - 1].material());
+    Place { layer, below_top, depth, material }
+}
+
+impl LayerSummary {
+    /// Sets the safety factors, where the strengths are known.
+    fn compare(&mut self, strengths: &Strengths) {
+        let [yield_stress, strength] = strengths.of_layer(self.layer);
+        let factor = |strength: Option<f64>, peak: Peak| {
+            let strength = strength.filter(|_| peak.value > 0.0);
+            strength.map(|strength| strength / peak.value)
+        };
+        self.yield_safety_factor = factor(yield_stress, self.von_mises);
+        self.strength_safety_factor = factor(strength, self.tension);
+    }
+}
+
 /// How many times a peak inside a layer is refined by a parabola.
 const REFINEMENTS: usize = 3;
 
@@ -162,7 +221,12 @@ impl StressPlan {
         let request =
             SummaryRequest::checked(body, grid, &self.sliding, strengths, asked.options())?;
         check_memory(grid.shape(), request.memory)?;
-        Ok(request.evaluate(self, &mut |part| asked.tell(part)))
+        refuse_if(
+            asked.options().refine.is_some(),
+            "refine must be None where the tractions of a contact are known, and in the summary of a plan: \
+             Solution.stress_summary of a contact without friction solves finer cells",
+        )?;
+        Ok(request.evaluate(self, None, self.whole.half_width(), &mut |part| asked.tell(part)))
     }
 }
 
@@ -174,13 +238,14 @@ pub(super) fn summary_once(
 ) -> Result<StressSummary> {
     let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
     let request = SummaryRequest::checked(body, grid, sliding, strengths, asked.options())?;
-    let evaluate =
-        |plan: &StressPlan, progress: &mut StressProgress| request.evaluate(plan, progress);
+    let evaluate = |plan: &StressPlan, progress: &mut StressProgress| {
+        request.evaluate(plan, None, plan.whole.half_width(), progress)
+    };
     Ok(source.once(asked, request.memory, evaluate)?.unwrap_or_default())
 }
 
 /// Arguments of one summary, checked.
-struct SummaryRequest<'a> {
+pub(super) struct SummaryRequest<'a> {
     strengths: &'a Strengths,
     /// Residual stress of each layer and of the substrate.
     residual: Vec<f64>,
@@ -208,7 +273,7 @@ impl Strengths {
 }
 
 impl<'a> SummaryRequest<'a> {
-    fn checked(
+    pub(super) fn checked(
         body: &HalfSpace,
         grid: &Grid,
         sliding: &SlidingSense,
@@ -226,12 +291,20 @@ impl<'a> SummaryRequest<'a> {
         })
     }
 
-    fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
+    /// The summary of a plan, at depths for a contact of this half-width. `beside` has what the plan's stress lacks.
+    pub(super) fn evaluate(
+        &self,
+        plan: &StressPlan,
+        beside: Option<Beside<'_>>,
+        half_width: f64,
+        progress: &mut StressProgress,
+    ) -> StressSummary {
         let body = &plan.whole.body;
-        let regions = regions(body, plan.whole.half_width());
+        let regions = regions(body, half_width);
         let in_layers = regions.iter().map(|region| region.len() + 3 * REFINEMENTS);
         let planned = in_layers.sum::<usize>() + body.layers().len();
-        let mut planes = Planes::new(plan, self.friction, &self.residual, planned, progress);
+        let mut planes =
+            Planes::new(plan, beside, self.friction, &self.residual, planned, progress);
         let mut summary = StressSummary::default();
         if self.fill(&regions, &mut planes, &mut summary).is_continue() {
             summary.finished = true;
@@ -295,21 +368,18 @@ fn layer(
     let layer = region[0].layer;
     let own = body.layers().get(layer);
     let thickness = own.map(Layer::thickness);
-    let [yield_stress, strength] = strengths.of_layer(layer);
-    let factor = |strength: Option<f64>, peak: Peak| {
-        let strength = strength.filter(|_| peak.value > 0.0);
-        strength.map(|strength| strength / peak.value)
-    };
-    ControlFlow::Continue(LayerSummary {
+    let mut summary = LayerSummary {
         layer,
         name: own.and_then(Layer::name).map(String::from),
         depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
-        yield_safety_factor: factor(yield_stress, von_mises),
-        strength_safety_factor: factor(strength, tension),
+        yield_safety_factor: None,
+        strength_safety_factor: None,
         von_mises,
         tension,
         shear,
-    })
+    };
+    summary.compare(strengths);
+    ControlFlow::Continue(summary)
 }
 
 /// Summary of the interface below `layer`, which has the `number`.
@@ -347,6 +417,7 @@ fn interface(
 /// The plane of stress that was evaluated last, and what evaluates the next.
 struct Planes<'a, 'b> {
     plan: &'a StressPlan,
+    beside: Option<Beside<'a>>,
     friction: [f64; 2],
     residual: &'a [f64],
     evaluation: Evaluation<'a>,
@@ -381,6 +452,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// many of those `planned` are done.
     fn new(
         plan: &'a StressPlan,
+        beside: Option<Beside<'a>>,
         friction: [f64; 2],
         residual: &'a [f64],
         planned: usize,
@@ -389,6 +461,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         let cells = plan.whole.grid.shape().iter().product();
         Self {
             plan,
+            beside,
             friction,
             residual,
             evaluation: Evaluation::new(plan, friction, false),
@@ -406,6 +479,9 @@ impl<'a, 'b> Planes<'a, 'b> {
         let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
+        if let Some(beside) = &mut self.beside {
+            beside.add(place, &self.plan.whole.grid, &mut self.fields, &mut progress)?;
+        }
         let residual = self.residual[place.layer];
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
@@ -414,30 +490,41 @@ impl<'a, 'b> Planes<'a, 'b> {
         ControlFlow::Continue(())
     }
 
+    /// Numbers of the cells that count.
+    fn cells(&self) -> Vec<usize> {
+        let ny = self.plan.whole.grid.shape()[1];
+        let counts = |cell: &usize| {
+            self.beside.as_ref().is_none_or(|beside| beside.has([cell / ny, cell % ny]))
+        };
+        (0..self.fields[0].len()).filter(counts).collect()
+    }
+
     fn tensor(&self, cell: usize) -> Tensor {
         Tensor::new(self.fields.each_ref().map(|field| field[cell]))
     }
 
-    fn peak(&self, largest: Largest, place: &Place) -> Peak {
-        let grid = &self.plan.whole.grid;
-        let ny = grid.shape()[1];
-        let Largest { value, cell } = largest;
-        let [i, j] = [cell / ny, cell % ny];
-        let window = [i..i + 1, j..j + 1];
+    fn peak(&self, Largest { value, cell }: Largest, place: &Place) -> Peak {
+        let ny = self.plan.whole.grid.shape()[1];
+        let centre = CellPoint { cell: [cell / ny, cell % ny], within: [0.0; 2] };
+        self.peak_at(value, &centre, place)
+    }
+
+    fn peak_at(&self, value: f64, point: &CellPoint, place: &Place) -> Peak {
+        let [x, y] = self.plan.position(point);
+        let window = point.cell.map(|cell| cell..cell + 1);
         let places = std::slice::from_ref(place);
         let error = self.plan.uncertainties(places, self.friction, &window);
-        Peak {
-            value,
-            position: [grid.x()[i], grid.y()[j], place.depth],
-            uncertainty: error.map(|errors| errors[0]),
-        }
+        Peak { value, position: [x, y, place.depth], uncertainty: error.map(|errors| errors[0]) }
     }
 
     /// The largest von Mises stress, principal stress and shear stress at `place`.
     fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
         self.evaluate(place)?;
+        if let (true, Some(solved)) = (place.depth == 0.0, &self.plan.whole.solved) {
+            solved.subcell.set_tractions_at_centres(self.friction, &mut self.fields);
+        }
         let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
-        for cell in 0..self.fields[0].len() {
+        for cell in self.cells() {
             let tensor = self.tensor(cell);
             let mises = tensor.von_mises();
             von_mises.offer(mises, cell);
@@ -449,14 +536,83 @@ impl<'a, 'b> Planes<'a, 'b> {
                 shear.offer(0.5 * (first - last), cell);
             }
         }
-        ControlFlow::Continue([von_mises, tension, shear].map(|one| self.peak(one, place)))
+        let peaks = [von_mises, tension, shear].map(|one| self.peak(one, place));
+        if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
+    }
+
+    /// The peaks of the surface, or those at the edge of the contact where they are larger. Between the centres of cells
+    /// stresses at the surface fall off from the edge as the root of the distance.
+    fn with_edge(&mut self, mut peaks: [Peak; 3], place: &Place) -> ControlFlow<(), [Peak; 3]> {
+        let mut points = self.plan.edge_points();
+        points.retain(|point| self.beside.as_ref().is_none_or(|beside| beside.has(point.cell)));
+        let Some(at) = self.evaluation.point_stress(place) else {
+            return ControlFlow::Continue(peaks);
+        };
+        let ny = self.plan.whole.grid.shape()[1];
+        // Where the largest values are, from those in the cells of the edge.
+        let in_cells =
+            points.iter().map(|point| three(&self.tensor(point.cell[0] * ny + point.cell[1])));
+        let in_cells: Vec<_> = in_cells.collect();
+        let mut known: Vec<Option<[f64; 3]>> = vec![None; points.len()];
+        let (residual, part) = (self.residual[place.layer], self.done as f64 / self.planned as f64);
+        let mut value = |k: usize, which: usize| -> ControlFlow<(), f64> {
+            if known[k].is_none() {
+                let mut told = |_| (self.progress)(part.min(1.0));
+                let mut sum = self.evaluation.at_point(place, &at, &points[k], &mut told)?;
+                if let Some(beside) = &self.beside {
+                    let added = beside.at(self.plan.position(&points[k]));
+                    sum.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
+                }
+                sum[..2].iter_mut().for_each(|s| *s += residual);
+                known[k] = Some(three(&Tensor::new(sum)));
+            }
+            ControlFlow::Continue(known[k].map_or(f64::NEG_INFINITY, |values| values[which]))
+        };
+        let mut found = Vec::new();
+        for which in [0, 1, 2] {
+            let mut starts: Vec<usize> = (0..points.len()).collect();
+            starts.sort_by(|a, b| in_cells[*b][which].total_cmp(&in_cells[*a][which]));
+            starts.truncate(EDGE_STARTS);
+            let mut best: Option<(usize, f64)> = None;
+            for k in starts {
+                let value = value(k, which)?;
+                if best.is_none_or(|(_, largest)| value > largest) {
+                    best = Some((k, value));
+                }
+            }
+            let Some((mut k, mut largest)) = best else {
+                break;
+            };
+            let mut step = self.plan.whole.half_width() * FIRST_STEP_ALONG_EDGE;
+            let shortest =
+                0.5 * self.plan.whole.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
+            while step > shortest {
+                let mut moved = false;
+                for beside in self.plan.along_edge(&points, k, step) {
+                    let value = value(beside, which)?;
+                    if value > largest {
+                        (k, largest, moved) = (beside, value, true);
+                    }
+                }
+                if !moved {
+                    step *= 0.5;
+                }
+            }
+            found.push((which, largest, points[k]));
+        }
+        for (which, value, point) in found {
+            if value > peaks[which].value {
+                peaks[which] = self.peak_at(value, &point, place);
+            }
+        }
+        ControlFlow::Continue(peaks)
     }
 
     /// Extremes of the traction at `place`: the largest and the smallest σ_zz, and the largest √(σ_xz² + σ_yz²).
     fn tractions(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
         self.evaluate(place)?;
         let [mut tension, mut compression, mut shear] = [Largest::NONE; 3];
-        for cell in 0..self.fields[0].len() {
+        for cell in self.cells() {
             let Tensor { zz, yz, xz, .. } = self.tensor(cell);
             tension.offer(zz, cell);
             compression.offer(-zz, cell);
@@ -471,16 +627,28 @@ impl<'a, 'b> Planes<'a, 'b> {
         let [above_xx, above_yy, above_xy] = [0, 1, 3].map(|k| self.fields[k].clone());
         self.evaluate(below)?;
         let mut largest = Largest::NONE;
-        let above = above_xx.iter().zip(&above_yy).zip(&above_xy).enumerate();
-        for (cell, ((above_xx, above_yy), above_xy)) in above {
+        for cell in self.cells() {
             let below = self.tensor(cell);
-            let (xx, yy, xy) = (below.xx - above_xx, below.yy - above_yy, below.xy - above_xy);
+            let (xx, yy) = (below.xx - above_xx[cell], below.yy - above_yy[cell]);
+            let xy = below.xy - above_xy[cell];
             let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
             largest.offer(mean.abs() + half.hypot(xy), cell);
         }
         ControlFlow::Continue(self.peak(largest, below))
     }
 }
+
+/// Von Mises stress, largest principal stress and largest shear stress.
+fn three(tensor: &Tensor) -> [f64; 3] {
+    let [first, _, last] = tensor.principal();
+    [tensor.von_mises(), first, 0.5 * (first - last)]
+}
+
+/// Points of the edge from the cells with the largest values, at which a search along the edge starts.
+const EDGE_STARTS: usize = 4;
+
+/// First step of a search along the edge, in half-widths of the contact; steps are halved down to half a cell.
+const FIRST_STEP_ALONG_EDGE: f64 = 0.25;
 
 /// Depths below the top of a layer, in half-widths of the contact: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).

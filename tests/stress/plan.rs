@@ -87,9 +87,9 @@ fn a_plan_gives_the_bits_of_separate_calls() -> Result<()> {
     Ok(())
 }
 
-/// At a point nothing but the sum over the loaded cells is evaluated: what a plane gives there, by linear
-/// interpolation between cell centres, to the rounding of 3654 cells. At the border of the grid, in
-/// and beside the contact, where pressure within cells is felt.
+/// At a point nothing but the sum over the loaded cells is evaluated: at cell centres what a plane gives there, to the
+/// rounding of 3654 cells. Between centres stresses are those of the point (`tests/stress/edge.rs`), and displacements are
+/// interpolated. At the border of the grid, in and beside the contact, where pressure within cells is felt.
 #[test]
 fn a_point_has_the_stress_of_its_plane() -> Result<()> {
     const ROUNDING: f64 = 1e-12;
@@ -108,7 +108,8 @@ fn a_point_has_the_stress_of_its_plane() -> Result<()> {
                 ..options.clone()
             };
             let point = solution.stress(&DEPTHS, Member::Body, &point)?;
-            let pairs = point.components.iter().zip(&plane.components);
+            let stresses = if along + across == 0 { 6 } else { 0 };
+            let pairs = point.components.iter().zip(&plane.components).take(stresses);
             let moved = [&point, &plane].map(|field| field.displacement.iter().flatten());
             let [a, b] = moved;
             for (found, plane) in pairs.chain(a.zip(b)) {

@@ -37,6 +37,7 @@ GRID = described(nacre.Grid)
 LINE = described(nacre.Grid.line)
 SOLVE = described(nacre.solve)
 STRESS = described(nacre.Solution.stress)
+SUMMARY = described(nacre.Solution.stress_summary)
 
 
 class Material(Table):
@@ -185,6 +186,7 @@ class Stress(Table):
     body: Literal["body", "counterbody"] = Field("body", description=STRESS["body"])
     friction: Number = Field(0.0, description=STRESS["friction"])
     direction: Pair | None = Field(None, description=STRESS["direction"])
+    refine: Number | None = Field(None, description=SUMMARY["refine"])
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""

@@ -381,7 +381,8 @@ class StressSummary(Tabular):
     """Extremes of the stress in each layer and at each interface.
 
     Printing it shows a table, and so does a notebook. Each value comes with its point
-    ``(x, y, z)``, which is a cell centre.
+    ``(x, y, z)``: a cell centre or, at the surface, a point of the contact's edge
+    (`StressPlan.edge`).
 
     Examples
     --------
@@ -496,6 +497,17 @@ class StressPlan:
     def body(self) -> core.HalfSpace:
         """Body in which the stress is."""
         return self._plan.body
+
+    @property
+    def edge(self) -> Array:
+        """Points (x, y) of the smooth edge of the contact ``(n, 2)`` [m], at most one in a cell.
+
+        At the edge the stress at the surface has a kink, and with friction its largest tension:
+        ``plan.stress(0.0, x=x, y=y, friction=...)`` gives it. Empty where the edge is not known
+        within cells: sharp edges, rough surfaces, contacts of few cells, coatings about as thick as
+        a cell, periodic grids. In line contact x is that of the strips' middle.
+        """
+        return self._plan.edge
 
     def stress(
         self,
@@ -624,7 +636,9 @@ class Stressed:
         x, y : float, optional
             Place of a vertical section. With one of them, the fields are kept on the line
             ``x = const`` or ``y = const`` at every depth, by linear interpolation between cell
-            centres and free ends; with both, at a point.
+            centres and free ends. With both they are those of the point itself, wherever the
+            pressure around it is known within cells; displacements, and what free ends and the
+            tractions of `nacre.slide` and `nacre.roll` add, are interpolated.
         displacement : bool, optional
             Whether displacements are evaluated too.
         friction : float, optional
@@ -689,6 +703,7 @@ class Stressed:
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
+        refine: float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> StressSummary:
@@ -708,6 +723,12 @@ class Stressed:
             is not known.
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
+        refine : float, optional
+            Largest estimated error of the extremes, as a part of them, such as 0.05. A patch around
+            each place where the cells leave a larger one is solved again on finer cells, until
+            the error is below it or the patch has as many cells as the grid. By default the cells
+            of the grid are used. Not for `nacre.slide` and `nacre.roll`, periodic grids, surfaces
+            that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
             seconds.
@@ -720,7 +741,8 @@ class Stressed:
         Raises
         ------
         ValueError
-            If an argument is out of range, or the counterbody is rigid.
+            If an argument is out of range, or the counterbody is rigid; if there is nothing to
+            `refine` from.
         MemoryError
             If the grid does not fit.
 

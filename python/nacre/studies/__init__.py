@@ -94,7 +94,7 @@ def sweep(
         adhesion.
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
-        ``direction``, ``residual``.
+        ``direction``, ``residual``, ``refine``.
     store : path, optional
         File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
         replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
@@ -167,7 +167,7 @@ def sweep(
         raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
     asked = {**(stress or {})} if stresses else {}
-    if unknown := set(asked) - {"body", "friction", "direction", "residual"}:
+    if unknown := set(asked) - {"body", "friction", "direction", "residual", "refine"}:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
     if not isinstance(version, str | int | None):
         raise TypeError(f"version must be a text or an integer, got {version!r}")

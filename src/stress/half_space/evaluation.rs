@@ -13,7 +13,7 @@ use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::numerics::fft::{KernelRows, TransformMemory, Transformed};
 use crate::stress::options::StressProgress;
-use crate::stress::subcell::STRESSES;
+use crate::stress::subcell::{PointStress, STRESSES};
 
 /// Components that are convolved together. More of them read the load's transform less often; fewer
 /// write and read less memory in between.
@@ -269,6 +269,17 @@ impl HalfSpacePlan {
             }
         });
         ControlFlow::Continue(sums)
+    }
+
+    /// What gives stresses at `place` below any point, under pressure and `friction` times it; none where the pressure is
+    /// given as uniform over cells.
+    pub(in crate::stress) fn point_stress(
+        &self,
+        place: &Place,
+        friction: [f64; 2],
+    ) -> Option<PointStress<'_>> {
+        let solved = self.solved.as_ref()?;
+        Some(solved.subcell.point_stress((&self.body, &self.grid), place, friction, &self.threads))
     }
 
     /// Sums over the loaded cells at some offsets along x, before and behind each cell.

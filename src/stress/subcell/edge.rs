@@ -209,6 +209,14 @@ impl SquaredPressure {
         c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
     }
 
+    /// Slopes along u and v.
+    pub(super) fn gradient(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let [_, cu, cv, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
+        let along = cu + u * (2.0 * cuu + 3.0 * u * cuuu) + v * (cuv + 2.0 * u * cuuv + v * cuvv);
+        let across = cv + v * (2.0 * cvv + 3.0 * v * cvvv) + u * (cuv + u * cuuv + 2.0 * v * cuvv);
+        [along, across]
+    }
+
     /// The polynomial plus a constant, which shifts the edge.
     pub(super) fn raised(mut self, by: f64) -> Self {
         self.0[0] += by;

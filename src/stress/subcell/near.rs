@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::reconstruction::{
-    CUTS, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, mean_root,
+    CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, mean_root,
 };
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -18,6 +18,14 @@ use crate::stress::options::StressProgress;
 
 /// Number of stress components; pressure within cells adds no displacements.
 pub(in crate::stress) const STRESSES: usize = 6;
+
+/// A point of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::stress) struct CellPoint {
+    pub(in crate::stress) cell: [usize; 2],
+    /// Distances from the cell's centre along x and y, in cells: at most ½.
+    pub(in crate::stress) within: [f64; 2],
+}
 
 /// The stress components σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz.
 pub(super) type Components = [f64; STRESSES];
@@ -259,8 +267,7 @@ impl NearPlan {
 
     /// Pressures on the pieces of a cut, less the cell's mean, and linearly corrected: their first
     /// moments are those that the shares in the convolution stand for.
-    fn piece_pressures(&self, cell: &RootCell, cut: usize) -> Vec<f64> {
-        let cut = self.cuts.get(cut);
+    fn piece_pressures(&self, cell: &RootCell, cut: &Cut) -> Vec<f64> {
         let pressure = |piece| mean_root(&cell.squared, piece, cut.points, self.line);
         let mut pressures: Vec<f64> = cut.pieces.iter().map(pressure).collect();
         let (mut mean, mut missing) = (0.0, cell.moments);
@@ -280,7 +287,11 @@ impl NearPlan {
     /// Stresses of the load of one cell near the edge, at all offsets.
     fn root_stresses(&self, near: &NearTable, cell: &RootCell) -> Vec<Components> {
         let pressures: [Vec<f64>; CUTS] = std::array::from_fn(|cut| {
-            if cut < near.finest { Vec::new() } else { self.piece_pressures(cell, cut) }
+            if cut < near.finest {
+                Vec::new()
+            } else {
+                self.piece_pressures(cell, self.cuts.get(cut))
+            }
         });
         let stress = |offset: &Offset| offset.root_stress(cell, &pressures[offset.cut]);
         near.offsets.iter().map(stress).collect()
@@ -307,12 +318,132 @@ impl NearPlan {
             }
             // Roots are in the order of the grid.
             if let Ok(found) = roots.binary_search_by_key(&cell, |root| root.cell) {
-                let pressures = self.piece_pressures(&roots[found], offset.cut);
+                let pressures = self.piece_pressures(&roots[found], self.cuts.get(offset.cut));
                 let stress = offset.root_stress(&roots[found], &pressures);
                 sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
             }
         }
         sum
+    }
+
+    /// What pressure within cells adds to the stress at a `depth` below a point of a cell. `stresses` gives those at (x, y)
+    /// from the centre of a rectangle of half sides (a, b) under unit pressure.
+    pub(super) fn sum_at_point(
+        &self,
+        &CellPoint { cell: target, within }: &CellPoint,
+        depth: f64,
+        stresses: impl Fn([f64; 2], [f64; 2]) -> Components,
+    ) -> Components {
+        let mut sum = [0.0; STRESSES];
+        let mut add = |factor: f64, values: Components| {
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
+        };
+        let [dx, dy] = self.sides;
+        let [rx, ry] = self.reach.map(|reach| reach as isize);
+        let Reconstruction { interior, roots, .. } = &self.reconstruction;
+        let offsets = (-rx..=rx).flat_map(|i| (-ry..=ry).map(move |j| [i, j]));
+        for by @ [i, j] in offsets {
+            let Some(cell) = self.cell_at(target, [-i, -j]) else {
+                continue;
+            };
+            let number = self.number(cell);
+            // The target, from the centre of the cell.
+            let at = [i as f64 + within[0], j as f64 + within[1]];
+            let stress = |Piece { centre, half }: &Piece| {
+                let from = [(at[0] - centre[0]) * dx, (at[1] - centre[1]) * dy];
+                stresses(from, [half[0] * dx, half[1] * dy])
+            };
+            let root = roots.binary_search_by_key(&cell, |root| root.cell).ok();
+            let curved = [0, 1]
+                .map(|axis| [interior.slopes[axis][number], interior.curvatures[axis][number]]);
+            if root.is_none() && curved == [[0.0; 2]; 2] {
+                continue;
+            }
+            let graded = by.iter().all(|by| by.abs() <= 1).then(|| Cut::towards(at, self.line));
+            let seen = self.cuts.seen_from(by, depth / self.shorter());
+            let cut = graded.as_ref().unwrap_or_else(|| self.cuts.get(seen));
+            let (pressures, moments) = match root {
+                Some(root) => {
+                    let root = &roots[root];
+                    let mut pressures = self.piece_pressures(root, cut);
+                    // The smallest piece has the pressure of its middle, the point, and not the larger mean of a root.
+                    let has_point = |piece: &Piece| {
+                        [0, 1].iter().all(|k| (at[*k] - piece.centre[*k]).abs() < piece.half[*k])
+                    };
+                    if let Some(own) = cut.pieces.iter().position(has_point) {
+                        let mean = mean_root(&root.squared, &cut.pieces[own], 1, self.line);
+                        pressures[own] += root.squared.at(at[0], at[1]).max(0.0).sqrt() - mean;
+                    }
+                    (pressures, root.moments)
+                }
+                None => {
+                    let pressure = |piece: &Piece| -> f64 {
+                        let along = |axis: usize| {
+                            let [slope, curvature] = curved[axis];
+                            let square = piece.mean_square(axis) - INERTIA;
+                            slope * piece.centre[axis] + 0.5 * curvature * square
+                        };
+                        along(0) + along(1)
+                    };
+                    let moments = curved.map(|[slope, _]| INERTIA * slope);
+                    (cut.pieces.iter().map(pressure).collect(), moments)
+                }
+            };
+            for (piece, pressure) in cut.pieces.iter().zip(pressures) {
+                add(pressure, stress(piece));
+            }
+            for (axis, moment) in moments.into_iter().enumerate() {
+                if moment != 0.0 && !(self.line && axis == 0) {
+                    for side in [1.0, -1.0] {
+                        let mut neighbour = Piece::CELL;
+                        neighbour.centre[axis] = side;
+                        add(-0.5 * side * moment, stress(&neighbour));
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// The pressure at a point of a cell whose mean is `mean`.
+    pub(super) fn pressure_at(
+        &self,
+        &CellPoint { cell, within: [u, v] }: &CellPoint,
+        mean: f64,
+    ) -> f64 {
+        let Reconstruction { interior, roots, .. } = &self.reconstruction;
+        if let Ok(root) = roots.binary_search_by_key(&cell, |root| root.cell) {
+            return roots[root].squared.at(u, v).max(0.0).sqrt();
+        }
+        let number = self.number(cell);
+        let along = |axis: usize, u: f64| {
+            u * interior.slopes[axis][number]
+                + 0.5 * (u * u - INERTIA) * interior.curvatures[axis][number]
+        };
+        mean + along(0, u) + along(1, v)
+    }
+
+    /// Cells near the edge, and the pressure at their centres.
+    pub(super) fn central_pressures(&self) -> impl Iterator<Item = (usize, f64)> {
+        let of =
+            |root: &RootCell| (self.number(root.cell), root.squared.at(0.0, 0.0).max(0.0).sqrt());
+        self.reconstruction.roots.iter().map(of)
+    }
+
+    /// Points of the edge, at most one in a cell.
+    pub(super) fn edge(&self) -> Vec<CellPoint> {
+        let point = |root: &RootCell| Some(CellPoint { cell: root.cell, within: root.edge()? });
+        self.reconstruction.roots.iter().filter_map(point).collect()
+    }
+
+    /// Unit vector along the edge at one of its points; none in line contact.
+    pub(super) fn tangent(&self, &CellPoint { cell, within }: &CellPoint) -> Option<[f64; 2]> {
+        let roots = &self.reconstruction.roots;
+        let root = roots.binary_search_by_key(&cell, |root| root.cell).ok()?;
+        let [u, v] = roots[root].squared.gradient(within);
+        let [x, y] = [v * self.sides[0], -u * self.sides[1]];
+        let length = x.hypot(y);
+        (!self.line && length > 0.0).then(|| [x / length, y / length])
     }
 
     /// Number of a cell in the order of the grid.

@@ -28,7 +28,7 @@ use crate::compliance::response::interior::{Column, Place};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 
-use super::edge::{BAND, edge_distances};
+use super::edge::{BAND, around, edge_distances};
 use super::reconstruction::Reconstruction;
 
 // With these shares, the estimate is some three times the error (`tests/stress/resolution.rs`).
@@ -118,6 +118,11 @@ impl Uncertainty {
         Self { shape, known, waves: grid.spacing().map(waves) }
     }
 
+    /// Whether the pressure is known within a cell and those beside it.
+    pub(super) fn is_known_around(&self, cell: [usize; 2]) -> bool {
+        around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
+    }
+
     /// Largest steps of `pressure` that are felt in the cells of `window`.
     pub(super) fn steps(&self, pressure: &[f64], window: &Window) -> LocalSteps {
         let [nx, ny] = self.shape;
@@ -144,7 +149,7 @@ impl Uncertainty {
         LocalSteps([along, across])
     }
 
-    /// Estimated error \[Pa\] of the components of the stress at `place`, under pressure and `friction` times
+    /// Estimated errors \[Pa\] of the components of the stress at `place`, from waves along x and along y, under pressure and `friction` times
     /// it, where the pressure has these steps.
     pub(super) fn at(
         &self,
@@ -152,7 +157,7 @@ impl Uncertainty {
         place: &Place,
         friction: [f64; 2],
         LocalSteps(steps): LocalSteps,
-    ) -> f64 {
+    ) -> [f64; 2] {
         let friction = friction[0].hypot(friction[1]);
         let material = place.material;
         let error = |(steps, wave): (AxisSteps, &Wave)| {
@@ -172,9 +177,10 @@ impl Uncertainty {
             let in_plane = pairs.map(|(pressed, sheared)| pressed + friction * sheared);
             pressure * in_plane.fold(friction * twisted, f64::max)
         };
-        let waves = self.waves.iter().zip(steps);
-        let waves = waves.flat_map(|(waves, steps)| waves.iter().map(move |wave| (steps, wave)));
-        waves.map(error).fold(0.0, f64::max)
+        [0, 1].map(|axis| {
+            let waves = self.waves[axis].iter().map(|wave| error((steps[axis], wave)));
+            waves.fold(0.0, f64::max)
+        })
     }
 }
 

@@ -6,6 +6,7 @@ import pickle
 import signal
 import threading
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -368,3 +369,50 @@ def test_ctrl_c_interrupts_a_plan(solution: nacre.Solution) -> None:
     with pytest.raises(KeyboardInterrupt):
         plan.stress(np.linspace(0.0, 1e-3, 20_000), friction=0.3, direction=(1.0, 0.0))
     assert time.monotonic() - start < 10.0
+
+
+def test_refined_extremes_agree_with_a_finer_grid() -> None:
+    """On a patch of finer cells, tension and shear of a thin stiff coating are those of a finer grid.
+
+    The grid alone leaves them uncertain by more than a tenth; the bar is the sum of both estimated
+    errors, and the patch must keep what was asked for.
+    """
+    steel = nacre.Elastic(210e9, 0.3)
+    body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(400e9, 0.25), 4e-6)])
+    width, cells = 4e-4, 48
+    grid = nacre.Grid.line(cells, width)
+    finer = nacre.Grid.line(8 * cells, width)
+    solve = partial(nacre.solve, nacre.Cylinder(5e-3), body, steel, load=1e5)
+    rough = solve(grid=grid).stress_summary(friction=0.2)
+    refined = solve(grid=grid).stress_summary(friction=0.2, refine=0.05)
+    fine = solve(grid=finer).stress_summary(friction=0.2)
+    before = rough.layers[0].uncertainty["tension"] / rough.layers[0].tension[0]
+    assert before > 0.1
+    for part, name in ((0, "tension"), (0, "von_mises")):
+        value, _ = getattr(refined.layers[part], name)
+        error = refined.layers[part].uncertainty[name]
+        assert error <= 0.05 * value or error < 0.02 * refined.layers[0].von_mises[0]
+        expected = getattr(fine.layers[part], name)[0]
+        assert abs(value - expected) <= error + fine.layers[part].uncertainty[name]
+    shear, error = refined.interfaces[0].shear[0], refined.interfaces[0].uncertainty["shear"]
+    assert error <= 0.05 * shear
+    expected, own = fine.interfaces[0].shear[0], fine.interfaces[0].uncertainty["shear"]
+    assert abs(shear - expected) <= error + own
+
+
+def test_refine_refuses_what_it_cannot_refine() -> None:
+    """Periodic grids, yielded surfaces, known tractions, and plans have no finer cells."""
+    steel = nacre.Elastic(210e9, 0.3)
+    ball = nacre.Sphere(5e-3)
+    grid = nacre.Grid((32, 32), (4e-4, 4e-4))
+    yielded = nacre.solve(ball, steel, load=10.0, grid=grid, hardness=1e9)
+    with pytest.raises(ValueError, match="refine must be None where the surface has yielded"):
+        yielded.stress_summary(refine=0.05)
+    wide = nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(True, True))
+    repeated = nacre.solve(ball, steel, load=10.0, grid=wide)
+    with pytest.raises(ValueError, match="refine must be None on a periodic grid"):
+        repeated.stress_summary(refine=0.05)
+    slid = nacre.slide(ball, steel, steel, load=10.0, grid=grid, friction=0.3, shift=(1e-8, 0.0))
+    last = slid[-1] if isinstance(slid, list) else slid
+    with pytest.raises(ValueError, match="refine must be None where the tractions"):
+        last.stress_summary(refine=0.05)

@@ -484,6 +484,8 @@ FIELD_VALUES = {
     r"finite at \[0, 1\]$",
     "PRESSED.stress_summary(yield_stress=[-1.0])": r"^yield_stress must be finite and above 0, got "
     "-1$",
+    "PRESSED.stress_summary(refine=0.0)": r"^refine must be above 0 and below 1: .*, got 0$",
+    "PRESSED.stress_summary(refine=1.0)": r"^refine must be above 0 and below 1: .*, got 1$",
     "PRESSED.stress_plan('table')": 'body must be "body" or "counterbody", got "table"',
     "PRESSED.stress_plan(threads=0)": r"threads must be .*at least 1, got 0",
     "BY_RIGID.stress_plan('counterbody')": 'body must be "body" where the counterbody is rigid',
