@@ -33,6 +33,7 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
+mod nested;
 mod newton;
 mod session;
 mod solution;
