@@ -73,10 +73,6 @@ const BALANCED: f64 = 0.1;
 /// Corrections of forces after a step; what is left falls with each as the square.
 const CORRECTIONS: usize = 2;
 
-/// Part of what a slipping cell makes of itself with which weights are compared in rolling, where the sums are no inverse
-/// across the cells that slip. With 0, convolutions of 256² cells are 59 instead of 40; with 0.5 they are 129.
-const ROLLING_SHARE: f64 = 0.1;
-
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
 
@@ -456,9 +452,7 @@ impl Operator<'_> {
     }
 
     /// An approximate inverse of [`Operator::linearised`]: that of the whole plane on sticking cells, in rolling after
-    /// sums from the leading edge, and the diagonal's on slipping ones. Where the weight of a slipping cell is small compared
-    /// with what it makes of itself, k, it is like a sticking one: the share k/(k + weight) of the first and what is left of
-    /// the second add to it.
+    /// sums from the leading edge, and the diagonal's on slipping ones.
     fn precondition(
         &self,
         states: &[CellState],
@@ -467,36 +461,30 @@ impl Operator<'_> {
         memory: &mut [f64],
         z: &mut [f64],
     ) {
-        let (cells, own) = (states.len(), self.diagonal());
-        let lightest =
-            own[0].max(own[1]) * if self.rolling.is_some() { ROLLING_SHARE } else { 1.0 };
-        let share = |state: &CellState| match state {
-            CellState::Free => 0.0,
-            CellState::Stick => 1.0,
-            CellState::Slip { weight, .. } => lightest / (lightest + weight),
-        };
-        let shared = |field: &mut [f64]| {
-            for (i, state) in states.iter().enumerate() {
-                let share = share(state).sqrt();
-                field[i] *= share;
-                field[cells + i] *= share;
-            }
-            restrict(states, field);
-        };
+        let cells = states.len();
         memory.copy_from_slice(r);
-        shared(memory);
+        let only_stick = |field: &mut [f64]| {
+            for (i, state) in states.iter().enumerate() {
+                if *state != CellState::Stick {
+                    field[i] = 0.0;
+                    field[cells + i] = 0.0;
+                }
+            }
+        };
+        only_stick(memory);
         if let Some(direction) = self.rolling {
             self.sums(direction, memory);
-            shared(memory);
+            only_stick(memory);
         }
         self.window.precondition(memory, z);
-        shared(z);
+        only_stick(z);
+        let own = self.diagonal();
         for (i, state) in states.iter().enumerate() {
             if let CellState::Slip { n, weight } = state {
                 let along = own[0] * n[1] * n[1] + own[1] * n[0] * n[0];
-                let factor = (1.0 - share(state)) / ((1.0 + damping) * along + weight);
-                z[i] += factor * r[i];
-                z[cells + i] += factor * r[cells + i];
+                let factor = 1.0 / ((1.0 + damping) * along + weight);
+                z[i] = factor * r[i];
+                z[cells + i] = factor * r[cells + i];
             }
         }
     }
