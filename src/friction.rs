@@ -33,7 +33,6 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
-mod nested;
 mod newton;
 mod session;
 mod solution;

@@ -177,7 +177,7 @@ impl TractionProblem<'_> {
     }
 
     /// Newton's method from the tractions `q`. It gives up where it leads nowhere.
-    pub(super) fn newton(
+    fn newton(
         &self,
         mut q: Vec<f64>,
         effort: Effort,

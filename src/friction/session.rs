@@ -228,7 +228,7 @@ impl<'a> Session<'a> {
                 false => vec![traction.clone()],
             };
             let pressed = PressedCells { grid, bound: &bound, spreading: &self.spreading(&acting) };
-            let solved = self.tractions(task, pressed, (&starts, is_first), goal, &mut course);
+            let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
             }
@@ -252,7 +252,7 @@ impl<'a> Session<'a> {
         &self,
         task: &TractionTask,
         pressed: PressedCells,
-        starts: (&[[Array2<f64>; 2]], bool),
+        starts: &[[Array2<f64>; 2]],
         tolerance: f64,
         course: &mut FrictionCourse,
     ) -> Option<SolvedTask> {

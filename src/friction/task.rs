@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use ndarray::{Array2, Axis};
 
-use super::nested;
 use super::newton::{
-    CellState, ConvolutionWatch, Effort, Law, Misfit, Operator, TractionProblem, TractionResult,
+    CellState, ConvolutionWatch, Effort, Law, Operator, TractionProblem, TractionResult,
 };
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};
@@ -235,7 +234,7 @@ impl TractionTask<'_> {
         &self,
         tangential: &Tangential,
         pressed: PressedCells,
-        (starts, is_first): (&[[Array2<f64>; 2]], bool),
+        starts: &[[Array2<f64>; 2]],
         effort: Effort,
         watch: &mut ConvolutionWatch,
     ) -> Option<SolvedTask> {
@@ -253,20 +252,9 @@ impl TractionTask<'_> {
             let best = (0..compared).min_by(|a, b| worst[*a].total_cmp(&worst[*b]));
             starts.swap(0, best.unwrap_or(0));
         }
-        let mut best = starts.into_iter().next()?;
-        let (mut before, mut stopped) = (compared, false);
-        if is_first {
-            let told = &mut |count: usize, misfit: Misfit| watch(compared + count, misfit);
-            let nested = nested::start(&problem, tangential, best, effort, told);
-            (best, stopped) = (nested.q, nested.stopped);
-            before += nested.convolutions.ceil() as usize;
-        }
-        let left = effort.most.saturating_sub(before).max(1);
-        let effort = Effort { most: if stopped { 1 } else { left }, ..effort };
-        let told = &mut |count: usize, misfit: Misfit| watch(before + count, misfit);
-        let mut found = problem.solve(best, effort, told);
-        found.convolutions += before;
-        found.stopped |= stopped;
+        let best = starts.into_iter().next()?;
+        let mut found = problem.solve(best, effort, watch);
+        found.convolutions += compared;
         let mut moved = self.prescribed();
         let mut loaded = found.multipliers.iter();
         for (moved, freedom) in moved.iter_mut().zip(self.increments) {

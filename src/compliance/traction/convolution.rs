@@ -1,7 +1,7 @@
 //! Tractions to displacements, and the preconditioner of their inverse.
 
 use std::f64::consts::PI;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ndarray::{Array2, Axis, Slice};
 
@@ -22,8 +22,6 @@ pub(crate) struct Tangential {
     threads: Arc<Threads>,
     /// Windows that were used last.
     windows: Mutex<Vec<Arc<TangentialWindow>>>,
-    /// The same on longer cells.
-    coarser: OnceLock<Arc<Self>>,
 }
 
 /// Windows that are kept.
@@ -44,71 +42,7 @@ impl Tangential {
             coefficients,
             threads: Arc::clone(threads),
             windows: Mutex::default(),
-            coarser: OnceLock::new(),
         })
-    }
-
-    /// Directions along which there are cells to be joined.
-    pub(crate) fn halved(&self) -> [bool; 2] {
-        [!self.grid.is_line(), true]
-    }
-
-    /// The same on cells that are twice as long: the mean displacements of the cells that each holds, under their equal
-    /// tractions.
-    pub(crate) fn coarser(&self) -> Result<Arc<Self>> {
-        let halved = self.halved();
-        if let Some(known) = self.coarser.get() {
-            return Ok(Arc::clone(known));
-        }
-        let (shape, spacing) = (self.grid.shape(), self.grid.spacing());
-        // A cell more on both sides, which rolling needs.
-        let cells = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) + 2 } else { shape[k] });
-        let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
-        let sides = [0, 1].map(|k| longer[k] * spacing[k] * cells[k] as f64);
-        let grid = match self.grid.is_line() {
-            true => Grid::line(cells[1], sides[1])?,
-            false => Grid::new(cells, sides)?,
-        };
-        let TractionCoefficients { xx, xy, yy, zx, zy } = &self.coefficients;
-        let [even, odd] = [false, true];
-        let of = |all: &Array2<f64>, odd: [bool; 2]| {
-            // Offsets between cells of two longer ones, and their share.
-            let near = |at: usize, k: usize| match halved[k] {
-                false => [(at, 1.0), (at, 0.0), (at, 0.0)],
-                true => {
-                    let sign = if odd[k] && at == 0 { -0.5 } else { 0.5 };
-                    let last = shape[k] - 1;
-                    [
-                        ((2 * at).abs_diff(1).min(last), sign),
-                        ((2 * at).min(last), 1.0),
-                        ((2 * at + 1).min(last), 0.5),
-                    ]
-                }
-            };
-            Array2::from_shape_fn(cells, |(i, j)| {
-                let mut sum = 0.0;
-                for (i, wi) in near(i, 0) {
-                    sum += near(j, 1).iter().map(|(j, wj)| wi * wj * all[[i, *j]]).sum::<f64>();
-                }
-                sum
-            })
-        };
-        let coefficients = TractionCoefficients {
-            xx: of(xx, [even, even]),
-            xy: of(xy, [odd, odd]),
-            yy: of(yy, [even, even]),
-            zx: of(zx, [odd, even]),
-            zy: of(zy, [even, odd]),
-        };
-        let new = Self {
-            grid,
-            bodies: self.bodies.clone(),
-            coefficients,
-            threads: Arc::clone(&self.threads),
-            windows: Mutex::default(),
-            coarser: OnceLock::new(),
-        };
-        Ok(Arc::clone(self.coarser.get_or_init(|| Arc::new(new))))
     }
 
     /// Whether tractions move the surfaces apart, and pressure moves them along each other.
