@@ -20,7 +20,7 @@ mod face;
 mod pressures;
 
 use face::Face;
-use pressures::{EndImages, NearEnd, STRIP, Strip};
+use pressures::{EndImages, FOLLOWED, NearEnd, STRIP, Strip, excess_part};
 
 /// What the ends of a body add.
 #[derive(Debug, Default)]
@@ -84,7 +84,9 @@ impl EndStress {
             };
             images.add_mirror(&pressure, end);
             let excess = near.followed(Where::Surface, dx, threads);
-            images.add_excess(&excess, end, near.margin);
+            let far = (FAR_END * near.reach / FOLLOWED / dx).ceil() as usize;
+            let (excess, rows) = ((&*excess, end, near.margin), &near.rows(far));
+            parts.push(Box::new(excess_part(excess, &endless, grid, (rows, 1), threads)?));
             let strip = Strip::new(&near, Where::Surface, dx, dx, threads);
             for part in strip.parts(&endless, grid, &near.rows(STRIP), end, threads)? {
                 parts.push(Box::new(part));

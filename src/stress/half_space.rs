@@ -117,9 +117,10 @@ pub(super) const fn components(displacement: bool) -> usize {
 
 impl HalfSpacePlan {
     /// The plan of a body under a `pressure` of [`checked_pressure`]; `subcell` has what is known of it within cells.
+    /// Components are right in the cells of the window `wanted` only.
     pub(super) fn new(
         body: &HalfSpace,
-        grid: &Grid,
+        (grid, wanted): (&Grid, &Window),
         pressure: Vec<f64>,
         subcell: Option<SubcellStress>,
         threads: Threads,
@@ -132,9 +133,14 @@ impl HalfSpacePlan {
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let shape = grid.shape();
         let loaded = loaded_cells(shape, &[&pressure, uniform]);
-        // From the first loaded cell to the last cell, from the first cell to the last loaded one.
+        // From the first loaded cell to the last wanted one, from the first wanted cell to the last loaded one; and the
+        // transforms are of the whole grid.
         let offsets = loaded.map_or(shape, |loaded| {
-            [0, 1].map(|k| (shape[k] - loaded[k][0]).max(loaded[k][1] + 1))
+            [0, 1].map(|k| {
+                let ahead = wanted[k].end.saturating_sub(loaded[k][0]);
+                let behind = (loaded[k][1] + 1).saturating_sub(wanted[k].start);
+                ahead.max(behind).max(shape[k].div_ceil(2))
+            })
         });
         let transform = PaddedTransform::plan_even(shape, offsets, &threads);
         let transformed =
@@ -158,17 +164,17 @@ impl HalfSpacePlan {
         }
     }
 
-    /// The plan of a body under a `pressure` that is uniform over cells.
+    /// The plan of a body under a `pressure` that is uniform over cells, for the cells of the window `wanted`.
     pub(super) fn uniform(
         body: &HalfSpace,
-        grid: &Grid,
+        (grid, wanted): (&Grid, &Window),
         pressure: &ArrayRef2<f64>,
         threads: &Threads,
     ) -> Result<Self> {
         let pressure = checked_pressure(body, grid, pressure)?;
         check_memory(grid.shape(), Self::memory(grid, false))?;
         let threads = Threads::new(Some(threads.count()))?;
-        Ok(Self::new(body, grid, pressure, None, threads))
+        Ok(Self::new(body, (grid, wanted), pressure, None, threads))
     }
 
     /// Bytes that planning takes.

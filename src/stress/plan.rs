@@ -17,7 +17,7 @@ use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
-use crate::model::grid::{Grid, Window};
+use crate::model::grid::{Grid, Window, full_window};
 use crate::numerics::parallel::{Threads, check_memory, memory_of};
 
 /// Weights of the components σ_xx … σ_xz in each cell, in C order.
@@ -113,7 +113,13 @@ impl<'a> PressureSource<'a> {
             Some(ControlFlow::Continue(subcell)) => Some(subcell),
             None => None,
         };
-        let whole = HalfSpacePlan::new(body, grid, pressure, subcell, threads);
+        let whole = HalfSpacePlan::new(
+            body,
+            (grid, &full_window(grid.shape())),
+            pressure,
+            subcell,
+            threads,
+        );
         let span = Span::of(body, grid);
         let Some(EndStress { mut parts, errors }) = EndStress::plan(&whole, &span, progress)?
         else {
@@ -122,7 +128,12 @@ impl<'a> PressureSource<'a> {
         for (axis, traction) in self.tractions.iter().flatten().enumerate() {
             if traction.iter().any(|q| *q != 0.0) {
                 let traction: Array2<f64> = traction.mapv(|q| self.sliding.sign * q);
-                let plan = HalfSpacePlan::uniform(body, grid, &traction, &whole.threads)?;
+                let plan = HalfSpacePlan::uniform(
+                    body,
+                    (grid, &full_window(grid.shape())),
+                    &traction,
+                    &whole.threads,
+                )?;
                 let load = SurfaceLoad { factor: 1.0, axis: Some(axis) };
                 parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }

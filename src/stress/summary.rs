@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::field::{Peak, Percent, Tensor};
+use super::field::{Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
@@ -105,35 +105,37 @@ impl StressSummary {
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
         let negligible = self.negligible_error();
-        let unresolved = |peaks: &[(&str, &Peak)]| -> Option<String> {
+        let unresolved = |peaks: &[(&str, &Peak)]| -> Option<(String, f64)> {
             let ratio = |(name, peak): &(&str, &Peak)| {
                 let error = peak.uncertainty.filter(|error| *error > negligible)?;
                 let ratio = error / peak.value.abs();
-                (ratio > UNRESOLVED_EXTREME).then(|| format!("{name} by {}", Percent(ratio)))
+                (ratio > UNRESOLVED_EXTREME)
+                    .then(|| (format!("{name} by {}", Percent(ratio)), ratio))
             };
-            let said: Vec<String> = peaks.iter().filter_map(ratio).collect();
-            (!said.is_empty()).then(|| said.join(", "))
+            let (said, ratios): (Vec<_>, Vec<_>) = peaks.iter().filter_map(ratio).unzip();
+            let worst = ratios.into_iter().reduce(f64::max)?;
+            Some((said.join(", "), worst))
         };
         let layers = self.layers.iter().filter_map(|layer| {
             let LayerSummary { von_mises, tension, shear, .. } = layer;
             let peaks = [("von Mises", von_mises), ("tension", tension), ("shear", shear)];
             // Compression everywhere is no tension to be known.
             let known = if tension.value > 0.0 { 3 } else { 1 };
-            let said = unresolved(&peaks[..known])?;
+            let unresolved = unresolved(&peaks[..known])?;
             let place = match layer.depths[1].is_finite() {
                 true => format!("layers[{}]", layer.layer),
                 false => "the substrate".to_string(),
             };
-            Some((place, said))
+            Some((place, unresolved))
         });
         let interfaces = self.interfaces.iter().filter_map(|face| {
-            let said = unresolved(&[("shear", &face.shear), ("compression", &face.compression)])?;
-            Some((format!("interfaces[{}]", face.interface), said))
+            let peaks = [("shear", &face.shear), ("compression", &face.compression)];
+            Some((format!("interfaces[{}]", face.interface), unresolved(&peaks)?))
         });
-        let said = |(place, said): (String, String)| {
+        let said = |(place, (said, worst)): (String, (String, f64))| {
             format!(
-                "the extremes in {place} are uncertain, {said}, due to the size of the cells: take \
-                 smaller cells"
+                "the extremes in {place} are uncertain, {said}, due to the size of the cells: take {}",
+                SmallerCells(worst / UNRESOLVED_EXTREME)
             )
         };
         layers.chain(interfaces).map(said).collect()

@@ -58,8 +58,9 @@ struct FaceTable {
     part: HalfSpacePart,
     /// Length of its rows, which begin at z = 0.
     spacing: f64,
-    /// Depth z down to which it counts.
+    /// Depth z, and depth below the face, down to which it counts.
     reach: f64,
+    /// At depths below the face where it does not count, there are none.
     stresses: FaceFields,
     displacements: OnceLock<FaceFields>,
 }
@@ -114,7 +115,7 @@ impl Face {
             stride: 1,
             ..fine
         };
-        let reach = STRIP as f64 * spacing;
+        let reach = strip.reach;
         let tables = [
             (whole, spacing, f64::INFINITY),
             (coarse, spacing, reach),
@@ -243,6 +244,10 @@ impl FaceTable {
         let first = if displacement { components(false) } else { 0 };
         let mut fields = FaceFields::new();
         for depth in depths {
+            if *depth >= self.reach {
+                fields.push(Vec::new());
+                continue;
+            }
             let Ok(place) = place(&plan.body, *depth, Side::Below) else {
                 return ControlFlow::Break(());
             };
@@ -272,7 +277,8 @@ impl FaceTable {
                 .map(|other| (t - (other as f64 - 1.0)) / (node - (other as f64 - 1.0)))
                 .product()
         });
-        for (node, lines) in lines.iter_mut().enumerate() {
+        let known = |(node, _): &(usize, _)| !self.stresses[*node].is_empty();
+        for (node, lines) in lines.iter_mut().enumerate().filter(known) {
             let displacements = self.displacements.get();
             let fields: Vec<&Vec<f64>> = self.stresses[node]
                 .iter()

@@ -16,7 +16,7 @@ use crate::stress::half_space::{HalfSpacePart, HalfSpacePlan, SurfaceLoad};
 
 /// Length over which the pressures beside the load are followed, in widths of the contact or in distances of it from
 /// the end, if that is more: they fall with the square of the distance at least.
-const FOLLOWED: f64 = 3.0;
+pub(super) const FOLLOWED: f64 = 3.0;
 
 /// Columns beyond the contact's on either side, in the same unit.
 const MARGIN_BESIDE: f64 = 3.0;
@@ -42,6 +42,8 @@ pub(super) struct NearEnd {
     pub(super) reach: f64,
     /// Columns beyond the contact's on either side.
     pub(super) margin: usize,
+    /// Width of a column \[m\].
+    column: f64,
     spread: EndPressure,
     pub(super) material: Elastic,
 }
@@ -75,6 +77,7 @@ impl NearEnd {
             rows: nx - beyond,
             reach: FOLLOWED * scale,
             margin: ((MARGIN_BESIDE * scale / grid.spacing()[1]).ceil() as usize).min(2 * ny),
+            column: grid.spacing()[1],
             spread: EndPressure::new(&from_end, distance(beyond), grid.spacing()),
             material,
         })
@@ -91,15 +94,21 @@ impl NearEnd {
     }
 
     /// Means of the pressure at a `place` over `count` rows of cells of a length `spacing`, from the edge on.
-    fn means(&self, place: Where, spacing: f64, count: usize, threads: &Threads) -> Array2<f64> {
+    fn means(
+        &self,
+        (place, margin): (Where, usize),
+        spacing: f64,
+        count: usize,
+        threads: &Threads,
+    ) -> Array2<f64> {
         let nu = self.material.poisson();
-        threads.run(|| self.spread.spread(place, nu, spacing, count, self.margin))
+        threads.run(|| self.spread.spread(place, nu, spacing, count, margin))
     }
 
     /// The means as far as the pressure is followed.
     pub(super) fn followed(&self, place: Where, spacing: f64, threads: &Threads) -> Array2<f64> {
         let count = ((self.reach / spacing).ceil() as usize).min(MOST_ROWS);
-        self.means(place, spacing, count, threads)
+        self.means((place, self.margin), spacing, count, threads)
     }
 }
 
@@ -170,7 +179,8 @@ impl EndImages {
     pub(super) fn part(&self, body: &HalfSpace, threads: &Threads) -> Result<HalfSpacePart> {
         let (pressure, grid, [first, column]) = self.together()?;
         let [rows, columns] = self.grid.shape();
-        let plan = HalfSpacePlan::uniform(body, &grid, &pressure, threads)?;
+        let wanted = [first..first + rows, column..column + columns];
+        let plan = HalfSpacePlan::uniform(body, (&grid, &wanted), &pressure, threads)?;
         Ok(HalfSpacePart {
             rows: 0..rows,
             columns,
@@ -235,6 +245,8 @@ pub(super) struct Strip {
     coarse: Array2<f64>,
     fine: Array2<f64>,
     margin: usize,
+    /// Depth from which on it does not count: there as many cells are between as beyond [`STRIP`] \[m\].
+    pub(super) reach: f64,
 }
 
 impl Strip {
@@ -251,7 +263,10 @@ impl Strip {
         let division = 2 * half.ceil() as usize + 1;
         let [all, none] = REPLACED.map(|cells| (cells * division) as f64);
         let count = REPLACED[1] * division;
-        let mut fine = near.means(place, spacing / division as f64, count, threads);
+        // Beyond, finer cells make no more difference than beyond the strip.
+        let beside = (STRIP as f64 * spacing / near.column).ceil() as usize;
+        let margin = near.margin.min(beside);
+        let mut fine = near.means((place, margin), spacing / division as f64, count, threads);
         for (i, mut row) in fine.rows_mut().into_iter().enumerate() {
             let t = ((i as f64 + 0.5 - all) / (none - all)).clamp(0.0, 1.0);
             row *= 0.5 * (1.0 + (PI * t).cos());
@@ -260,7 +275,8 @@ impl Strip {
         for (i, row) in fine.rows().into_iter().enumerate() {
             coarse.row_mut(i / division).scaled_add(1.0 / division as f64, &row);
         }
-        Self { division, coarse, fine, margin: near.margin }
+        let reach = STRIP as f64 * spacing;
+        Self { division, coarse, fine, margin, reach }
     }
 
     /// What the strip beside an edge at x = `end` changes in the `rows` of `grid`: it takes away the stress of its
@@ -274,20 +290,28 @@ impl Strip {
         threads: &Threads,
     ) -> Result<[HalfSpacePart; 2]> {
         let part = |factor: f64, division: usize, pressure| {
-            let mut images = EndImages::new(&rows_of(grid, rows, division)?);
-            images.add_excess(pressure, end, self.margin);
-            let whole = images.part(body, threads)?;
-            Ok(HalfSpacePart {
-                factor,
-                rows: rows.clone(),
-                first: whole.first + division / 2,
-                stride: division,
-                ..whole
-            })
+            let excess = (pressure, end, self.margin);
+            let whole = excess_part(excess, body, grid, (rows, division), threads)?;
+            Ok(HalfSpacePart { factor, reach: self.reach, ..whole })
         };
         let finer = part(1.0, self.division, &self.fine)?;
         Ok([part(-1.0, 1, &self.coarse)?, finer])
     }
+}
+
+/// The stress of `body` in some of the rows of `grid` under an excess beside x = `end`, on cells of the divided rows.
+pub(super) fn excess_part(
+    (excess, end, margin): (&ArrayRef2<f64>, f64, usize),
+    body: &HalfSpace,
+    grid: &Grid,
+    (rows, division): (&Range<usize>, usize),
+    threads: &Threads,
+) -> Result<HalfSpacePart> {
+    let mut images = EndImages::new(&rows_of(grid, rows, division)?);
+    images.add_excess(excess, end, margin);
+    let whole = images.part(body, threads)?;
+    let first = whole.first + division / 2;
+    Ok(HalfSpacePart { rows: rows.clone(), first, stride: division, ..whole })
 }
 
 /// The `rows` of a grid, each divided.

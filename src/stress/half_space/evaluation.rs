@@ -381,13 +381,16 @@ pub(in crate::stress) struct HalfSpacePart {
     pub(in crate::stress) stride: usize,
     /// The plan's column of the first wanted one.
     pub(in crate::stress) column: usize,
+    /// Depth from which on it does not count \[m\].
+    pub(in crate::stress) reach: f64,
 }
 
 impl HalfSpacePart {
     /// The stress of a plan in its own cells.
     pub(in crate::stress) fn new(plan: HalfSpacePlan, load: SurfaceLoad) -> Self {
         let [rows, columns] = plan.grid.shape();
-        Self { plan, load, factor: 1.0, rows: 0..rows, columns, first: 0, stride: 1, column: 0 }
+        let (first, stride, column, reach) = (0, 1, 0, f64::INFINITY);
+        Self { plan, load, factor: 1.0, rows: 0..rows, columns, first, stride, column, reach }
     }
 
     /// Adds the `plane` of a component to an `output`.
@@ -417,6 +420,9 @@ impl Part for HalfSpacePart {
         outputs: &mut [&mut [f64]],
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
+        if place.depth >= self.reach {
+            return ControlFlow::Continue(());
+        }
         let loading = Loading::one(self.load, displacement);
         let memory = memory.get_or_insert_with(|| self.plan.plane_memory(&loading));
         let mut fields = std::mem::take(&mut memory.fields);
@@ -441,7 +447,7 @@ impl Part for HalfSpacePart {
         let there = sums.iter_mut().zip(cells);
         let there = there.filter_map(|(sums, cell)| Some((sums, self.cell(*cell)?)));
         let (sums, cells): (Vec<_>, Vec<_>) = there.unzip();
-        if cells.is_empty() {
+        if cells.is_empty() || place.depth >= self.reach {
             return ControlFlow::Continue(());
         }
         let loading = Loading::one(self.load, displacement);
@@ -460,7 +466,7 @@ impl Part for HalfSpacePart {
         lines: &mut [Vec<f64>],
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
-        if !(self.rows.start..=self.rows.end).contains(&row) {
+        if !(self.rows.start..=self.rows.end).contains(&row) || place.depth >= self.reach {
             return ControlFlow::Continue(());
         }
         let there = self.first - self.stride / 2 + (row - self.rows.start) * self.stride;
