@@ -278,15 +278,22 @@ def text(rows: Sequence[tuple[str, str]], warnings: Sequence[str]) -> str:
 
 def stresses(summary: StressSummary) -> str:
     """Return the table that ``print(solution.stress_summary())`` shows."""
-    lines = aligned(_peaks(summary), "<")
-    lines += [f"warning: {warning}" for warning in summary.warnings]
-    return printable("\n".join(lines if summary.finished else [*lines, UNFINISHED]))
+    lines = [*aligned(_peaks(summary), "<"), *_notes(summary)]
+    return printable("\n".join([*lines, *(f"warning: {warning}" for warning in summary.warnings)]))
 
 
 def stresses_markup(summary: StressSummary) -> str:
     """Return the table of a stress summary, for a notebook."""
     head, *rows = _peaks(summary)
-    return markup(rows, summary.warnings, head=head, notes=[] if summary.finished else [UNFINISHED])
+    return markup(rows, summary.warnings, head=head, notes=_notes(summary))
+
+
+def _notes(summary: StressSummary) -> list[str]:
+    """Return what stands below the table: the friction, and whether it is unfinished."""
+    x, y = shown(summary.friction or (0.0, 0.0))
+    size = float(np.hypot(x, y))
+    sliding = [f"friction {size:.4g}, traction along ({x / size:.4g}, {y / size:.4g})"] if size else []
+    return sliding if summary.finished else [*sliding, UNFINISHED]
 
 
 def _share(error: float, value: float) -> str:
