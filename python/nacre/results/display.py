@@ -290,9 +290,11 @@ def stresses_markup(summary: StressSummary) -> str:
 
 def _notes(summary: StressSummary) -> list[str]:
     """Return what stands below the table: the friction, and whether it is unfinished."""
-    x, y = shown(summary.friction or (0.0, 0.0))
-    size = float(np.hypot(x, y))
-    sliding = [f"friction {size:.4g}, traction along ({x / size:.4g}, {y / size:.4g})"] if size else []
+    sliding = []
+    friction = summary.friction or (0.0, 0.0)
+    if size := float(np.hypot(*friction)):
+        x, y = (part / size + 0.0 for part in friction)  # of -0 this makes 0
+        sliding = [f"friction {size:.4g}, traction along ({x:.4g}, {y:.4g})"]
     return sliding if summary.finished else [*sliding, UNFINISHED]
 
 

@@ -267,6 +267,7 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution, tmp_path: Path
         "layers[0], 0 m to 20 µm",
         "substrate",
         "interfaces[0] at 20 µm",
+        "friction 0.2, traction along (1, 0)",
     ]
     assert "safety factor" in lines[0]
     (row,) = (line for line in lines if line.startswith("substrate"))
@@ -337,7 +338,8 @@ def test_a_summary_says_along_which_direction_friction_acts(body: Any, tmp_path:
     grid = nacre.Grid((24, 24), (4e-3, 2e-4))
     solution = nacre.solve(roller, STEEL, STEEL, load=100.0, grid=grid)
     sign = 1 if body == "body" else -1
-    along, across = {"direction": (3.0, -4.0)}, {}
+    along: dict[str, Any] = {"direction": (3.0, -4.0)}
+    across: dict[str, Any] = {}
     for given, (x, y) in ((across, (0.0, 1.0)), (along, (0.6, -0.8))):
         sliding: dict[str, Any] = {"friction": 0.1, **given}
         summary = solution.stress_summary(body=body, **sliding)
@@ -345,7 +347,7 @@ def test_a_summary_says_along_which_direction_friction_acts(body: Any, tmp_path:
         field = solution.stress(1e-5, body=body, **sliding)
         assert summary.friction == pytest.approx(field.friction, rel=1e-15)
         assert solution.stress_plan(body).summary(**sliding) == summary
-        said = f"friction 0.1, traction along ({sign * x:g}, {sign * y:g})"
+        said = f"friction 0.1, traction along ({sign * x + 0.0:g}, {sign * y:g})"
         assert said in str(summary).splitlines()
         assert f"<p>{said}" in summary._repr_html_()
         assert nacre.load(summary.save(tmp_path / "a.nc")) == summary
