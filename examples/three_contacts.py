@@ -1,7 +1,8 @@
 """What does nacre compute: a coated roller, a rough contact, the fit of an indentation?
 
 The roller of Spinu et al. carries 1 kN off its centre, bare and with a coating; a random surface is
-pressed into a coated body; and the modulus of a film is fitted to a load curve with 3 % of noise. The program prints the main numbers, and draws all three in a PNG.
+pressed into a coated body; and the modulus of a film is fitted to a load curve with 3 % of noise.
+The program prints the main numbers, and draws all three in a PNG.
 """
 
 import argparse
@@ -36,7 +37,9 @@ rollers = {
     for name, coat in coats.items()
 }
 for name, solution in rollers.items():
-    print(f"{name:14} {solution.peak_pressure / 1e6:5.0f} MPa, tilt {solution.tilt[0] * 1e6:.1f} µrad")
+    print(
+        f"{name:14} {solution.peak_pressure / 1e6:5.0f} MPa, tilt {solution.tilt[0] * 1e6:.1f} µrad"
+    )
 
 # The rough surface.
 side = 256e-6
@@ -61,7 +64,9 @@ print(f"film           E between {low / 1e9:.2f} and {high / 1e9:.2f} GPa")
 with plot.style.styled():
     size = (plot.style.WIDTH, 0.62 * plot.style.WIDTH)
     figure = plt.figure(figsize=size, layout="constrained")
-    panels = figure.subplot_mosaic([["roller", "roller"], ["rough", "fit"]], height_ratios=(1, 1.15))
+    panels = figure.subplot_mosaic(
+        [["roller", "roller"], ["rough", "fit"]], height_ratios=(1, 1.15)
+    )
     plot.compare(rollers, at=0.0, axes=panels["roller"])
     panels["roller"].legend(loc="upper left")
     panels["roller"].set_title("a roller that is loaded off its centre")

@@ -31,5 +31,7 @@ below.plot(1e3 * solution.x, solution.pressure[:, row] / 1e9, label="nacre: circ
 inside = np.sqrt(np.clip(1 - (solution.x / a) ** 2, 0, None))
 hertz = ellipse.peak_pressure / 1e9 * inside
 below.plot(1e3 * solution.x, hertz, "--", color="#D55E00", label="Hertz: parabolas")
-below.set(xlabel="x, across the groove [mm]", ylabel="pressure [GPa]", xlim=(-1.0, 1.0), ylim=(0, None))
+below.set(
+    xlabel="x, across the groove [mm]", ylabel="pressure [GPa]", xlim=(-1.0, 1.0), ylim=(0, None)
+)
 below.legend(frameon=False, loc="lower center")

@@ -29,9 +29,7 @@ drawn = left.pcolormesh(*sides, pressure.T, shading="nearest")
 figure.colorbar(drawn, ax=left, label="pressure [GPa]")
 field = 100 * norm.gap * 1e-9 / norm.value / (1e6**2 * np.prod(grid.spacing))
 limit = abs(field).max()
-drawn = right.pcolormesh(
-    *sides, field.T, shading="nearest", cmap="RdBu_r", vmin=-limit, vmax=limit
-)
+drawn = right.pcolormesh(*sides, field.T, shading="nearest", cmap="RdBu_r", vmin=-limit, vmax=limit)
 figure.colorbar(drawn, ax=right, label="change [% / nm / µm²]")
 for axes in (left, right):
     axes.set(xlabel="x [µm]", aspect="equal", xlim=(-70, 70), ylim=(-70, 70))

@@ -6,6 +6,8 @@ Logarithmic derivatives of three outputs of a coated ball under 10 N: 1 % more o
 an output by so many per cent. The ball is that of :doc:`/howto/gradients`.
 """
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -23,7 +25,7 @@ numbers = {
     "shape.radius": ("radius of the ball", 5e-3),
     "load": ("load", 10.0),
 }
-outputs = {
+outputs: dict[str, Any] = {
     "peak pressure": "located_peak",
     "approach": "approach",
     "shear at the interface": {"stress": "plane_shear", "interface": 0, "sharpness": 200.0},

@@ -381,13 +381,13 @@ FLAT = np.pi * 1e-3
 
 
 def test_the_coefficient_of_a_wave_is_that_of_closed_forms() -> None:
-    """h' = √2 π Δ/λ = √2 p*/E*, so κ = √2 (A/A₀) p*/p̄, for two bodies and with a dent likewise."""
+    """H' = √2 π Δ/λ = √2 p*/E*, so κ = √2 (A/A₀) p*/p̄, for two bodies and with a dent likewise."""
     area, both = 2 / 512, nacre.Elastic(2.0, 0.0)
     for kinds in ((BODY,), (both, both), (nacre.HalfSpace(BODY, [nacre.Layer(BODY, 0.1)]),)):
         full = nacre.solve(WAVE, *kinds, load=2 * FLAT * area)
-        # Full contact: A = A₀ at twice the pressure that it takes. What remains is rounding of the gap.
+        # Full contact, A = A₀, at twice the pressure that it takes: what remains is rounding.
         assert rough.area_coefficient(full) == pytest.approx(2**0.5 / 2, rel=1e-12)
-        # Westergaard (Johnson 13.25): A/A₀ = 1/2 at sin²(π/4) p*. The edge lies between cells: 2/512.
+        # Westergaard (Johnson 13.25): A/A₀ = 1/2 at sin²(π/4) p*. A cell at either edge: 2/512.
         half = nacre.solve(WAVE, *kinds, load=0.5 * FLAT * area)
         assert rough.area_coefficient(half) == pytest.approx(2**0.5, rel=2 / 256)
     dented = nacre.solve(WAVE, BODY, load=0.5 * FLAT * area, hardness=0.6 * FLAT)
@@ -405,8 +405,7 @@ def test_the_coefficient_of_rough_bodies_is_that_of_the_table() -> None:
     """
     path = Path(__file__).parents[3] / "docs" / "kappa.csv"
     with path.open(encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if (row["young"], row["thickness"]) == ("4", "64")]
-    row = rows[-1]
+        *_, row = (r for r in csv.DictReader(file) if (r["young"], r["thickness"]) == ("4", "64"))
     layer = nacre.Layer(nacre.Elastic(4.0, 0.0), 64.0)
     grid = nacre.Grid((1024, 1024), (1024.0, 1024.0), periodic=(True, True))
     contact = nacre.Contact(nacre.HalfSpace(BODY, [layer]), grid)
