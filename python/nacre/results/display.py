@@ -247,10 +247,12 @@ def history(steps: Sequence[FrictionSolution]) -> list[list[str]]:
     force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
     rows = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
     rows[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
-    for number, step in enumerate(steps):
-        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
-        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
-        forces = [written(part, force) for part in shown(step.force)]
+    motions = [(step.creepage if rolls else step.shift) or (0.0, 0.0) for step in steps]
+    moves = np.reshape(shown(np.ravel(motions).tolist()), (-1, 2))
+    pulls = np.reshape(shown(np.ravel([step.force for step in steps]).tolist()), (-1, 2))
+    for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
+        forces = [written(part, force) for part in pull]
         ended = [_dissipated(step), step.report.termination]
         rows.append([str(number), *forces, *said, *ended])
     return rows
