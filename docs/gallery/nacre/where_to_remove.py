@@ -4,7 +4,7 @@ Where to remove material
 
 A ball with ripples on a coated body. The derivative of a norm of the pressure with respect to the
 gap of each cell is a field: where it is negative, removing material lowers the norm. All
-derivatives cost one solve. `nacre.jax` and `nacre.torch` hand the same field to other programs
+derivatives cost one solve. ``nacre.jax`` and ``nacre.torch`` hand the same field to other programs
 (:doc:`/howto/differentiable`).
 """
 

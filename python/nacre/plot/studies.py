@@ -142,7 +142,7 @@ def _refined(axes: Axes, sides: Sequence[Any], values: Any) -> list[Any]:
         [part.ravel() / span for part, span in zip(np.meshgrid(*mesh), spans, strict=True)]
         for mesh in (shown, fine)
     )
-    smooth = CubicTriInterpolator(Triangulation(*coarse), np.ravel(values), kind="geom")
+    smooth = CubicTriInterpolator(Triangulation(*coarse), np.ravel(values), kind="min_E")
     found = smooth(*dense).reshape(len(fine[1]), len(fine[0]))
     ends = [scale.inverted().transform(side) for scale, side in zip(scales, fine, strict=True)]
     return [*ends, found]
