@@ -15,6 +15,7 @@ from nacre.results.base import checked, has_friction
 with extra("plot"):
     from matplotlib.axes import Axes
     from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
 if TYPE_CHECKING:
@@ -62,7 +63,8 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
             # A contact that is wider than high leaves no room empty; the legend needs a third.
             sides = [np.ptp(limits) for limits in (drawn.get_xlim(), drawn.get_ylim())]
             height = np.clip(0.1 + 0.6 * sides[1] / sides[0], 0.33, 0.66)
-            drawn.figure.set_size_inches(0.9 * WIDTH, height * WIDTH)
+            if isinstance(drawn.figure, Figure):
+                drawn.figure.set_size_inches(0.9 * WIDTH, height * WIDTH)
         return drawn
 
 
