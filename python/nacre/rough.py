@@ -19,6 +19,7 @@ from nacre._tools.typing import Body
 from nacre._tools.units import symbol, written
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
+from nacre.hertz import contact_modulus
 from nacre.results import display
 from nacre.results.listed import Listed
 from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Roughness",
+    "area_coefficient",
     "corrected_area",
     "gap_distribution",
     "load_curve",
@@ -416,6 +418,65 @@ def corrected_area(solution: Solution) -> float:
     along, across = sides(solution)
     perimeter = along * dx + across * dy
     return float(max(solution.contact_area - PERIMETER * perimeter * np.sqrt(dx * dy), 0.0))
+
+
+def area_coefficient(solution: Solution) -> float:
+    """Area in contact over load and rms slope: κ = A E* h' / (A₀ p̄).
+
+    A is `corrected_area`, A₀ the area of the grid, and p̄ the mean pressure over it. E* is that of
+    the substrates, whatever lies on them. h' is the rms slope of the undeformed surface, as
+    `spectral_slope` finds it, without the permanent indentation. At light loads of bare bodies
+    theories give a constant: 1.60 (Persson, J. Chem. Phys. 115 (2001) 3840) to 2.51 (Bush, Gibson &
+    Thomas, Wear 35 (1975) 87).
+
+    Parameters
+    ----------
+    solution : Solution
+        Contact of a rough surface that is periodic along x and y; `windowed` makes it so.
+
+    Returns
+    -------
+    float
+        The coefficient κ.
+
+    Raises
+    ------
+    ValueError
+        If the grid is not periodic along x and y, the surface is plane or cannot touch everywhere,
+        nothing presses, or the bodies have no contact modulus: rigid substrates, a response.
+
+    Examples
+    --------
+    A wave that is pressed flat touches everywhere: its κ is E* h' / p̄.
+
+    >>> wave = 1e-7 * np.cos(2 * np.pi * np.arange(32) / 32)[:, None] * np.ones(4)
+    >>> surface = nacre.HeightMap(wave, 1e-6, periodic=(True, True))
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(surface, steel, load=4e9 * 128e-12)
+    >>> slope = nacre.rough.spectral_slope(surface)
+    >>> round(area_coefficient(solution) / (steel.plane_strain_modulus * slope / 4e9), 6)
+    1.0
+    """
+    grid, report = solution.report.grid, solution.report
+    if grid.is_line or not all(grid.periodic):
+        raise ValueError(
+            "the grid of solution must be periodic along x and y: the share of the area of one "
+            "contact depends on the size of its grid"
+        )
+    if not np.isfinite(solution.gap).all():
+        raise ValueError("the shape of solution must be able to touch everywhere")
+    if not solution.load > 0:
+        raise ValueError(f"the load of solution must be above 0, got {solution.load}")
+    members = [body for body in (report.body, report.counterbody) if body is not None]
+    bases = [getattr(body, "substrate", core.RIGID) for body in members]
+    elastic = [base for base in bases if isinstance(base, core.Elastic)]
+    if not elastic or any(isinstance(body, core.Response) for body in members):
+        raise ValueError("the bodies of solution must have an elastic substrate for a modulus E*")
+    heights = solution.displacement + solution.indentation - solution.gap
+    slope = spectral_slope(core.HeightMap(heights, grid.spacing, periodic=grid.periodic))
+    if not slope > 0:
+        raise ValueError("the surface of solution must be rough, got a plane")
+    return corrected_area(solution) * contact_modulus(*elastic) * slope / solution.load
 
 
 def patches(solution: Solution) -> Array:

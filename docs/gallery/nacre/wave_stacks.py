@@ -37,7 +37,7 @@ for ax, (name, body) in zip(axes, bodies.items(), strict=True):
         ax.plot(1e6 * grid.x, solution.pressure[:, 0] / full, label=label)
     ax.set(xlabel="x [µm]", title=f"{name}\np* = {full / 1e6:.0f} MPa")
 axes[0].set_ylabel("pressure / p*")
-axes[0].legend(fontsize=8)
+figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 # %%
 # At p̄ = p* the pressure is p* (1 + cos(2πx/λ)) on every body, and the gap is closed:

@@ -16,7 +16,7 @@ import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
 from nacre.results import display, files, values
-from nacre.results.base import Result, same
+from nacre.results.base import Result, as_text, same
 from nacre.results.listed import Tabular
 from nacre.results.quantities import EXTREMES
 
@@ -398,6 +398,7 @@ class StressSummary(Tabular):
 
     _COMPILED = True
     _TOLD = ("warnings",)
+    _LATER = ("friction",)
 
     layers: list[LayerStress]
     """Extremes in the layers from the surface down, and in the substrate."""
@@ -405,15 +406,27 @@ class StressSummary(Tabular):
     """Extremes at the interfaces from the surface down."""
     finished: bool
     """Whether all depths were evaluated; False where a callback stopped the evaluation."""
+    friction: tuple[float, float] | None
+    """Traction that was added, divided by pressure, ``(x, y)``, as `Stress.friction`.
+
+    Its direction is the given one, or that in which the shape rolls. `None` in files of earlier
+    versions.
+    """
     warnings: list[str]
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
-    def _made(cls, text: str) -> Self:
-        data = json.loads(text)
+    def _made(cls, text: str, friction: tuple[float, float] | None = None) -> Self:
+        data = json.loads(text) | {"friction": friction}
         data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
         data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
         return cls(**data)
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        friction = cls._checked({"friction": state.pop("friction")})["friction"]
+        text = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
+        return cls._made(text, friction)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -436,7 +449,7 @@ class StressSummary(Tabular):
     def _comments(self) -> dict[str, Any]:
         """Return what stands beside the table."""
         warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
-        return {"finished": self.finished, **warnings}
+        return {"finished": self.finished, "friction": self.friction, **warnings}
 
     def _file_rows(self) -> list[tuple[Any, ...]]:
         """Return the rows of the table, the heading first."""
@@ -591,7 +604,9 @@ class StressPlan:
         True
         """
         with lasting("stresses", progress) as progress:
-            return _warned(StressSummary._made(core.stress_summary(self._plan, locals())))
+            text = core.stress_summary(self._plan, locals())
+        sliding = self._solution._sliding(friction, direction, self._member)
+        return _warned(StressSummary._made(text, sliding))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -606,6 +621,7 @@ class Stressed:
     """Stresses below a solved contact, with or without friction."""
 
     _solved: Any
+    report: Any
 
     def stress(
         self,
@@ -760,7 +776,18 @@ class Stressed:
         True
         """
         with lasting("stresses", progress) as progress:
-            return _warned(StressSummary._made(core.stress_summary(self._solved, locals())))
+            text = core.stress_summary(self._solved, locals())
+        return _warned(StressSummary._made(text, self._sliding(friction, direction, body)))
+
+    def _sliding(
+        self, friction: float, direction: Direction | None, body: Member
+    ) -> tuple[float, float]:
+        """Return the traction on a body over the pressure, of arguments that were accepted."""
+        if friction == 0:
+            return (0.0, 0.0)
+        x, y = self.report.rolling_direction if direction is None else direction
+        scale = float(friction) / np.hypot(x, y) * (1 if body == "body" else -1)
+        return (float(scale * x), float(scale * y))
 
     def stress_plan(self, body: Member = "body", threads: int | None = None) -> StressPlan:
         """Plan of the stress in one body, to be evaluated any number of times.

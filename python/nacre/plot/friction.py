@@ -9,12 +9,13 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import lengths, new_axes, next_look, styled
+from nacre.plot.style import WIDTH, lengths, new_axes, next_look, styled
 from nacre.results.base import checked, has_friction
 
 with extra("plot"):
     from matplotlib.axes import Axes
     from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
 if TYPE_CHECKING:
@@ -57,7 +58,14 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     with styled():
         if solution.grid.is_line:
             return _line(solution, axes or new_axes(0.6, 0.4))
-        return _map(solution, axes or new_axes(0.9, 0.66))
+        drawn = _map(solution, axes or new_axes(0.9, 0.66))
+        if axes is None and drawn.get_aspect() == 1.0:
+            # A contact that is wider than high leaves no room empty; the legend needs a third.
+            sides = [np.ptp(limits) for limits in (drawn.get_xlim(), drawn.get_ylim())]
+            height = np.clip(0.1 + 0.6 * sides[1] / sides[0], 0.33, 0.66)
+            if isinstance(drawn.figure, Figure):
+                drawn.figure.set_size_inches(0.9 * WIDTH, height * WIDTH)
+        return drawn
 
 
 def _check(axes: object) -> None:

@@ -52,5 +52,5 @@ def course(optimum: Optimum, axes: Axes | None = None) -> Axes:
         if all((values > 0).all() for values in lines.values()):
             axes.set_yscale("log")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        axes.legend()
+        axes.legend(loc="upper left", bbox_to_anchor=(0, -0.2))
     return axes

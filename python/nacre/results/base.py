@@ -198,14 +198,19 @@ class Result:
         name = cls.__name__
         if cls._COMPILED:
             return cls._made(core.checked(name, as_text(name, state, infinite=True)))
+        return cls(**cls._checked(state))
+
+    @classmethod
+    def _checked(cls, state: dict[str, Any]) -> dict[str, Any]:
+        """Return these fields, checked by their annotations."""
         kinds, fields = get_type_hints(cls), {}
         for key, value in state.items():
             try:
                 fields[key] = _fitted(kinds[key], value)
             except TypeError as error:
-                said = f'{name}: the value of the key "{key}" does not fit: {value!r}'
+                said = f'{cls.__name__}: the value of the key "{key}" does not fit: {value!r}'
                 raise ValueError(said) from error
-        return cls(**fields)
+        return fields
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""

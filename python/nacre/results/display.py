@@ -247,10 +247,12 @@ def history(steps: Sequence[FrictionSolution]) -> list[list[str]]:
     force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
     rows = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
     rows[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
-    for number, step in enumerate(steps):
-        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
-        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
-        forces = [written(part, force) for part in shown(step.force)]
+    motions = [(step.creepage if rolls else step.shift) or (0.0, 0.0) for step in steps]
+    moves = np.reshape(shown(np.ravel(motions).tolist()), (-1, 2))
+    pulls = np.reshape(shown(np.ravel([step.force for step in steps]).tolist()), (-1, 2))
+    for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
+        forces = [written(part, force) for part in pull]
         ended = [_dissipated(step), step.report.termination]
         rows.append([str(number), *forces, *said, *ended])
     return rows
@@ -278,15 +280,24 @@ def text(rows: Sequence[tuple[str, str]], warnings: Sequence[str]) -> str:
 
 def stresses(summary: StressSummary) -> str:
     """Return the table that ``print(solution.stress_summary())`` shows."""
-    lines = aligned(_peaks(summary), "<")
-    lines += [f"warning: {warning}" for warning in summary.warnings]
-    return printable("\n".join(lines if summary.finished else [*lines, UNFINISHED]))
+    lines = [*aligned(_peaks(summary), "<"), *_notes(summary)]
+    return printable("\n".join([*lines, *(f"warning: {warning}" for warning in summary.warnings)]))
 
 
 def stresses_markup(summary: StressSummary) -> str:
     """Return the table of a stress summary, for a notebook."""
     head, *rows = _peaks(summary)
-    return markup(rows, summary.warnings, head=head, notes=[] if summary.finished else [UNFINISHED])
+    return markup(rows, summary.warnings, head=head, notes=_notes(summary))
+
+
+def _notes(summary: StressSummary) -> list[str]:
+    """Return what stands below the table: the friction, and whether it is unfinished."""
+    sliding = []
+    friction = summary.friction or (0.0, 0.0)
+    if size := float(np.hypot(*friction)):
+        x, y = (part / size + 0.0 for part in friction)  # of -0 this makes 0
+        sliding = [f"friction {size:.4g}, traction along ({x:.4g}, {y:.4g})"]
+    return sliding if summary.finished else [*sliding, UNFINISHED]
 
 
 def _share(error: float, value: float) -> str:

@@ -59,11 +59,9 @@ fn largest_granted(bytes: u64) -> u64 {
 
 /// Bytes that are left to this process as far as files below `root` and the machine say; `None` where nothing does.
 fn left(root: &Path) -> Option<u64> {
-    let machine = sysinfo::System::new().ok().map(|mut system| {
-        system.refresh_memory();
-        system.available_memory()
-    });
-    let machine = machine.filter(|&bytes| bytes > 0);
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let machine = Some(system.available_memory()).filter(|&bytes| bytes > 0);
     machine.into_iter().chain(groups(root)).chain(limits(root)).min()
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import Any
 
@@ -366,3 +367,70 @@ def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> No
     for function in (rough.roughness, rough.spectral_slope, rough.windowed):
         with pytest.raises(TypeError, match="surface must be a HeightMap, got 3"):
             function(3)  # type: ignore[arg-type]
+
+
+# The coefficient of the area.
+
+WAVE = nacre.HeightMap(
+    np.repeat(1e-3 * np.cos(2 * np.pi * (np.arange(512) + 0.5) / 512)[:, None], 2, axis=1),
+    1 / 512,
+    periodic=(True, True),
+)
+FLAT = np.pi * 1e-3
+"""Mean pressure that closes the last gap of `WAVE` on `BODY`: π E* Δ/λ, Johnson (1985), 13.27."""
+
+
+def test_the_coefficient_of_a_wave_is_that_of_closed_forms() -> None:
+    """H' = √2 π Δ/λ = √2 p*/E*, so κ = √2 (A/A₀) p*/p̄, for two bodies and with a dent likewise."""
+    area, both = 2 / 512, nacre.Elastic(2.0, 0.0)
+    for kinds in ((BODY,), (both, both), (nacre.HalfSpace(BODY, [nacre.Layer(BODY, 0.1)]),)):
+        full = nacre.solve(WAVE, *kinds, load=2 * FLAT * area)
+        # Full contact, A = A₀, at twice the pressure that it takes: what remains is rounding.
+        assert rough.area_coefficient(full) == pytest.approx(2**0.5 / 2, rel=1e-12)
+        # Westergaard (Johnson 13.25): A/A₀ = 1/2 at sin²(π/4) p*. A cell at either edge: 2/512.
+        half = nacre.solve(WAVE, *kinds, load=0.5 * FLAT * area)
+        assert rough.area_coefficient(half) == pytest.approx(2**0.5, rel=2 / 256)
+    dented = nacre.solve(WAVE, BODY, load=0.5 * FLAT * area, hardness=0.6 * FLAT)
+    assert dented.indentation.max() > 0
+    share = rough.corrected_area(dented) / area
+    assert rough.area_coefficient(dented) == pytest.approx(2**0.5 * share / 0.5, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_coefficient_of_rough_bodies_is_that_of_the_table() -> None:
+    """Row of docs/kappa.csv: five surfaces on a stiff layer of four of their shortest waves.
+
+    `make kappa` starts each solve from the last and divides by the slope that it asked for. Some of
+    10^5 cells in contact may differ, within the tolerance of the solves.
+    """
+    path = Path(__file__).parents[3] / "docs" / "kappa.csv"
+    with path.open(encoding="utf-8") as file:
+        *_, row = (r for r in csv.DictReader(file) if (r["young"], r["thickness"]) == ("4", "64"))
+    layer = nacre.Layer(nacre.Elastic(4.0, 0.0), 64.0)
+    grid = nacre.Grid((1024, 1024), (1024.0, 1024.0), periodic=(True, True))
+    contact = nacre.Contact(nacre.HalfSpace(BODY, [layer]), grid)
+    found = []
+    for seed in range(1, 1 + int(row["seeds"])):
+        surface = rough.random_surface(
+            grid.shape, grid.size, hurst=0.8, rms_slope=0.01, shortest=16, longest=256, seed=seed
+        )
+        solution = contact.solve(surface, load=float(row["pressure"]) * 0.01 * 1024**2)
+        found.append(rough.area_coefficient(solution))
+    assert np.mean(found) == pytest.approx(float(row["kappa"]), rel=1e-4)
+
+
+def test_a_coefficient_that_means_nothing_is_refused() -> None:
+    ball = nacre.solve(nacre.Sphere(1.0), BODY, load=1e-3)
+    with pytest.raises(ValueError, match="periodic along x and y"):
+        rough.area_coefficient(ball)
+    soft = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(BODY, 0.1)])
+    with pytest.raises(ValueError, match="elastic substrate"):
+        rough.area_coefficient(nacre.solve(SURFACE, soft, load=1e-3))
+    springs = nacre.Response(lambda alpha: np.ones_like(alpha))
+    with pytest.raises(ValueError, match="elastic substrate"):
+        rough.area_coefficient(nacre.solve(SURFACE, BODY, springs, load=1e-3))
+    with pytest.raises(ValueError, match="above 0, got 0"):
+        rough.area_coefficient(nacre.solve(SURFACE, BODY, approach=-1.0))
+    plane = nacre.HeightMap(np.zeros((8, 8)), 0.1, periodic=(True, True))
+    with pytest.raises(ValueError, match="rough, got a plane"):
+        rough.area_coefficient(nacre.solve(plane, BODY, load=1e-3))

@@ -272,6 +272,7 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution, tmp_path: Path
         "layers[0], 0 m to 20 µm",
         "substrate",
         "interfaces[0] at 20 µm",
+        "friction 0.2, traction along (1, 0)",
     ]
     assert "safety factor" in lines[0]
     (row,) = (line for line in lines if line.startswith("substrate"))
@@ -333,6 +334,38 @@ def test_a_plan_gives_the_bits_of_the_solution(solution: nacre.Solution, body: A
         whole = solution.stress([0.0, 2e-5], body=body, **section)
         assert plan.stress([0.0, 2e-5], **section) == whole
         assert plan.summary(**limits) == solution.stress_summary(body=body, **limits)
+
+
+@pytest.mark.parametrize("body", ["body", "counterbody"])
+def test_a_summary_says_along_which_direction_friction_acts(body: Any, tmp_path: Path) -> None:
+    """The direction is across the axis of a roller unless it is given, as in `stress`."""
+    roller = nacre.Roller(5e-3, flat_length=2e-3, crown_radius=0.5)
+    grid = nacre.Grid((24, 24), (4e-3, 2e-4))
+    solution = nacre.solve(roller, STEEL, STEEL, load=100.0, grid=grid)
+    sign = 1 if body == "body" else -1
+    along: dict[str, Any] = {"direction": (3.0, -4.0)}
+    across: dict[str, Any] = {}
+    for given, (x, y) in ((across, (0.0, 1.0)), (along, (0.6, -0.8))):
+        sliding: dict[str, Any] = {"friction": 0.1, **given}
+        summary = solution.stress_summary(body=body, **sliding)
+        assert summary.friction == pytest.approx((0.1 * sign * x, 0.1 * sign * y), rel=1e-15)
+        field = solution.stress(1e-5, body=body, **sliding)
+        assert summary.friction == pytest.approx(field.friction, rel=1e-15)
+        assert solution.stress_plan(body).summary(**sliding) == summary
+        said = f"friction 0.1, traction along ({sign * x + 0.0:g}, {sign * y:g})"
+        assert said in str(summary).splitlines()
+        assert f"<p>{said}" in summary._repr_html_()
+        assert nacre.load(summary.save(tmp_path / "a.nc")) == summary
+        assert f"# friction: {summary.friction}" in summary.save(tmp_path / "a.csv").read_text()
+    frictionless = solution.stress_summary(body=body)
+    assert frictionless.friction == (0.0, 0.0)
+    assert "friction" not in str(frictionless)
+    # Files of earlier versions do not know it.
+    state = summary.to_dict()
+    del state["friction"]
+    assert nacre.types.StressSummary.from_dict(state).friction is None
+    with pytest.raises(ValueError, match='key "friction" does not fit'):
+        nacre.types.StressSummary.from_dict(state | {"friction": [1.0]})
 
 
 class StopError(Exception):

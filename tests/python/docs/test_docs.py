@@ -21,7 +21,7 @@ MODULES = (
     *(nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot, nacre.rough),
     nacre.types,
 )
-PAGES = [DOCS / "start.md", *sorted((DOCS / "howto").glob("*.md"))]
+PAGES = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md")), *sorted(DOCS.glob("limits/*.md"))]
 FENCE = re.compile(
     r"^```(?:\{code-block\} )?(\w+)\n(?::caption: (\S+)\n\n)?(.*?)^```$", re.MULTILINE | re.DOTALL
 )

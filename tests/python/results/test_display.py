@@ -290,3 +290,15 @@ def test_a_study_of_lines_has_loads_and_areas_per_length() -> None:
         curve = design.load_curve(nacre.Cylinder(5.0), steel, [50.0], grid=grid)
     assert curve["load"].attrs["units"] == "N/mm"
     assert curve.stiffness.attrs["units"] == "MPa"
+
+
+def test_a_history_prints_0_where_a_force_is_rounding() -> None:
+    """Forces of 0 are met to rounding of the largest force of the history."""
+    grid = nacre.Grid((16, 16), (2.4e-4, 2.4e-4))
+    steps: list[Any] = [{"force": (0.0, 0.0)}, {"force": (2.0, 0.0)}, {"force": (0.0, 0.0)}]
+    bodies: list[Any] = [nacre.Sphere(5e-3), nacre.Elastic(210e9, 0.3), nacre.Elastic(115e9, 0.33)]
+    loop = nacre.slide(*bodies, steps=steps, load=10.0, friction=0.3, grid=grid)
+    _, first, pulled, back = (line.split("  ") for line in str(loop).splitlines()[:4])
+    assert [cell.strip() for cell in first if cell][1:5] == ["0 N", "0 N", "0 m", "0 m"]
+    assert [cell.strip() for cell in pulled if cell][1:3] == ["2 N", "0 N"]
+    assert [cell.strip() for cell in back if cell][1:3] == ["0 N", "0 N"]
