@@ -54,8 +54,10 @@ def fill(content):
             a, count = minimum(stack, which, radii, scan[:, which])
             load, delta = state(stack, a)
             row[key] |= {"pull_off_over_piwR": -load, "a_over_a0": a, "delta_over_d0": delta, "minima": count}
-        last = np.flatnonzero((scan[:-1, 0] < 0) & (scan[1:, 0] >= 0))[-1]
-        a = brentq(lambda a: state(stack, a)[0], radii[last], radii[last + 1], xtol=1e-14)
+        low = high = row["load_control"]["a_over_a0"]
+        while state(stack, high)[0] < 0:
+            low, high = high, 1.3 * high
+        a = brentq(lambda a: state(stack, a)[0], low, high, xtol=1e-14)
         row["zero_load"] |= {"a_over_a0": a, "delta_over_d0": state(stack, a)[1]}
     for curve in content["curves"]:
         stack = response(curve["E1_over_E2"], curve["h_over_a0"])

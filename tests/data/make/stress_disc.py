@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 from common import main
-from layered import Body, states
+from layered import Body, excess, states
 from scipy.special import j0, j1
 
 NAME, SECONDS = "stress_disc.json", 8
@@ -29,18 +29,10 @@ def stresses(state, shear, nu):
     return along, across
 
 
-def at(stack, r, z, above, transform, alpha, weights):
-    """uz, ur, szz, srz, srr, stt at (r, z) under an axisymmetric pressure of known Hankel transform."""
-    index, cut = stack.cut(z)
-    state = states(cut, alpha)[:, index, :, 0]
-    if above:  # V jumps at a frictionless interface: the state at the bottom of the layer above
-        index -= 1
-        index, cut = stack.cut(z * (1 - 1e-9))
-        state = states(cut, alpha)[:, index, :, 0]
-    part = [*[layer[1:3] for layer in cut.layers], cut.base][index]
+def at(state, part, alpha, weights, r):
+    """uz, ur, szz, srz, srr, stt from the states on the wave numbers; weights with the pressure's transform."""
     along, across = stresses(state, *part)
-    w = weights * transform * alpha
-    x = alpha * r
+    w, x = weights * alpha, alpha * r
     bessel0, bessel1 = j0(x), j1(x)
     over = np.where(x > 1e-8, bessel1 / np.where(x > 0, x, 1), 0.5)
     return {
@@ -55,15 +47,23 @@ def at(stack, r, z, above, transform, alpha, weights):
 
 def fill(content):
     for case in content["cases"]:
-        layers = case["layers"]
-        parts = [(*layer[:1], layer[1] / (2 * (1 + layer[2])), layer[2]) for layer in layers]
-        slip = case["slip"]
-        stack = Body([(*p, k not in slip) for k, p in enumerate(parts[:-1])], parts[-1][1:])
-        radius = case["load_radius"]
-        for row in case["rows"]:
-            alpha, weights = panels(40 / row["z"], min(1.5 / (radius + row["r"]), 0.4 / layers[0][0]))
-            transform = case["q"] * radius * j1(alpha * radius) / alpha
-            row |= at(stack, row["r"], row["z"], row["side"] == -1, transform, alpha, weights)
+        parts = [(e / (2 * (1 + nu)), nu) for _, e, nu in case["layers"]]
+        thick = [h for h, _, _ in case["layers"][:-1]]
+        stack = Body([(h, *part, True) for h, part in zip(thick, parts, strict=False)], parts[-1])
+        radius, reach = case["load_radius"], max(row["r"] for row in case["rows"])
+        for z in sorted({row["z"] for row in case["rows"]}):
+            alpha, weights = panels(40 / z, min(1.5 / (radius + reach), 0.4 / thick[0]))
+            weights = weights * case["q"] * radius * j1(alpha * radius) / alpha
+            index, cut = stack.cut(z)
+            state = states(cut, alpha)[:, index, :, 0]
+            for row in case["rows"]:
+                if row["z"] == z:  # side -1: of the layer above, whose state is the same
+                    part = [*[layer[1:3] for layer in cut.layers], cut.base][index + row["side"]]
+                    row |= at(state, part, alpha, weights, row["r"])
+        bare = 2 * (1 - parts[0][1]) / (2 * parts[0][0]) * case["q"] * radius  # of the top material
+        alpha, weights = panels(21 / thick[0], min(1.0 / radius, 0.3 / thick[0]))
+        rest = weights * excess(stack, alpha) * j1(alpha * radius) / alpha
+        case["surface_uz_centre"] = bare + case["q"] * radius * (1 - parts[0][1]) / parts[0][0] * rest.sum()
 
 
 if __name__ == "__main__":
