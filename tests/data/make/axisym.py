@@ -8,7 +8,8 @@ With A1 = (1 - nu1)/G1 of the top layer, M = alpha c11/A1 - 1, f = 2/(pi A1) and
     p(r) = phi(a)/sqrt(a^2 - r^2) - integral_r^a phi'(t)/sqrt(t^2 - r^2) dt
     u(r > a) = A1 integral phi/sqrt(r^2 - t^2) + A1 integral M p^ J0(alpha r) d alpha
 
-(Sneddon, Int. J. Eng. Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4, for M = 0; the layers enter
+(Sneddon, Int. J. Eng. Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4, for M = 0; the layers
+enter
 through M). Without adhesion phi(a) = 0. Moduli, lengths and the contact radius may be complex: the
 derivative with respect to x is the imaginary part at x + 1e-30 i, over 1e-30.
 """
@@ -16,8 +17,10 @@ derivative with respect to x is the imaginary part at x + 1e-30 i, over 1e-30.
 import math
 
 import numpy as np
-from layered import excess
+from scipy.optimize import minimize_scalar
 from scipy.special import j0
+
+from layered import excess
 
 DEGREE, TAIL = 24, 21.0  # of M's Chebyshev pieces; alpha h beyond which M is below 1e-15
 
@@ -53,7 +56,10 @@ class Response:
 
     def nodes(self, reach, order=10):
         """Nodes, weights and M for integrals of M times functions that vary over 1/reach."""
-        width = min(self.breaks[self.breaks > 0.4999 / sum(np.real(v[0]) for v in self.stack.layers)][0], 1.5 / reach)
+        width = min(
+            self.breaks[self.breaks > 0.4999 / sum(np.real(v[0]) for v in self.stack.layers)][0],
+            1.5 / reach,
+        )
         geometric = width * 2.0 ** np.arange(-30, 0)
         count = math.ceil(self.end / width)
         edges = np.concatenate([[0.0], geometric, np.linspace(width, self.end, count)])
@@ -61,6 +67,11 @@ class Response:
         middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
         alpha = (middle[:, None] + half[:, None] * x).ravel()
         return alpha, (half[:, None] * w).ravel(), self(alpha)
+
+
+def lowest(function, bounds, tolerance):
+    """Minimum of a function between bounds: SciPy's result."""
+    return minimize_scalar(function, bounds=bounds, method="bounded", options={"xatol": tolerance})
 
 
 def tip(case):
@@ -72,7 +83,9 @@ def tip(case):
         return (lambda s: s**2 / radius), (lambda s: 2 * s / radius)
     if kind == "sphere":
         x = lambda s: s / radius  # noqa: E731
-        return (lambda s: s * np.arctanh(x(s))), (lambda s: np.arctanh(x(s)) + x(s) / (1 - x(s) ** 2))
+        return (lambda s: s * np.arctanh(x(s))), (
+            lambda s: np.arctanh(x(s)) + x(s) / (1 - x(s) ** 2)
+        )
     n = 1.0 if kind == "cone" else n
     factor = radius * n * math.sqrt(math.pi) / 2 * math.gamma(n / 2) / math.gamma((n + 1) / 2)
     return (lambda s: factor * s**n), (lambda s: factor * n * s ** (n - 1))
@@ -95,7 +108,9 @@ class Contact:
         right = np.column_stack([self.f + 0 * self.t, self.f * self.F(self.t)])
         self.punch, self.shape = np.linalg.solve(matrix, right).T
         self.S, self.PF = 2 * np.pi * self.w @ self.punch, 2 * np.pi * self.w @ self.shape
-        self.edge, self.edge_shape = (self.at(phi, one) for phi, one in ((self.punch, 1), (self.shape, self.F(a))))
+        self.edge, self.edge_shape = (
+            self.at(phi, one) for phi, one in ((self.punch, 1), (self.shape, self.F(a)))
+        )
         self.delta = self.edge_shape / self.edge
         self.P = self.S * self.delta - self.PF
         self.dS = np.pi**2 * self.edge**2 * response.a1  # 2 pi^2 phi1(a)^2/E1*, E1* = 2/A1
@@ -118,7 +133,9 @@ class Contact:
         x, w = np.polynomial.legendre.leggauss(max(n, len(self.t)))
         v, w = (x + 1) / 2, w / 2
         t = np.sqrt(r**2 + (self.a**2 - r**2) * v**2)
-        sines = np.sin(t[:, None] * self.alpha) @ (self.weights * self.m * self.alpha * self.transform(phi))
+        sines = np.sin(t[:, None] * self.alpha) @ (
+            self.weights * self.m * self.alpha * self.transform(phi)
+        )
         slope = -self.f * self.dF(t) + 2 / np.pi * sines
         root = np.sqrt(self.a**2 - r**2)
         return (moved * self.edge - self.edge_shape) / root - root * w @ (slope / t)
@@ -126,4 +143,6 @@ class Contact:
     def outside(self, r, phi):
         """u(r) for r > a; the Contact must have been made with reach >= r."""
         near = (self.w * phi / np.sqrt(r**2 - self.t**2)).sum()
-        return self.response.a1 * (near + (self.weights * self.m * j0(self.alpha * r)) @ self.transform(phi))
+        return self.response.a1 * (
+            near + (self.weights * self.m * j0(self.alpha * r)) @ self.transform(phi)
+        )

@@ -1,12 +1,17 @@
 """What the generators of reference numbers share: files, comparison, command line.
 
-A generator is a module with ``NAME``, the file of reference numbers, ``fill(content)``, which computes
-all numbers of the file from the inputs that it lists, and ``SECONDS``, how long that takes. To add a
+A generator is a module with ``NAME``, the file of reference numbers, ``fill(content)``, which
+computes
+all numbers of the file from the inputs that it lists, and ``SECONDS``, how long that takes. To add
+a
 case, write its inputs into the file and run the generator with ``--write``.
 
-A file says in ``description`` what it holds, in ``source`` and ``method`` where the numbers come from,
-in ``error`` how good they are. ``tolerance`` states the error for programs: ``{key: [relative, absolute]}``,
-where the key is that of the number or of an object around it (the innermost counts), ``""`` all others.
+A file says in ``description`` what it holds, in ``source`` and ``method`` where the numbers come
+from,
+in ``error`` how good they are. ``tolerance`` states the error for programs: ``{key: [relative,
+absolute]}``,
+where the key is that of the number or of an object around it (the innermost counts), ``""`` all
+others.
 The allowed difference is absolute + relative * |stored|.
 """
 
@@ -39,7 +44,7 @@ def write(name, content):
 
 
 def differences(new, old, tolerance, path=()):
-    """Yield (difference / allowed, path, new, old) of all numbers that differ, and of other changes."""
+    """Yield (difference / allowed, path, new, old) of numbers that differ and of other changes."""
     if isinstance(old, dict) and isinstance(new, dict) and old.keys() == new.keys():
         for key in old:
             yield from differences(new[key], old[key], tolerance, (*path, str(key)))
@@ -59,7 +64,7 @@ def differences(new, old, tolerance, path=()):
 
 
 def compare(generator):
-    """Worst difference of the newly computed numbers, in units of the stated error; the new content."""
+    """Differences, in units of the stated error and worst first, and the new content."""
     old = read(generator.NAME)
     new = copy.deepcopy(old)
     generator.fill(new)
@@ -70,14 +75,17 @@ def compare(generator):
 def main(generator):
     """Command line of one generator; the exit status is 1 where a number is off."""
     parser = argparse.ArgumentParser(description=generator.__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help="replace the stored numbers by the new ones")
+    parser.add_argument(
+        "--write", action="store_true", help="replace the stored numbers by the new ones"
+    )
     arguments = parser.parse_args()
     start = time.perf_counter()
     found, new = compare(generator)
     worst = found[0][0] if found else 0.0
     for share, path, is_now, was in [d for d in found if d[0] > 1][:10]:
         print(f"  {'/'.join(path)}: {is_now!r}, stored {was!r}: {share:.3g} times the stated error")
-    print(f"{generator.NAME}: largest difference {worst:.3g} of the stated error, {time.perf_counter() - start:.1f} s")
+    took = time.perf_counter() - start
+    print(f"{generator.NAME}: largest difference {worst:.3g} of the stated error, {took:.1f} s")
     if arguments.write:
         write(generator.NAME, new)
         print(f"{generator.NAME} written")

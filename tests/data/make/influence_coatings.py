@@ -3,6 +3,7 @@
 import sys
 
 import numpy as np
+
 from common import main
 from layered import body
 from patch import Added, love

@@ -1,10 +1,11 @@
 """Rows of inverse.json that nacre's own engine made: writes those of seeds 18 and 19.
 
-Another program made seeds 11 to 17. In the row of seed 16 the sum of squares falls along a ridge, to
+Another program made seeds 11 to 17. In the row of seed 16 the sum of squares falls along a ridge,
+to
 thinner and softer coats without end, and it has no maximum of likelihood. With less noise
 it has one: here are this coat, and one of contrast 180. `nacre.indent.fit` has no part in this: the
 loads are states at each depth, derivatives are differences of curves of fourth order, and the
-minimum is found by Gauss' and Newton's steps. Run: .venv/bin/python tests/data/make_inverse.py
+minimum is found by Gauss' and Newton's steps. Run: .venv/bin/python tests/data/make/inverse.py
 """
 
 import json
@@ -16,7 +17,7 @@ import numpy as np
 import nacre
 from nacre.indent import Indentation, Tip
 
-PATH = Path(__file__).with_name("inverse.json")
+PATH = Path(__file__).parents[1] / "inverse.json"
 FREE = ["lnE1", "lnh", "d0", "drift"]
 SEEDS = {18: ("soft coat", 3e9, 3e-4), 19: ("contrast 180", 70e9 / 180, 3e-5)}
 POINTS, STEP, ITERATIONS = 80, 1e-2, 12
@@ -28,7 +29,9 @@ def row(seed, name, young, sigma):
     time = np.linspace(0, 1, POINTS)
 
     def test(log_young, log_thickness):
-        layer = nacre.Layer(nacre.Elastic(math.exp(log_young), true["nu1"]), math.exp(log_thickness))
+        layer = nacre.Layer(
+            nacre.Elastic(math.exp(log_young), true["nu1"]), math.exp(log_thickness)
+        )
         body = nacre.HalfSpace(nacre.Elastic(true["E2"], true["nu2"]), [layer])
         return Indentation(body, Tip.paraboloid(true["R"]))
 
@@ -75,9 +78,9 @@ def row(seed, name, young, sigma):
         depth=depth.tolist(),
         load_noise_free=clean.tolist(),
         load=load.tolist(),
-        cramer_rao_sigma=dict(zip(FREE, sigmas.tolist())),
+        cramer_rao_sigma=dict(zip(FREE, sigmas.tolist(), strict=True)),
         correlation=np.round(covariance / np.outer(sigmas, sigmas), 6).tolist(),
-        maximum_likelihood=dict(zip(FREE, place.tolist())),
+        maximum_likelihood=dict(zip(FREE, place.tolist(), strict=True)),
         chi2=float(rest @ rest),
     )
 

@@ -1,6 +1,7 @@
 """Pull-off of a rigid paraboloid with JKR's adhesion on a bonded coating: jkr.json.
 
-Griffith: the edge density of Fredholm's equation is phi(a) = -sqrt(2 a E1* w/pi), w the work of adhesion
+Griffith: the edge density of Fredholm's equation is phi(a) = -sqrt(2 a E1* w/pi), w the work of
+adhesion
 (E1* of the coating). Lengths are in a0, E2 = 1, R = 1: a0^3 = 9 pi w R^2/(8 E2*) = 1.
 """
 
@@ -8,10 +9,11 @@ import functools
 import sys
 
 import numpy as np
+from scipy.optimize import brentq
+
 from axisym import Contact, Response, tip
 from common import main
 from layered import coat
-from scipy.optimize import brentq
 
 NAME, SECONDS, NU = "jkr.json", 150, 0.3
 MODULUS = 1 / (1 - NU**2)
@@ -42,7 +44,9 @@ def minimum(stack, which, radii, values):
     def slope(x):
         return state(stack, np.exp(x) * (1 + 1j * STEP))[which].imag / STEP
 
-    return np.exp(brentq(slope, np.log(radii[k - 1]), np.log(radii[k + 1]), xtol=1e-14)), len(places)
+    return np.exp(brentq(slope, np.log(radii[k - 1]), np.log(radii[k + 1]), xtol=1e-14)), len(
+        places
+    )
 
 
 def fill(content):
@@ -53,7 +57,12 @@ def fill(content):
         for which, key in enumerate(("load_control", "displacement_control")):
             a, count = minimum(stack, which, radii, scan[:, which])
             load, delta = state(stack, a)
-            row[key] |= {"pull_off_over_piwR": -load, "a_over_a0": a, "delta_over_d0": delta, "minima": count}
+            row[key] |= {
+                "pull_off_over_piwR": -load,
+                "a_over_a0": a,
+                "delta_over_d0": delta,
+                "minima": count,
+            }
         low = high = row["load_control"]["a_over_a0"]
         while state(stack, high)[0] < 0:
             low, high = high, 1.3 * high

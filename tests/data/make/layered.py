@@ -1,11 +1,14 @@
 """Response of layered half-spaces, by the equations of elasticity and nothing else.
 
-A body is ``Body([(thickness, G, nu, bonded), ...], (G, nu) or None)``; None is a rigid base. z points
-into the body, alpha is the wave number. In the frame along the wave vector (L), across it (T) and z,
+A body is ``Body([(thickness, G, nu, bonded), ...], (G, nu) or None)``; None is a rigid base. z
+points
+into the body, alpha is the wave number. In the frame along the wave vector (L), across it (T) and
+z,
 
     u_z = W,  u_L = i V,  sigma_zz = -P,  sigma_Lz = -i TAU,      u_T = U,  sigma_Tz = -Q,
 
-and at the surface (W, V) = [[c11, c12], [c12, c22]] (P, TAU), U = ct Q. Hooke's law and equilibrium are
+and at the surface (W, V) = [[c11, c12], [c12, c22]] (P, TAU), U = ct Q. Hooke's law and
+equilibrium are
 
     d/d(alpha z) of (alpha W, alpha V, P, TAU):   A = [[0, nu/(1-nu), -(1-2nu)/(2G(1-nu)), 0],
                                                        [-1, 0, 0, -1/G],
@@ -16,7 +19,8 @@ and at the surface (W, V) = [[c11, c12], [c12, c22]] (P, TAU), U = ct Q. Hooke's
 (derived here; no layer matrices, no recursion). (A^2 - 1)^2 = 0 gives exp(A x) in closed form.
 
 ``states`` joins slabs of at most four wave units (multiple shooting: one linear system for each
-wave number), in doubles, for real or complex arguments. Its error is some 1e-14 of the largest state.
+wave number), in doubles, for real or complex arguments. Its error is some 1e-14 of the largest
+state.
 ``exact`` solves the same system with one slab for each layer in mpmath's current precision.
 """
 
@@ -56,14 +60,16 @@ class Body:
 
 
 def body(case):
-    """A body of a reference file: layers with thickness, young, poisson, interface; substrate."""
+    """Return the body of a reference file: layers with thickness, young, poisson, interface."""
 
     def shear(m):
         return m["young"] / (2 * (1 + m["poisson"]))
 
     base = case["substrate"]
     rigid = base is None or base == "rigid"
-    layers = [(m["thickness"], shear(m), m["poisson"], m["interface"] == "bonded") for m in case["layers"]]
+    layers = [
+        (m["thickness"], shear(m), m["poisson"], m["interface"] == "bonded") for m in case["layers"]
+    ]
     return Body(layers, None if rigid else (shear(base), base["poisson"]))
 
 
@@ -123,7 +129,12 @@ def states(stack, alpha, size=4):
         counts[:, -1] += felt
     whole = above < DEEP  # so that the base is felt, too
     unit = stack.top[0].real
-    kind = np.result_type(alpha, *[np.asarray(v) for layer in stack.layers for v in layer[:3]], *(stack.base or [0.0]), float)
+    kind = np.result_type(
+        alpha,
+        *[np.asarray(v) for layer in stack.layers for v in layer[:3]],
+        *(stack.base or [0.0]),
+        float,
+    )
     found = np.zeros((len(alpha), len(thick) + 1, size, half), kind)
     scale = np.array([unit] * half + [1.0] * half)  # of displacements, against tractions
     keys = np.column_stack([counts, whole])
@@ -206,6 +217,12 @@ def _exact(stack, alpha, size):
     for i in range(half):
         system[n - half + i, n - size + i] = 1
         for j in range(half if stack.base is not None else 0):
-            system[n - half + i, n - half + j] = -half_space(*map(mpmath.mpf, stack.base), size)[i][j]
+            system[n - half + i, n - half + j] = -half_space(*map(mpmath.mpf, stack.base), size)[i][
+                j
+            ]
     found = [mpmath.lu_solve(system, right[:, j]) for j in range(half)]
-    return found[0][0] / alpha if size == 2 else tuple(found[j][i] / alpha for i, j in ((0, 0), (0, 1), (1, 1)))
+    return (
+        found[0][0] / alpha
+        if size == 2
+        else tuple(found[j][i] / alpha for i, j in ((0, 0), (0, 1), (1, 1)))
+    )

@@ -3,19 +3,21 @@
 A pressure on |x| < b, xi = x/b, p = sum a_k sqrt(1 - xi^2) U_2k(xi), has the cosine transform
 p^(m) = pi sum (-1)^k (2k+1) a_k J_{2k+1}(m b)/m, and a rigid cylinder x^2/2R gives (derived here)
 
-    a_j + sum_k 2 (-1)^{j+k} (2k+1) a_k integral M J_{2j+1}(mb) J_{2k+1}(mb) dm/m = delta_j0 b/(A1 R)
+    a_j + sum_k 2 (-1)^{j+k} (2k+1) a_k integral M J_{2j+1}(mb) J_{2k+1}(mb) dm/m = delta_j0 b/(A1
+    R)
 """
 
 import numpy as np
-from axisym import Response
 
 
 def bessel(count, z):
-    """J_1, J_3 ... of z, by the midpoint rule of Bessel's integral, which converges exponentially."""
+    """J_1, J_3 ... of z, by the midpoint rule of Bessel's integral: exponential convergence."""
     n = int((np.max(z) + 2 * count) / 4 * 1.15) + 20
     angle = (np.arange(n) + 0.5) * np.pi / (2 * n)
     odd = np.sin(np.outer(2 * np.arange(count) + 1, angle)) / n
-    return np.concatenate([odd @ np.sin(np.outer(np.sin(angle), part)) for part in np.array_split(z, 20)], axis=1)
+    return np.concatenate(
+        [odd @ np.sin(np.outer(np.sin(angle), part)) for part in np.array_split(z, 20)], axis=1
+    )
 
 
 class Line:

@@ -1,21 +1,26 @@
-"""Partial slip and rolling of identical coated cylinders in plane strain: friction/line_contact.json.
+"""Partial slip and rolling of coated cylinders in plane strain: friction/line_contact.json.
 
-With F = m c22 = A (1 + T) of both bodies, A that of two bare bodies of the coating, the tractions q shift the surfaces by
+With F = m c22 = A (1 + T) of both bodies, A that of two bare bodies of the coating, the tractions
+q shift the surfaces by
 
-    u'(x)/A = (1/pi) PV integral q(t)/(t - x) dt - (1/pi) integral q(t) integral T(m) sin(m (x - t)) dm dt
+    u'(x)/A = (1/pi) PV integral q(t)/(t - x) dt - (1/pi) integral q(t) integral T(m) sin(m (x -
+    t)) dm dt
 
-which is 0 (Cattaneo) or constant (rolling) where they stick. q = mu p - q*, with q* where they stick, is a series of
-sqrt(1 - xi^2) U_k(xi), whose principal value is -T_k+1(xi); adhesion everywhere: T_k(xi)/sqrt(1 - xi^2) and U_k-1(xi).
+which is 0 (Cattaneo) or constant (rolling) where they stick. q = mu p - q*, with q* where they
+stick, is a series of
+sqrt(1 - xi^2) U_k(xi), whose principal value is -T_k+1(xi); adhesion everywhere: T_k(xi)/sqrt(1 -
+xi^2) and U_k-1(xi).
 """
 
 import sys
 
 import numpy as np
+from scipy.optimize import brentq
+
 from axisym import Response
 from common import main
 from layered import coat, compliances
 from line import Line
-from scipy.optimize import brentq
 from stress_disc import panels
 
 NAME, SECONDS, NU = "friction/line_contact.json", 40, 0.3
@@ -30,7 +35,10 @@ class Pair:
         self.rest = compliances(stack, self.m)[2] * stack.top[0] / (1 - NU) - 1  # T
         n = 40 + int(8 / h)
         angle = np.arange(1, n + 1) * np.pi / (n + 1)
-        self.t, self.w = np.cos(angle), np.pi / (n + 1) * np.sin(angle)  # with sin: of sqrt(1 - t^2) U_k
+        self.t, self.w = (
+            np.cos(angle),
+            np.pi / (n + 1) * np.sin(angle),
+        )  # with sin: of sqrt(1 - t^2) U_k
         self.angle = angle
 
     def smooth(self, x, t):
@@ -49,8 +57,12 @@ class Pair:
         angle = (np.arange(n + 1) + 0.5) * np.pi / (n + 1)
         k = np.arange(n)
         x = middle + half * np.cos(angle)
-        basis = np.sin(np.outer(self.angle, k + 1)) * self.w[:, None]  # sqrt(1 - t^2) U_k and the rule's weight
-        matrix = -np.cos(np.outer(angle, k + 1)) + half * self.smooth(x, middle + half * self.t) @ basis
+        basis = (
+            np.sin(np.outer(self.angle, k + 1)) * self.w[:, None]
+        )  # sqrt(1 - t^2) U_k and the rule's weight
+        matrix = (
+            -np.cos(np.outer(angle, k + 1)) + half * self.smooth(x, middle + half * self.t) @ basis
+        )
         found = np.linalg.solve(np.column_stack([matrix, np.ones(n + 1)]), self.by_pressure(x))
         return found[:-1], found[-1]
 
@@ -59,10 +71,13 @@ class Pair:
         return 1 - np.pi * half * self.stick(middle, half)[0][0] / 2 / self.line.P
 
     def shift(self, c):
-        """u in |x| < c over mu P (1 - nu)/G2, zero level -(T2/pi) ln|x| far away, T2 = 2 (1 - nu)/G2."""
+        """Return u in |x| < c over mu P (1 - nu)/G2; far away it is -(T2/pi) ln|x|."""
+
         def logarithm(a, half):  # integral of ln|x| over sum a_k sqrt(1 - xi^2) U_2k
             k = np.arange(len(a) + 1)
-            part = np.where(k > 0, -((-1.0) ** k) * np.pi / (2 * np.maximum(k, 1)), -np.pi * np.log(2))
+            part = np.where(
+                k > 0, -((-1.0) ** k) * np.pi / (2 * np.maximum(k, 1)), -np.pi * np.log(2)
+            )
             return half * a @ (part[:-1] - part[1:]) / 2 + np.log(half) * np.pi * half * a[0] / 2
 
         a = self.stick(0.0, c)[0]
@@ -70,7 +85,10 @@ class Pair:
         bare = -(logarithm(self.line.a, 1.0) - logarithm(a[::2], c)) / np.pi
         star = np.sin(np.outer(self.angle, np.arange(len(a)) + 1)) @ a * c
         m, w = panels(max(40.0, 21 / self.h), min(0.7, 0.3 / self.h))
-        rest = compliances(coat(self.ratio, self.h, NU), m)[2] / (1 - NU) * self.ratio / (2 * (1 + NU)) - 1
+        rest = (
+            compliances(coat(self.ratio, self.h, NU), m)[2] / (1 - NU) * self.ratio / (2 * (1 + NU))
+            - 1
+        )
         wave = np.cos(np.outer(m, self.t)) @ (self.w * self.line.pressure(self.t))
         wave = wave - np.cos(np.outer(m, self.t * c)) @ (self.w * star)
         added = (w / m) @ (rest * wave - (self.ratio - 1) * np.exp(-m) * held * self.line.P) / np.pi
@@ -100,7 +118,11 @@ def fill(content):
         pair, share = Pair(case["E1_over_E2"], case["h_over_b"]), case["Q_over_muP"]
         half = brentq(lambda s, p=pair, q=share: p.held(1 - s, s) - q, 1e-3, 1 - 1e-9, xtol=1e-14)
         creep = abs(pair.stick(1 - half, half)[1]) * 2 * (1 - NU) / pair.ratio / pair.line.P
-        case |= {"stick_from_over_b": 1 - 2 * half, "stick_to_over_b": 1.0, "creep_times_G2b_over_muP": creep}
+        case |= {
+            "stick_from_over_b": 1 - 2 * half,
+            "stick_to_over_b": 1.0,
+            "creep_times_G2b_over_muP": creep,
+        }
 
 
 if __name__ == "__main__":

@@ -1,19 +1,23 @@
 """Pull-off of a rigid paraboloid with a cohesive zone of constant stress (Maugis): maugis.json.
 
-The stress -sigma0 acts on a < r < c, where the gap reaches w/sigma0 at c. The density phi is unknown on
-(0, a) and -(2/pi) sigma0 sqrt(c^2 - t^2) on (a, c); continuity at a gives delta, the gap at c gives c.
-Lengths are in a0 (see jkr.py). Bare: Maugis, J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T.
+The stress -sigma0 acts on a < r < c, where the gap reaches w/sigma0 at c. The density phi is
+unknown on
+(0, a) and -(2/pi) sigma0 sqrt(c^2 - t^2) on (a, c); continuity at a gives delta, the gap at c
+gives c.
+Lengths are in a0 (see jkr.py). Bare: Maugis, J. Colloid Interface Sci. 150 (1992) 243,
+doi:10.1016/0021-9797(92)90285-T.
 """
 
 import math
 import sys
 
 import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import j0
+
 from axisym import Contact
 from common import main
 from jkr import MODULUS, SHAPE, WORK, response
-from scipy.optimize import brentq, minimize_scalar
-from scipy.special import j0
 
 NAME, SECONDS = "maugis.json", 60
 
@@ -46,7 +50,9 @@ def coated_load(stack, a, strength):
         c = a * (1 + math.exp(log))
         low = math.asin(a / c)
         angle, dt = low + (math.pi / 2 - low) * (x + 1) / 2, w * (math.pi / 2 - low) / 2
-        known = -2 / np.pi * stress * c * np.cos(angle)  # phi at t = c sin(angle), dt = c cos d angle
+        known = (
+            -2 / np.pi * stress * c * np.cos(angle)
+        )  # phi at t = c sin(angle), dt = c cos d angle
         dt = dt * c * np.cos(angle)
         cohesive = np.cos(alpha[:, None] * c * np.sin(angle)) @ (dt * known)
         right = -2 / np.pi * contact.cosines.T @ (weights * m * cohesive)
@@ -57,7 +63,9 @@ def coated_load(stack, a, strength):
         delta = (wanted - edge + contact.edge_shape) / contact.edge
         phi = delta * contact.punch - contact.shape + pulled
         total = contact.cosines @ (contact.w * phi) + cohesive
-        inside = c * np.sin(low * (x + 1) / 2)  # phi there by the equation itself, for 1/sqrt(c^2 - t^2)
+        inside = c * np.sin(
+            low * (x + 1) / 2
+        )  # phi there by the equation itself, for 1/sqrt(c^2 - t^2)
         there = contact.f * (delta - contact.F(inside))
         there -= 2 / np.pi * np.cos(inside[:, None] * alpha) @ (weights * m * total)
         near = low / 2 * w @ there - 2 / np.pi * stress * (c - a)

@@ -1,18 +1,21 @@
 """Surface displacements under a uniform load on a rectangle, |x| < a, |y| < b.
 
-The bare top material in closed form; what the layers add by the double Fourier integral in polar wave
-numbers near the rectangle (no Bessel functions), by Hankel integrals and Gauss points on the rectangle
+The bare top material in closed form; what the layers add by the double Fourier integral in polar
+wave
+numbers near the rectangle (no Bessel functions), by Hankel integrals and Gauss points on the
+rectangle
 far from it. Derived here; the bare forms are Love's and Cerruti's.
 """
 
 import numpy as np
-from layered import compliances
 from scipy.special import jv
+
+from layered import compliances
 from stress_disc import panels
 
 
 class Added:
-    """What layers add to (alpha c11, c12, c22, ct) of the top material, for places up to a reach."""
+    """What layers add to alpha (c11, c12, c22, ct) of the top material, up to a reach."""
 
     def __init__(self, stack, reach, tangential=True):
         (shear, nu), thin = stack.top, stack.layers[0][0]
@@ -36,7 +39,15 @@ class Added:
             c, s = np.cos(angle), np.sin(angle)
             rule = np.full(n + 1, 2 * np.pi / n)  # four quadrants
             rule[[0, -1]] /= 2
-            load = 4 * a * b * np.sinc(alpha * c * a / np.pi) * np.sinc(alpha * s * b / np.pi) * rule / (4 * np.pi**2)
+            load = (
+                4
+                * a
+                * b
+                * np.sinc(alpha * c * a / np.pi)
+                * np.sinc(alpha * s * b / np.pi)
+                * rule
+                / (4 * np.pi**2)
+            )
             mx, ny = alpha * c * x, alpha * s * y
             even = load * np.cos(mx) * np.cos(ny)
             if normal:
@@ -56,12 +67,20 @@ class Added:
             for gy, vy in zip(e, w, strict=True):
                 dx, dy = x - a * gx, y - b * gy
                 r, t, share = np.hypot(dx, dy), np.arctan2(dy, dx), a * b * vx * vy / (2 * np.pi)
-                k = [self.weights * jv(order, self.alpha * r) for order in range(1 if normal else 3)]
+                k = [
+                    self.weights * jv(order, self.alpha * r) for order in range(1 if normal else 3)
+                ]
                 if normal:
                     found[0] += share * self.c11 @ k[0]
                     continue
-                k0, k1, k2 = (self.c22 + self.ct) / 2 @ k[0], self.c12 @ k[1], (self.c22 - self.ct) / 2 @ k[2]
-                found += share * np.array([k0 - k2 * np.cos(2 * t), -k2 * np.sin(2 * t), k1 * np.cos(t)])
+                k0, k1, k2 = (
+                    (self.c22 + self.ct) / 2 @ k[0],
+                    self.c12 @ k[1],
+                    (self.c22 - self.ct) / 2 @ k[2],
+                )
+                found += share * np.array(
+                    [k0 - k2 * np.cos(2 * t), -k2 * np.sin(2 * t), k1 * np.cos(t)]
+                )
         return found[0] if normal else found
 
 
@@ -78,7 +97,9 @@ def love(x, y, a, b):
     """Integral of 1/r over the rectangle."""
 
     def corner(x, y):
-        return times(x, np.arcsinh(y / abs(x)) if x else 0) + times(y, np.arcsinh(x / abs(y)) if y else 0)
+        return times(x, np.arcsinh(y / abs(x)) if x else 0) + times(
+            y, np.arcsinh(x / abs(y)) if y else 0
+        )
 
     return corners(corner, x, y, a, b)
 
@@ -87,6 +108,12 @@ def bare(shear, nu, x, y, a, b):
     """(u_x, u_y, u_z) of a homogeneous half-space under q_x."""
     xx = corners(lambda x, y: times(y, np.arcsinh(x / abs(y)) if y else 0), x, y, a, b)
     xy = corners(lambda x, y: -np.hypot(x, y), x, y, a, b)
-    up = corners(lambda x, y: times(y, np.log(np.hypot(x, y))) + times(x, np.arctan(y / x) if x else 0), x, y, a, b)
+    up = corners(
+        lambda x, y: times(y, np.log(np.hypot(x, y))) + times(x, np.arctan(y / x) if x else 0),
+        x,
+        y,
+        a,
+        b,
+    )
     all_ = (1 - nu) * love(x, y, a, b) + nu * xx
     return np.array([all_, nu * xy, (1 - 2 * nu) / 2 * up]) / (2 * np.pi * shear)

@@ -1,4 +1,4 @@
-"""Derivatives of alpha c11 with respect to each layer's numbers, 40 digits: response_derivatives.json.
+"""Derivatives of alpha c11 by each layer's numbers, 40 digits: response_derivatives.json.
 
 Central differences of the whole boundary-value problem, with more digits than they cancel.
 """
@@ -7,12 +7,16 @@ import copy
 import sys
 
 import mpmath
+
 from common import main
 from layered import exact
 from response_stacks import body
 
 NAME, SECONDS = "response_derivatives.json", 90
-DIGITS, STEP = 130, 40  # differences of steps 1e-40: errors 1e-80 relative to the step's square, and 1e-90
+DIGITS, STEP = (
+    130,
+    40,
+)  # differences of steps 1e-40: errors 1e-80 relative to the step's square, and 1e-90
 
 
 def value(case, alpha):
@@ -32,7 +36,9 @@ def fill(content):
                 ends = []
                 for sign in (1, -1):
                     moved = copy.deepcopy(case)
-                    part = moved["substrate"] if place == "substrate" else moved["layers"][int(place)]
+                    part = (
+                        moved["substrate"] if place == "substrate" else moved["layers"][int(place)]
+                    )
                     number = mpmath.mpf(part[name]) + sign * mpmath.mpf(10) ** -STEP
                     part[name] = mpmath.nstr(number, DIGITS)
                     ends.append(value(moved, alpha))

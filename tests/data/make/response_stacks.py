@@ -1,16 +1,17 @@
-"""Surface compliances of ten stacks, from the whole boundary-value problem: response_stacks.json."""
+"""Surface compliances of ten stacks, from the boundary-value problem: response_stacks.json."""
 
 import sys
 
-import layered
 import mpmath
+
+import layered
 from common import main
 
 NAME, SECONDS = "response_stacks.json", 15
 
 
 def body(case):
-    """The body of a case in mpmath's numbers, each exactly the number in the file."""
+    """Return the body of a case in mpmath's numbers, each exactly the number in the file."""
 
     def exact(m):
         words = {k: mpmath.mpf(str(v)) for k, v in m.items() if k != "interface"}

@@ -3,19 +3,22 @@
 import sys
 
 import numpy as np
+from scipy.optimize import brentq
+
 from axisym import Contact, Response, tip
 from common import main
 from layered import coat
-from scipy.optimize import brentq
 
 NAME, SECONDS = "sphere_coated.json", 4
 
 
 def press(stack, young):
-    """The contact of a paraboloid of radius 1 whose Hertz contact on `young` has the radius 1."""
+    """Press a paraboloid of radius 1 whose Hertz contact on `young` has the radius 1."""
     response, shape = Response(stack), tip({"kind": "paraboloid", "R": 1.0})
     load = 4 * young / 3
-    log = brentq(lambda x: np.log(Contact(response, np.exp(x), shape).P / load), -2.5, 2.5, xtol=1e-14)
+    log = brentq(
+        lambda x: np.log(Contact(response, np.exp(x), shape).P / load), -2.5, 2.5, xtol=1e-14
+    )
     return Contact(response, np.exp(log), shape), 3 * load / (2 * np.pi)
 
 

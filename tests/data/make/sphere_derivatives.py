@@ -1,12 +1,12 @@
-"""Derivatives of radius, approach and central pressure of coated spheres: sphere_derivatives.json."""
+"""Derivatives of radius, approach and pressure of coated spheres: sphere_derivatives.json."""
 
 import sys
 
 import numpy as np
-from axisym import Contact, Response, tip
+
+from axisym import Contact, Response, lowest, tip
 from common import main
 from layered import Body
-from scipy.optimize import minimize_scalar
 
 NAME, SECONDS = "sphere_derivatives.json", 6
 STEP = 1e-30  # along the imaginary axis: no cancellation
@@ -30,8 +30,7 @@ def fill(content):
         found = contact(case, a)
         centre = found.pressure(0.0)
         case |= {"W": found.P, "delta": found.delta, "p0": centre}
-        bounds = {"bounds": (0.0, 0.95 * a), "method": "bounded", "options": {"xatol": 1e-8 * a}}
-        inner = minimize_scalar(lambda r: -found.pressure(r), **bounds)
+        inner = lowest(lambda r: -found.pressure(r), (0.0, 0.95 * a), 1e-8 * a)
         case["peak_over_p0"] = max(1.0, -inner.fun / centre)
         along = logs(case, a * (1 + 1j * STEP)).imag / STEP  # d/dln a of ln W, ln delta, ln p0
         for name, kept in case["derivatives"].items():

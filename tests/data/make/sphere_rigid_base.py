@@ -1,4 +1,4 @@
-"""Rigid paraboloid on a layer bonded to a rigid base, under a given load: sphere_rigid_base.json."""
+"""Rigid paraboloid on a layer on a rigid base, under a given load: sphere_rigid_base.json."""
 
 import sys
 

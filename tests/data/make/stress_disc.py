@@ -7,16 +7,19 @@ The first two cases are those of the pavement programs KENPAVE and AMADEUS/BISAR
 import sys
 
 import numpy as np
+from scipy.special import j0, j1
+
 from common import main
 from layered import Body, excess, states
-from scipy.special import j0, j1
 
 NAME, SECONDS = "stress_disc.json", 8
 
 
 def panels(end, width, order=12):
     """Gauss panels from 0 to end, geometric at the start."""
-    edges = np.concatenate([[0.0], width * 2.0 ** np.arange(-24, 0), np.linspace(width, end, int(end / width) + 1)])
+    edges = np.concatenate(
+        [[0.0], width * 2.0 ** np.arange(-24, 0), np.linspace(width, end, int(end / width) + 1)]
+    )
     x, w = np.polynomial.legendre.leggauss(order)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
@@ -30,7 +33,7 @@ def stresses(state, shear, nu):
 
 
 def at(state, part, alpha, weights, r):
-    """uz, ur, szz, srz, srr, stt from the states on the wave numbers; weights with the pressure's transform."""
+    """Return uz, ur, szz, srz, srr, stt from states; weights include the pressure's transform."""
     along, across = stresses(state, *part)
     w, x = weights * alpha, alpha * r
     bessel0, bessel1 = j0(x), j1(x)
@@ -63,7 +66,9 @@ def fill(content):
         bare = 2 * (1 - parts[0][1]) / (2 * parts[0][0]) * case["q"] * radius  # of the top material
         alpha, weights = panels(21 / thick[0], min(1.0 / radius, 0.3 / thick[0]))
         rest = weights * excess(stack, alpha) * j1(alpha * radius) / alpha
-        case["surface_uz_centre"] = bare + case["q"] * radius * (1 - parts[0][1]) / parts[0][0] * rest.sum()
+        case["surface_uz_centre"] = (
+            bare + case["q"] * radius * (1 - parts[0][1]) / parts[0][0] * rest.sum()
+        )
 
 
 if __name__ == "__main__":

@@ -3,10 +3,11 @@
 import sys
 
 import numpy as np
+
+from axisym import lowest
 from common import main
 from layered import coat, compliances, states
 from line_coated import press
-from scipy.optimize import minimize_scalar
 from stress_disc import panels, stresses
 
 NAME, SECONDS = "stress_line.json", 40
@@ -23,10 +24,18 @@ def fill(content):
             if z not in known:
                 m, weights = panels(40 / z, 1.0)
                 index, cut = stack.cut(z)
-                known[z] = cut, index, m, weights * line.transform(m) / np.pi, states(cut, m)[:, index, :, 0]
+                known[z] = (
+                    cut,
+                    index,
+                    m,
+                    weights * line.transform(m) / np.pi,
+                    states(cut, m)[:, index, :, 0],
+                )
             cut, index, m, w, state = known[z]
             above = layer == 0 and abs(z - h) < 1e-9
-            along, across = stresses(state, *[*[one[1:3] for one in cut.layers], cut.base][index - above])
+            along, across = stresses(
+                state, *[*[one[1:3] for one in cut.layers], cut.base][index - above]
+            )
             c, s = np.cos(m * x) / hertz, np.sin(m * x) / hertz
             return -(w * c) @ state[:, 2], (w * c) @ along, (w * c) @ across, (w * s) @ state[:, 3]
 
@@ -35,7 +44,7 @@ def fill(content):
             szz, sxx, syy, _ = below(0.0, row["z_over_h"] * h, row["layer"])
             mises = np.sqrt(((szz - sxx) ** 2 + (szz - syy) ** 2 + (sxx - syy) ** 2) / 2)
             row |= {"szz": szz, "sxx": sxx, "tau_max_xz": abs(szz - sxx) / 2, "vm": mises}
-        shear = minimize_scalar(lambda x: -abs(below(x, h, 1)[3]), bounds=(0.3, 1.5), method="bounded", options={"xatol": 1e-9})  # fmt: skip
+        shear = lowest(lambda x: -abs(below(x, h, 1)[3]), (0.3, 1.5), 1e-9)
         case |= {"interface_shear_max_over_pH": -shear.fun, "at_x_over_bH": shear.x}
         surface = case["surface"]
         x = np.array(surface["x_over_b"]) * line.b

@@ -6,6 +6,7 @@ Double Fourier integral in polar wave numbers of the states at each depth; z is 
 import sys
 
 import numpy as np
+
 from common import main
 from layered import Body, states
 from stress_disc import panels, stresses
@@ -28,7 +29,11 @@ def response(stack, z, side, kind, x, y, size=0.5):
         load = (2 * size) ** 2 * np.sinc(a * c * size / np.pi) * np.sinc(a * s * size / np.pi)
         load = load * np.exp(1j * a * (c * x + s * y)) * weights[k, None] * a / (2 * np.pi * n)
         p, ql, qt = {"p": (1, 0, 0), "qx": (0, c, -s), "qy": (0, s, c)}[kind]
-        state = plane[k, None, :, 0] * np.multiply.outer(p, np.ones(n))[None, :, None] if kind == "p" else 0
+        state = (
+            plane[k, None, :, 0] * np.multiply.outer(p, np.ones(n))[None, :, None]
+            if kind == "p"
+            else 0
+        )
         if kind != "p":
             state = plane[k, None, :, 1] * (-1j * ql)[None, :, None]
         other = twist[k, None] * (qt * np.ones(n))[None, :, None]
@@ -37,7 +42,8 @@ def response(stack, z, side, kind, x, y, size=0.5):
         u, q = np.moveaxis(other, 2, 0)
         ul, ut, lz, tz, lt = 1j * v / a, u / a, -1j * tau, -q, 1j * part[0] * u
         all_ = (c * ul - s * ut, s * ul + c * ut, w / a, -press, c * lz - s * tz, s * lz + c * tz,
-                c**2 * along + s**2 * across - 2 * c * s * lt, s**2 * along + c**2 * across + 2 * c * s * lt,
+                c**2 * along + s**2 * across - 2 * c * s * lt, s**2 * along + c**2 * across + 2 * c
+                * s * lt,
                 c * s * (along - across) + (c**2 - s**2) * lt)  # fmt: skip
         found += [float((load * one).sum().real) for one in all_]
     return dict(zip(names, map(float, found), strict=True))

@@ -1,18 +1,20 @@
 """Stresses below rigid paraboloids on a bonded coating: stress_sphere.json.
 
-Hankel integrals of the contact's density (axisym.py). On the surface, the closed form of the coating's
-material plus the integral of what the layers add, which converges exponentially (Delta = alpha c12 less
+Hankel integrals of the contact's density (axisym.py). On the surface, the closed form of the
+coating's
+material plus the integral of what the layers add, which converges exponentially (Delta = alpha c12
+less
 its value on a half-space of the coating).
 """
 
 import sys
 
 import numpy as np
-from axisym import Contact
+from scipy.special import j0, j1
+
+from axisym import Contact, lowest
 from common import main
 from layered import coat, compliances, states
-from scipy.optimize import minimize_scalar
-from scipy.special import j0, j1
 from sphere_coated import press
 from stress_disc import at, panels
 
@@ -35,13 +37,24 @@ class Field:
         self.known = {}
 
     def transform(self, alpha):
-        return np.concatenate([np.cos(part[:, None] * self.t) @ (self.w * self.phi) for part in np.array_split(alpha, 20)])
+        return np.concatenate(
+            [
+                np.cos(part[:, None] * self.t) @ (self.w * self.phi)
+                for part in np.array_split(alpha, 20)
+            ]
+        )
 
     def below(self, r, z, layer):
         if z not in self.known:
             alpha, weights = panels(40 / z, 1.0)
             index, cut = self.stack.cut(z)
-            self.known[z] = cut, index, alpha, weights * self.transform(alpha), states(cut, alpha)[:, index, :, 0]
+            self.known[z] = (
+                cut,
+                index,
+                alpha,
+                weights * self.transform(alpha),
+                states(cut, alpha)[:, index, :, 0],
+            )
         cut, index, alpha, weights, state = self.known[z]
         above = layer == 0 and abs(z - self.stack.layers[0][0]) < 1e-9
         part = [*[one[1:3] for one in cut.layers], cut.base][index - above]
@@ -67,7 +80,10 @@ class Field:
             mean = p / 2
         elif r < self.a:
             y, v = np.polynomial.legendre.leggauss(60)
-            mean = sum(v * c.pressure(s) * s for s, v in zip(r * (y + 1) / 2, r * v / 2, strict=True)) / r**2
+            mean = (
+                sum(v * c.pressure(s) * s for s, v in zip(r * (y + 1) / 2, r * v / 2, strict=True))
+                / r**2
+            )
         else:
             mean = c.P / (2 * np.pi * r**2)
         srr += -p + (1 - 2 * nu) * mean
@@ -90,24 +106,33 @@ def fill(content):
             found = field.below(0.0, row["z_over_h"] * h, row["layer"])
             row |= {k: found[k] for k in ("szz", "srr", "vm")} | {"uz_over_deltaH": found["uz"]}
         edge = [field.surface(k * a) for k in case["surface"]["r_over_a"]]
-        case["surface"] |= {"srr_over_pH": [e[0] for e in edge], "stt_over_pH": [e[1] for e in edge]}
+        case["surface"] |= {
+            "srr_over_pH": [e[0] for e in edge],
+            "stt_over_pH": [e[1] for e in edge],
+        }
         case["srr_at_edge_over_pH"] = field.surface(a)[0]
-        beyond = minimize_scalar(lambda k: -field.surface(k * a)[0], bounds=(1.5, 6.0), method="bounded", options={"xatol": 1e-7})  # fmt: skip
+        beyond = lowest(lambda k: -field.surface(k * a)[0], (1.5, 6.0), 1e-7)
         high = max((case["srr_at_edge_over_pH"], 1.0), (-beyond.fun, beyond.x))
         case |= {"surface_max_tensile_srr_over_pH": high[0], "at_r_over_a": high[1]}
-        shear = minimize_scalar(lambda r: -abs(field.below(r, h, 1)["srz"]), bounds=(0.3, 1.5), method="bounded", options={"xatol": 1e-9})  # fmt: skip
+        shear = lowest(lambda r: -abs(field.below(r, h, 1)["srz"]), (0.3, 1.5), 1e-9)
         case |= {"interface_shear_max_over_pH": -shear.fun, "interface_shear_at_r_over_aH": shear.x}
         case["interface_shear_sign"] = float(np.sign(field.below(shear.x, h, 1)["srz"]))
         if case.get("axis_vm_local_max_coating"):
-            best = minimize_scalar(lambda k: -field.below(0.0, k * h, 0)["vm"], bounds=(0.2, 0.8), method="bounded", options={"xatol": 1e-7})  # fmt: skip
+            best = lowest(lambda k: -field.below(0.0, k * h, 0)["vm"], (0.2, 0.8), 1e-7)
             case["axis_vm_local_max_coating"] |= {"z_over_h": best.x, "vm_over_pH": -best.fun}
         sides = [field.below(0.0, h, k) for k in (0, 1)]
-        case["interface_axis"] |= {"srr_coating": sides[0]["srr"], "srr_substrate": sides[1]["srr"], "szz": sides[0]["szz"]}
+        case["interface_axis"] |= {
+            "srr_coating": sides[0]["srr"],
+            "srr_substrate": sides[1]["srr"],
+            "szz": sides[0]["szz"],
+        }
         profile = case["interface_profile"]
         for key in profile:
             if key != "r_over_aH":
                 name, side = key.split("_") if "_" in key else (key, "coating")
-                profile[key] = [field.below(r, h, int(side == "substrate"))[name] for r in profile["r_over_aH"]]
+                profile[key] = [
+                    field.below(r, h, int(side == "substrate"))[name] for r in profile["r_over_aH"]
+                ]
 
 
 if __name__ == "__main__":

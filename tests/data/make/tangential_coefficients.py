@@ -1,8 +1,9 @@
-"""Displacements of layered bodies under a uniform tangential cell: friction/tangential_coefficients.json."""
+"""Displacements under a uniform tangential cell: friction/tangential_coefficients.json."""
 
 import sys
 
 import numpy as np
+
 from common import main
 from layered import Body
 from patch import Added, bare
@@ -14,7 +15,9 @@ def fill(content):
     for case in content["stacks"]:
         parts = [(m["h"], m["E"] / (2 * (1 + m["nu"])), m["nu"], True) for m in case["layers"]]
         base = case["substrate"]
-        stack = Body(parts, None if base == "rigid" else (base["E"] / (2 * (1 + base["nu"])), base["nu"]))
+        stack = Body(
+            parts, None if base == "rigid" else (base["E"] / (2 * (1 + base["nu"])), base["nu"])
+        )
         dx, dy = case["dx"], case["dy"]
         a, b = dx / 2, dy / 2
         close, reach = Added(stack, 2 * np.hypot(dx, dy)), {}
@@ -27,7 +30,13 @@ def fill(content):
                 size = 2 ** np.ceil(np.log2(r + np.hypot(a, b)))
                 reach[size] = reach.get(size) or Added(stack, size)
                 added = reach[size].far(x, y, a, b, order=(8, 8 if dy == dx else 24))
-            row |= dict(zip(("ux", "uy", "uz"), map(float, bare(*stack.top, x, y, a, b) + added), strict=True))
+            row |= dict(
+                zip(
+                    ("ux", "uy", "uz"),
+                    map(float, bare(*stack.top, x, y, a, b) + added),
+                    strict=True,
+                )
+            )
 
 
 if __name__ == "__main__":
