@@ -1,9 +1,9 @@
 """Compare a program's numbers with the benchmark: python compare.py RESULTS.csv [SET ...].
 
-RESULTS.csv has the columns set, case, quantity, value, as template.csv beside this file, whose values
-are left empty; rows that are missing or empty are not compared. Each set is printed with the largest
-and the median difference, relative to the scale of each quantity. --tolerance X makes the exit status 1
-where a difference is above X; --all prints every row. Needs Python's standard library alone.
+RESULTS.csv has the columns set, case, quantity, value, as template.csv beside this file, whose
+values are left empty; rows that are missing or empty are not compared. Each set is printed with the
+largest and the median difference, relative to the scale of each quantity. --tolerance X makes the
+exit status 1 where a difference is above X; --all prints every row. Needs Python alone.
 """
 
 import argparse

@@ -49,7 +49,7 @@ def body(given: dict[str, Any]) -> nacre.HalfSpace:
 
 
 def nacres() -> Rows:
-    """nacre's own numbers of the coated spheres and of the indentations by paraboloids."""
+    """Numbers of nacre for the coated spheres and for indentations by paraboloids."""
     rows: Rows = {}
     for case in json.loads((SET / "coated_spheres.json").read_text(encoding="utf-8"))["cases"]:
         given = case["given"]
