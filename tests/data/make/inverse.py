@@ -1,96 +1,110 @@
-"""Rows of inverse.json that nacre's own engine made: writes those of seeds 18 and 19.
+"""Synthetic indentation curves with noise, and what a fit can tell: inverse.json.
 
-Another program made seeds 11 to 17. In the row of seed 16 the sum of squares falls along a ridge,
-to
-thinner and softer coats without end, and it has no maximum of likelihood. With less noise
-it has one: here are this coat, and one of contrast 180. `nacre.indent.fit` has no part in this: the
-loads are states at each depth, derivatives are differences of curves of fourth order, and the
-minimum is found by Gauss' and Newton's steps. Run: .venv/bin/python tests/data/make/inverse.py
+Inputs are the true numbers, the depths and the loads with their noise. Found are the loads without
+noise, the Cramer-Rao bounds at the true numbers and the maximum of likelihood (Gauss and Newton's
+steps from there). P(delta) comes from axisym.py at Chebyshev points of ln a; at a given depth
+
+    dP/d theta = P_theta(a) - S delta_theta(a),   dP/d delta = S,
+
+with complex steps at fixed radius. The row of seed 16 has no maximum of likelihood: the sum of
+squares falls along a ridge, to thinner and softer coats without end.
 """
 
-import json
-import math
-from pathlib import Path
+import sys
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
-import nacre
-from nacre.indent import Indentation, Tip
+from axisym import Contact, Response, tip
+from common import main
+from layered import Body
 
-PATH = Path(__file__).parents[1] / "inverse.json"
-FREE = ["lnE1", "lnh", "d0", "drift"]
-SEEDS = {18: ("soft coat", 3e9, 3e-4), 19: ("contrast 180", 70e9 / 180, 3e-5)}
-POINTS, STEP, ITERATIONS = 80, 1e-2, 12
+NAME, SECONDS, POINTS, STEP = "inverse.json", 120, 26, 1e-30
 
 
-def row(seed, name, young, sigma):
-    true = dict(E1=young, nu1=0.25, E2=70e9, nu2=0.3, h=2e-6, R=2e-5)
-    true |= dict(d0_over_dmax=0.02, drift_over_dmax=0.01)
-    time = np.linspace(0, 1, POINTS)
+class Curve:
+    """Load and its derivatives over true depths, for logarithms of E1, E2 and h."""
 
-    def test(log_young, log_thickness):
-        layer = nacre.Layer(
-            nacre.Elastic(math.exp(log_young), true["nu1"]), math.exp(log_thickness)
+    def __init__(self, row, x, depth):
+        true = row["true"]
+        values = {f"ln{k}": np.log(true[k]) for k in ("E1", "E2", "h")} | x
+        shape = tip({"kind": "paraboloid", "R": true["R"]})
+        low, high = (
+            np.log(0.5 * np.sqrt(depth.min() * true["R"])),
+            np.log(1.6 * np.sqrt(depth.max() * true["R"])),
         )
-        body = nacre.HalfSpace(nacre.Elastic(true["E2"], true["nu2"]), [layer])
-        return Indentation(body, Tip.paraboloid(true["R"]))
+        at = np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
+        radii = np.exp((low + high) / 2 + (high - low) / 2 * at)
 
-    # The deepest true depth has a contact radius of 1.5 thicknesses; errors are shares of dmax.
-    start = np.array([math.log(young), math.log(true["h"]), 0.02, 0.01])
-    deepest = test(*start[:2]).at(radius=1.5 * true["h"]).approach / (1 - 0.02 - 0.01)
-    depth = np.linspace(0.05, 1, POINTS) * deepest
-    approach = depth - (start[2] + start[3] * time) * deepest
-    clean = np.array([test(*start[:2]).at(approach=float(one)).load for one in approach])
-    noise = np.random.default_rng(seed).standard_normal(POINTS)
-    load = clean + sigma * clean.max() * noise
+        def contacts(moved):
+            young1, young2, h = (np.exp(moved[k]) for k in ("lnE1", "lnE2", "lnh"))
+            shears = young1 / (2 * (1 + true["nu1"])), young2 / (2 * (1 + true["nu2"]))
+            body = Body([(h, shears[0], true["nu1"], True)], (shears[1], true["nu2"]))
+            response = Response(body)
+            found = [Contact(response, a, shape) for a in radii]
+            return np.array([[one.P, one.delta, one.S] for one in found]).T
 
-    def model(x):
-        approach = depth - (x[2] + x[3] * time) * deepest
-        return test(*x[:2]).curve(approach=approach).load / (sigma * clean.max())
+        load, delta, slope = contacts(values)
+        fit = lambda v: chebyshev.chebfit(at, v, POINTS - 1)  # noqa: E731
+        depths, rise = fit(np.log(delta)), chebyshev.chebder(fit(np.log(delta)))
+        place = np.interp(np.log(depth), np.log(delta)[::-1], at[::-1])
+        for _ in range(6):
+            off = chebyshev.chebval(place, depths) - np.log(depth)
+            place = place - off / chebyshev.chebval(place, rise)
+        self.load = np.exp(chebyshev.chebval(place, fit(np.log(load))))
+        self.slope = np.exp(chebyshev.chebval(place, fit(np.log(slope))))
+        self.by = {}
+        for key in x:
+            moved = contacts(values | {key: values[key] + 1j * STEP}).imag / STEP
+            share = (moved[0] - slope * moved[1]) / load
+            self.by[key] = self.load * chebyshev.chebval(place, fit(share))
 
-    def jacobian(x):
-        columns = []
-        for k in range(len(x)):
-            step = np.zeros_like(x)
-            step[k] = STEP * (1 if k < 2 else 0.1)
-            ends = [model(x + share * step) for share in (-2, -1, 1, 2)]
-            columns.append((8 * (ends[2] - ends[1]) - (ends[3] - ends[0])) / (12 * step[k]))
-        return np.stack(columns, axis=1)
 
-    first = jacobian(start)
-    covariance = np.linalg.inv(first.T @ first)
-    sigmas = np.sqrt(np.diag(covariance))
-    place = start
-    for _ in range(ITERATIONS):
-        rest = load / (sigma * clean.max()) - model(place)
-        step = np.linalg.lstsq(jacobian(place), rest)[0]
-        place = place + step
-    assert (np.abs(step) < 1e-5 * sigmas).all(), step / sigmas
-    rest = load / (sigma * clean.max()) - model(place)
-    return dict(
-        name=f"{name}, E1 h, contact point and drift, small noise",
-        seed=seed,
-        true=true,
-        noise="absolute",
-        sigma=sigma,
-        free=FREE,
-        a_max_over_h=1.5,
-        depth=depth.tolist(),
-        load_noise_free=clean.tolist(),
-        load=load.tolist(),
-        cramer_rao_sigma=dict(zip(FREE, sigmas.tolist(), strict=True)),
-        correlation=np.round(covariance / np.outer(sigmas, sigmas), 6).tolist(),
-        maximum_likelihood=dict(zip(FREE, place.tolist(), strict=True)),
-        chi2=float(rest @ rest),
-    )
+def model(row, x, clean=None):
+    """Return loads, and residuals and their Jacobian in units of the noise."""
+    depth, load = np.array(row["depth"]), np.array(row["load"])
+    time, whole = np.linspace(0, 1, len(depth)), depth[-1]
+    shifts = {k: row["true"][f"{k}_over_dmax"] for k in ("d0", "drift")} | x
+    logs = {k: v for k, v in x.items() if k.startswith("ln")}
+    curve = Curve(row, logs, depth - (shifts["d0"] + shifts["drift"] * time) * whole)
+    by = curve.by | {"d0": -curve.slope * whole, "drift": -curve.slope * whole * time}
+    columns = np.stack([by[k] for k in x], axis=1)
+    if row["noise"] == "relative":
+        return (
+            curve.load,
+            np.log(load / curve.load) / row["sigma"],
+            columns / curve.load[:, None] / row["sigma"],
+        )
+    unit = row["sigma"] * (curve.load if clean is None else clean).max()
+    return curve.load, (load - curve.load) / unit, columns / unit
+
+
+def fill(content):
+    for row in content["curves"]:
+        true, free = row["true"], row["free"]
+        x = {k: np.log(true[k[2:]]) if k.startswith("ln") else true[f"{k}_over_dmax"] for k in free}
+        clean, _, jacobian = model(row, x)
+        covariance = np.linalg.inv(jacobian.T @ jacobian)
+        sigmas = np.sqrt(np.diag(covariance))
+        row |= {
+            "load_noise_free": clean.tolist(),
+            "cramer_rao_sigma": dict(zip(free, sigmas.tolist(), strict=True)),
+        }
+        row["correlation"] = (covariance / np.outer(sigmas, sigmas)).tolist()
+        if "scaled_jacobian_condition" in row:
+            row["scaled_jacobian_condition"] = np.linalg.cond(
+                jacobian / np.linalg.norm(jacobian, axis=0)
+            )
+        for _ in range(8 if "maximum_likelihood" in row else 0):
+            _, rest, jacobian = model(row, x, clean)
+            step = np.linalg.lstsq(jacobian, rest)[0]
+            x = dict(zip(free, np.array(list(x.values())) + step, strict=True))
+            if (np.abs(step) < 1e-7 * sigmas).all():
+                break
+        if "maximum_likelihood" in row:
+            row["maximum_likelihood"] = {k: float(v) for k, v in x.items()}
+            row["chi2"] = float((model(row, x, clean)[1] ** 2).sum())
 
 
 if __name__ == "__main__":
-    content = json.loads(PATH.read_text(encoding="utf-8"))
-    kept = [case for case in content["curves"] if case["seed"] not in SEEDS]
-    for case in kept:
-        if case["seed"] == 16:
-            case.pop("maximum_likelihood", None)  # no minimum: the sum of squares falls without end
-            case.pop("chi2", None)
-    content["curves"] = kept + [row(seed, *what) for seed, what in SEEDS.items()]
-    PATH.write_text(json.dumps(content), encoding="utf-8")
+    main(sys.modules[__name__])

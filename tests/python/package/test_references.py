@@ -18,19 +18,20 @@ MAKE = DATA / "make"
 
 # Generator, and what is recomputed: entries of lists in the file.
 QUICK: list[tuple[str, dict[str, list[int]]]] = [
-    ("axisym_tips", {"cases": [0, 2, 4, 6, 9, 12]}),
+    ("axisym_tips", {"cases": [2, 9]}),
     ("sphere_coated", {"cases": [0, 7, 24]}),
     ("sphere_rigid_base", {"cases": [0, 9]}),
-    ("sphere_derivatives", {"cases": [0, 7]}),
+    ("sphere_derivatives", {"cases": [0]}),
     ("jkr", {"table": [4], "curves": [1]}),
     ("maugis", {"bare": [0, 6], "coated": []}),
     ("line_coated", {"cases": [0, 12, 24]}),
-    ("line_contact", {"cattaneo": [12], "carter_full": [3], "carter_partial": []}),
+    ("line_contact", {"cattaneo": [11], "carter_full": [3], "carter_partial": []}),
     ("stick_stiffness", {"cases": [0, 11]}),
     ("response_stacks", {"cases": [0, 1, 5]}),
     ("response_derivatives", {"stacks": [0]}),
     ("stress_disc", {"cases": [2]}),
     ("stress_patch", {"cases": [0, 10, 27]}),
+    ("quarter_space_wave", {"cases": [0, 8, 14]}),
 ]
 
 
@@ -78,9 +79,8 @@ def test_files_say_where_their_numbers_come_from() -> None:
 
 def test_no_generator_imports_nacre() -> None:
     for path in sorted(MAKE.glob("*.py")):
-        assert "nacre" not in path.read_text(encoding="utf-8").split("import ", 1)[-1].replace(
-            "nacre's", ""
-        ) or path.stem in {"inverse"}, path.name
+        for line in path.read_text(encoding="utf-8").splitlines():
+            assert not line.lstrip().startswith(("import nacre", "from nacre")), path.name
 
 
 def test_files_are_written_as_they_are_read(
