@@ -44,18 +44,24 @@ def integration():
     return HALF * to_end @ coefficients
 
 
-def operator(nu):
-    """T at the nodes, with the weights of the integral over x."""
-    x = NODES.ravel()
-    r = np.hypot(x[:, None], x)  # [z, x]
+def kernels(x):
+    """T(z, x) = A + (1 - 2 nu) B at the nodes z, for any x: A and B."""
+    z = NODES.ravel()
+    r = np.hypot(z[:, None], x)
     small = k0(r)
     # J: from z on, panel by panel, for each x.
     by_panel = (small * WEIGHTS.ravel()[:, None]).reshape(len(EDGES) - 1, ORDER, -1)
     later = by_panel.sum(1)[::-1].cumsum(0)[::-1] - by_panel.sum(1)
-    inside = (small * x[:, None]).reshape(by_panel.shape)
+    inside = (small * z[:, None]).reshape(by_panel.shape)
     tail = np.einsum("ij,pjx->pix", integration(), inside) + later[:, None]
-    kernel = x[:, None] * x**2 / r**2 * (2 * k1(r) / r + small)
-    return -2 / np.pi * (kernel - (1 - 2 * nu) * tail.reshape(r.shape)) * WEIGHTS.ravel()
+    first = z[:, None] * x**2 / r**2 * (2 * k1(r) / r + small)
+    return -2 / np.pi * first, 2 / np.pi * tail.reshape(r.shape)
+
+
+def operator(nu):
+    """T at the nodes, with the weights of the integral over x."""
+    first, second = kernels(NODES.ravel())
+    return (first + (1 - 2 * nu) * second) * WEIGHTS.ravel()
 
 
 def added(nu, p):
