@@ -1,8 +1,8 @@
 """Errors of influence coefficients converted by inverse FFT: influence_conversion.json.
 
 Cells of side 1, offsets -64 to 63. The exact coefficients are Love's integral for the coating and
-the cell's integral of k_M(r), the Hankel transform of M = alpha c11/A1 - 1, which is smooth within a
-cell for coatings of two cells and more. The conversions take c11 less the coating's A1/alpha
+the cell's integral of k_M(r), the Hankel transform of M = alpha c11/A1 - 1, smooth within a cell
+for coatings of two cells and more. The conversions take c11 less the coating's A1/alpha
 ('difference'), or also less an image A1 M(0) exp(-2 h alpha)/alpha of known integral, on the wave
 numbers of a domain `refinement` times as wide; the sample at 0 is the limit of the rest, with the
 cell mean of what is left of 1/alpha.

@@ -19,7 +19,7 @@ from axisym import Contact, Response, tip
 from common import main
 from layered import Body
 
-NAME, SECONDS, POINTS, STEP = "inverse.json", 150, 40, 1e-30
+NAME, SECONDS, POINTS, STEP = "inverse.json", 150, 30, 1e-30
 
 
 class Curve:

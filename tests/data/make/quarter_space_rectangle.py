@@ -1,12 +1,12 @@
 """Uniform pressure on a rectangle near the end of a quarter space: quarter_space_rectangle.json.
 
-For each wave number k along y, the equation of quarter_space_wave.py gives the part S that the end
-face adds to the pressure, with lengths in units of 1/k; u = Love + mirrored Love + a cosine integral
+For each wave number k along y, the equation of quarter_space_wave.py gives the part S that the
+end face adds to the pressure, lengths in units of 1/k; u = Love + its mirror + a cosine integral
 
     (4/pi^2) integral sin(k w)/k cos(k y) D(k)/k dk,   D = integral [K0(|kx - t|) + K0(kx + t)] S dt
 
-D/k is interpolated in ln k. At x = d = 0, D tends to (c - 2) pi/2, c that of the wave at the end, and
-the same multiple of the half-space's is taken out of D and added in closed form.
+D/k is interpolated in ln k. At x = d = 0, D tends to (c - 2) pi/2, c that of the wave at the end,
+and the same multiple of the half-space's is taken out of D and added in closed form.
 """
 
 import itertools
