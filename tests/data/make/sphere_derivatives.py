@@ -31,7 +31,7 @@ def fill(content):
         centre = found.pressure(0.0)
         case |= {"W": found.P, "delta": found.delta, "p0": centre}
         inner = lowest(lambda r: -found.pressure(r), (0.0, 0.95 * a), 1e-8 * a)
-        case["peak_over_p0"] = max(1.0, -inner.fun / centre)
+        case["peak_over_p0"] = max(1.0, round(-inner.fun / centre, 12))
         along = logs(case, a * (1 + 1j * STEP)).imag / STEP  # d/dln a of ln W, ln delta, ln p0
         for name, kept in case["derivatives"].items():
             key = name.removeprefix("d/d").removeprefix("ln")
