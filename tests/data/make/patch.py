@@ -8,7 +8,7 @@ far from it. Derived here; the bare forms are Love's and Cerruti's.
 """
 
 import numpy as np
-from scipy.special import jv
+from scipy.special import j0, j1
 
 from layered import compliances
 from stress_disc import panels
@@ -67,17 +67,15 @@ class Added:
             for gy, vy in zip(e, w, strict=True):
                 dx, dy = x - a * gx, y - b * gy
                 r, t, share = np.hypot(dx, dy), np.arctan2(dy, dx), a * b * vx * vy / (2 * np.pi)
-                k = [
-                    self.weights * jv(order, self.alpha * r) for order in range(1 if normal else 3)
-                ]
+                z = self.alpha * r
+                zeroth = self.weights * j0(z)
                 if normal:
-                    found[0] += share * self.c11 @ k[0]
+                    found[0] += share * self.c11 @ zeroth
                     continue
-                k0, k1, k2 = (
-                    (self.c22 + self.ct) / 2 @ k[0],
-                    self.c12 @ k[1],
-                    (self.c22 - self.ct) / 2 @ k[2],
-                )
+                first = self.weights * j1(z)
+                second = 2 * first / z - zeroth
+                k0, k1 = (self.c22 + self.ct) / 2 @ zeroth, self.c12 @ first
+                k2 = (self.c22 - self.ct) / 2 @ second
                 found += share * np.array(
                     [k0 - k2 * np.cos(2 * t), -k2 * np.sin(2 * t), k1 * np.cos(t)]
                 )

@@ -29,7 +29,8 @@ def fill(content):
             else:
                 size = 2 ** np.ceil(np.log2(r + np.hypot(a, b)))
                 reach[size] = reach.get(size) or Added(stack, size)
-                added = reach[size].far(x, y, a, b, order=(8, 8 if dy == dx else 24))
+                n = 8 if r < 10 * dx else 4  # Gauss points of an edge
+                added = reach[size].far(x, y, a, b, order=(n, n if dy == dx else 3 * n))
             row |= dict(
                 zip(
                     ("ux", "uy", "uz"),
