@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers kappa torch develop stubs docs publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa torch develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
@@ -77,6 +77,11 @@ fuzz: $(WHEEL) $(DEV) ## random contacts, calls, files and indentations: CASES=1
 # The other solvers are installed into a separate environment under target/peers.
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
+
+# The generators know nothing of nacre. OPTIONS=--write replaces the stored numbers; OPTIONS=jkr runs one generator.
+references: $(BUILD) ## recompute the reference numbers of the tests and compare them with tests/data, in half an hour
+	$(BIN)/python -m pip install --quiet --group references
+	$(BIN)/python tests/data/make $(OPTIONS)
 
 kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in three minutes
 	$(BIN)/python benches/kappa.py

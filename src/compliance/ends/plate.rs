@@ -9,7 +9,7 @@
 //!
 //! D_ab depends on kL and ν. It is tabulated for a, b ≤ 7, which leaves 5e-5 of the displacement; above kL = 15,
 //! it is less than 1e-6. It follows from one equation as that of the quarter space: a half-space under a pressure
-//! that is even and periodic, and a plate under tractions on its faces (`tests/data/make_plate.py`). The method was
+//! that is even and periodic, and a plate under tractions on its faces (`tests/data/make/plate.py`). The method was
 //! derived here.
 //!
 //! Below kL = 0.1, D_00 and D_11 grow as 1/k: long waves stretch and bend a plate of plane stress. The rest is a
@@ -205,7 +205,7 @@ mod tests {
     }
 
     /// The table agrees with D_ab on a finer mesh (step 0.25, from 1e-9 on) at places that are no nodes:
-    /// `tests/data/make_plate.py check`.
+    /// `tests/data/make/plate.py check`.
     #[test]
     fn table_holds_between_its_nodes() {
         let pairs = [[0, 0], [1, 1], [0, 2], [1, 3], [2, 2], [1, 7]];

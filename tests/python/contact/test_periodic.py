@@ -145,7 +145,7 @@ def test_other_programs_find_the_same_pressure(
     """ContactMechanics 1.8.3, also with its layer on a rigid base, and Tamaas 2.9.0.
 
     Their discretisation is the spectral method; their pressures stand in tests/data, which
-    make_periodic_peers.py made. They meet 1e-12 or so of the energy, the square of which is the
+    make/periodic_peers.py made. They meet 1e-12 or so of the energy, the square of which is the
     error of a pressure.
     """
     data = json.loads((DATA / "periodic_peers.json").read_text(encoding="utf-8"))

@@ -41,7 +41,7 @@ Accuracy.  At the places CHECKED, which are no nodes, the table differs from the
 most 2e-5 of pi (1 + 0.6 nu)/k, about the displacement under unit pressure; where a or b is above 1,
 by at most 5e-6.
 
-Needs numpy, scipy.  Run: python tests/data/make_plate.py (three minutes on one core).  With the
+Needs numpy, scipy.  Run: python tests/data/make/plate.py (three minutes on one core).  With the
 argument "check", it prints D_ab at the places CHECKED, as in src/ends/plate.rs, instead.
 """
 
@@ -64,12 +64,12 @@ DEEPEST = 40.0  # k times the depth of the deepest node
 SERIES = 0.4  # depth from which on T_A is a cosine series
 PERIOD = 70.0  # of the trapezoidal sum over zeta, along k z
 CHECKED = ((0.15, 0.3), (0.6, 0.05), (1.7, 0.28), (3.3, 0.45), (6.0, 0.3), (11.0, 0.5))
-PATH = Path(__file__).parents[2] / "src" / "ends" / "plate.txt"
+PATH = Path(__file__).parents[3] / "src" / "compliance" / "ends" / "plate.txt"
 HEADER = """\
 # Chebyshev coefficients c[p][q] of kL exp(kL/2) D_ab, the difference of a plate with two free ends
 # from two quarter spaces: sum of c T_p(4 nu - 1) T_q(2 ln(kL/0.1)/ln 150 - 1) for
 # 0.1 <= kL <= 15, 0 <= nu <= 1/2. For each pair a b a block: a line with a and b, then six lines p
-# of twenty coefficients q. Made by tests/data/make_plate.py.
+# of twenty coefficients q. Made by tests/data/make/plate.py.
 """
 
 

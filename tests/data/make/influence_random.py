@@ -15,7 +15,7 @@ for a rigid base) and M(alpha) = alpha c11 / A1 - 1, M(0) = M0 = A/A1 - 1,
 
 where I0 is the integral of 1/r over the cell (Love) and k_M the Hankel
 transform of M.  c11 comes from the full boundary-value system in ball
-arithmetic (make_response_random.py), also at complex wavenumbers: the path of
+arithmetic (response_random.py), also at complex wavenumbers: the path of
 
     k_N(r) = Re integral (M - M0) H0(alpha r) d alpha     (Hankel function, first kind)
 
@@ -31,19 +31,20 @@ another order with other pieces.  Besides, k_M is compared for every body with
 a Gauss quadrature along the real axis, which no pole can mislead.
 
 Everything after the tables is 80-bit arithmetic (x86 long double).
-Needs numpy, python-flint.  Run: python tests/data/make_influence_random.py
+Needs numpy, python-flint.  Run: python tests/data/make/influence_random.py
 """
 
-import json
 import math
 import random
+import sys
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
+from common import main
 from flint import acb, arb, ctx, fmpq
-from make_response_random import compliances, random_poisson, rounded, shear_modulus
+from response_random import compliances, random_poisson, rounded, shear_modulus
 
+NAME, SECONDS = "influence_random.json", 900
 LD = np.longdouble
 CLD = np.clongdouble
 PI = LD("3.14159265358979323846264338327950288")
@@ -51,7 +52,7 @@ DESCRIPTION = (
     "Influence coefficients: c is the normal surface displacement at the offset (i dx, j dy) from the "
     "centre of a rectangle cell = [dx, dy] under unit pressure. Layers from the surface down; "
     "'interface' is the one below the layer; substrate null is a rigid base. Made by "
-    "make_influence_random.py: Hankel kernels of the exact response on a turned path, cell integrals in "
+    "influence_random.py: Hankel kernels of the exact response on a turned path, cell integrals in "
     "80-bit arithmetic. 'error' is the difference of two independent evaluations (at least the rounding "
     "of c and of its terms; rigid base: a far c below its error is only known to be that small). Over "
     "all rows error / max(|c|, bare-substrate coefficient) is at most {elastic:.1e}; rigid base: "
@@ -401,7 +402,7 @@ def bodies(rng):
         yield stack, None if k == 9 else base, size
 
 
-def main():
+def fill(content):
     if np.finfo(LD).eps > 2e-19:
         raise SystemExit("needs a long double of at least 64 bits")
     rng = random.Random(20240612)
@@ -436,17 +437,12 @@ def main():
         worst[kind] = max(worst[kind], case_worst)
         print(f"{number} {kind}, layers {len(layers)}: axis {axis:.1e}, error {case_worst:.1e}", flush=True)
         cases.append({"layers": layers, "substrate": substrate, "cell": cell, "rows": rows})
-    lines = ",\n".join(json.dumps(case) for case in cases)
     if max(worst_axis, *worst.values()) > 1e-12:
         raise SystemExit(f"evaluations disagree: {worst}, real axis {worst_axis:.1e}")
-    description = DESCRIPTION.format(**{k: rounded_up(v) for k, v in worst.items()})
-    text = f'{{"description": {json.dumps(description)},\n"cases": [\n{lines}\n]}}\n'
-    target = Path(__file__).with_name("influence_random.json")
-    target.write_text(text, encoding="utf-8")
-    count = sum(len(c["rows"]) for c in cases)
-    print(f"{target.name}: {len(cases)} cases, {count} rows ({corner_rows} by corners), {worst}")
-    print(f"largest deviation from the real axis {worst_axis:.1e}")
+    content["cases"] = cases
+    content["description"] = DESCRIPTION.format(**{k: rounded_up(v) for k, v in worst.items()})
+    print(f"{corner_rows} rows by corners, {worst}; largest deviation from the real axis {worst_axis:.1e}")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.modules[__name__])

@@ -21,24 +21,16 @@ Convention, z into the body, rotated frame (L along the wave vector, T across):
 u_z = W, u_L = i V, sigma_zz = -P, sigma_Lz = -i TAU, u_T = U, sigma_Tz = -Q;
 at the surface (W, V) = [[c11, c12], [c12, c22]] (P, TAU) and U = ct Q.
 
-Needs python-flint.  Run: python tests/data/make_response_random.py
+Needs python-flint.  Run: python tests/data/make/response_random.py
 """
 
-import json
 import math
 import random
-from pathlib import Path
+import sys
 
+from common import main
 from flint import acb, acb_mat, arb, arb_mat, ctx
 
-DESCRIPTION = (
-    "Surface compliances of random stacks: u_z = c11 p - i c12 q_L, u_L = i c12 p + c22 q_L, "
-    "u_T = ct q_T at the given wavenumber. Layers from the surface down; 'interface' is the one "
-    "below the layer ('frictionless': no shear traction on either side, normal displacement and "
-    "traction continuous); substrate null is a rigid base. Made by make_response_random.py from the "
-    "full boundary-value system in ball arithmetic (no layer recursion); proven relative error below "
-    "1e-25 before rounding to double. c12 below 1e-30 sqrt(c11 c22) is written as 0."
-)
 TOLERANCE = 1e-25  # proven relative error demanded of each compliance
 NEGLIGIBLE = 1e-30  # c12 / sqrt(c11 c22) below which c12 is written as 0
 
@@ -237,19 +229,17 @@ def wavenumbers(rng, layers):
     return [rounded(10**e / thinnest) for e in sorted(exponents)]
 
 
-def main():
+NAME, SECONDS = "response_random.json", 60
+
+
+def fill(content):
     rng = random.Random(20240611)
     stacks = list(deliberate_stacks()) + [random_stack(rng, 1 + k % 6) for k in range(72)]
-    cases = []
+    content["cases"] = []
     for layers, substrate in stacks:
         rows = [certified_row(layers, substrate, a) for a in wavenumbers(rng, layers)]
-        cases.append({"layers": layers, "substrate": substrate, "rows": rows})
-    lines = ",\n".join(json.dumps(case) for case in cases)
-    text = f'{{"description": {json.dumps(DESCRIPTION)},\n"cases": [\n{lines}\n]}}\n'
-    target = Path(__file__).with_name("response_random.json")
-    target.write_text(text, encoding="utf-8")
-    print(f"{target.name}: {len(cases)} stacks, {sum(len(c['rows']) for c in cases)} rows")
+        content["cases"].append({"layers": layers, "substrate": substrate, "rows": rows})
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.modules[__name__])
