@@ -34,6 +34,7 @@ use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
+mod beside;
 mod ends;
 mod field;
 mod half_space;
@@ -53,6 +54,7 @@ pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
 use options::SlidingSense;
 use plan::{PressureSource, stress_once};
+use refined::refined_summary;
 use subcell::BodyPair;
 use summary::summary_once;
 
@@ -150,7 +152,7 @@ impl Solution {
     ) -> Result<StressSummary> {
         let asked = options.into();
         match asked.options().refine {
-            Some(target) => self.refined_summary(member, strengths, target, asked),
+            Some(target) => refined_summary(self, self.source(member)?, strengths, target, asked),
             None => summary_once(&self.source(member)?, strengths, asked),
         }
     }

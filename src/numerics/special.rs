@@ -2,6 +2,9 @@
 
 use std::f64::consts::PI;
 
+/// Euler's constant γ, which is in the standard library from Rust 1.94 on.
+pub(crate) const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
+
 /// The Legendre polynomials P_0(x), P_1(x), … without end.
 pub(crate) fn legendre(x: f64) -> impl Iterator<Item = f64> {
     let (mut p, mut before) = (1.0, 0.0);

@@ -20,24 +20,21 @@
 //! A patch holds the places of extremes that are within a width of the contact. It counts within a quarter of the half-width of
 //! them and ends a half-width farther off, where the pressure of the grid follows, which is uniform over cells.
 
-use std::ops::ControlFlow;
-
 use ndarray::Array2;
 
+use super::beside::{Beside, Sampled};
 use super::field::Peak;
 use super::options::{StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::section::Span;
-use super::subcell::{BodyPair, STRESSES};
+use super::subcell::BodyPair;
 use super::summary::{Strengths, StressSummary, SummaryRequest, place_of};
-use super::{Member, Solution};
 use crate::compliance::response::Body;
 use crate::compliance::response::interior::Place;
-use crate::contact::{Contact, Motion, Options, Setup};
+use crate::contact::{Contact, Motion, Options, Setup, Solution};
 use crate::error::{Error, Result, refuse_if, require};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
-use crate::model::surface::Surface;
 
 /// Distance, in half-widths of the contact, within which extremes are found on one patch: from edge to edge.
 const NEAR: f64 = 2.0;
@@ -49,119 +46,11 @@ const MARGINS: [f64; 2] = [0.25, 1.25];
 /// Fewest cells of which a patch may have as many, however small the grid is.
 const FEWEST_CELLS: usize = 1 << 14;
 
-/// Values in the cells of a grid, interpolated by cubics through four cells along each axis.
-#[derive(Debug)]
-pub(super) struct Sampled {
-    values: Array2<f64>,
-    first: [f64; 2],
-    spacing: [f64; 2],
-}
-
-impl Sampled {
-    fn new(grid: &Grid, values: Array2<f64>) -> Self {
-        Self { values, first: [grid.x()[0], grid.y()[0]], spacing: grid.spacing() }
-    }
-
-    /// Numbers of the cells around a coordinate, and their weights.
-    fn stencil(&self, axis: usize, at: f64) -> Vec<(usize, f64)> {
-        let count = self.values.shape()[axis];
-        if count == 1 {
-            return vec![(0, 1.0)];
-        }
-        let size = count.min(4);
-        let position = (at - self.first[axis]) / self.spacing[axis];
-        let start = (position.floor() - 1.0).clamp(0.0, (count - size) as f64);
-        let t = position - start;
-        let weight = |k: usize| -> f64 {
-            let others = (0..size).filter(|other| *other != k);
-            others.map(|other| (t - other as f64) / (k as f64 - other as f64)).product()
-        };
-        (0..size).map(|k| (start as usize + k, weight(k))).collect()
-    }
-
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let columns = self.stencil(1, y);
-        let row = |(i, wx): &(usize, f64)| -> f64 {
-            wx * columns.iter().map(|(j, wy)| wy * self.values[[*i, *j]]).sum::<f64>()
-        };
-        self.stencil(0, x).iter().map(row).sum()
-    }
-}
-
-/// The gap of a patch without its own displacement.
-impl Surface for Sampled {
-    fn gap(&self, x: f64, y: f64) -> f64 {
-        let gap = self.at([x, y]);
-        if gap.is_finite() { gap } else { f64::INFINITY }
-    }
-}
-
-/// What the stress of a patch lacks, from plans on the whole grid, and the cells of the patch that count.
-#[derive(Debug)]
-pub(super) struct Beside<'a> {
-    grid: &'a Grid,
-    /// Plans, and the factor of each.
-    parts: Vec<(Evaluation<'a>, f64)>,
-    core: Window,
-    /// The six components at the place that was evaluated last.
-    fields: Vec<Sampled>,
-}
-
-impl<'a> Beside<'a> {
-    /// Evaluates the stress at `place`, and adds it in the cells of `grid` that count.
-    pub(super) fn add(
-        &mut self,
-        place: &Place,
-        grid: &Grid,
-        fields: &mut [Vec<f64>; STRESSES],
-        progress: &mut StressProgress,
-    ) -> ControlFlow<()> {
-        let cells = self.grid.shape().iter().product();
-        let mut sums = vec![vec![0.0; cells]; STRESSES];
-        let mut planes = vec![vec![0.0; cells]; STRESSES];
-        for (evaluation, factor) in &mut self.parts {
-            let mut outputs: Vec<&mut [f64]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-            evaluation.plane(place, &mut outputs, progress)?;
-            for (sum, plane) in sums.iter_mut().zip(&planes) {
-                sum.iter_mut().zip(plane).for_each(|(sum, value)| *sum += *factor * value);
-            }
-        }
-        let shape = self.grid.shape();
-        let sampled =
-            |sum| Sampled::new(self.grid, Array2::from_shape_vec(shape, sum).unwrap_or_default());
-        self.fields = sums.into_iter().map(sampled).collect();
-        let (x, y, [_, ny]) = (grid.x(), grid.y(), grid.shape());
-        let columns: Vec<_> =
-            self.core[1].clone().map(|j| self.fields[0].stencil(1, y[j])).collect();
-        for i in self.core[0].clone() {
-            let rows = self.fields[0].stencil(0, x[i]);
-            for (field, sampled) in fields.iter_mut().zip(&self.fields) {
-                for (j, columns) in self.core[1].clone().zip(&columns) {
-                    let row = |(i, wx): &(usize, f64)| -> f64 {
-                        let along = columns.iter().map(|(j, wy)| wy * sampled.values[[*i, *j]]);
-                        wx * along.sum::<f64>()
-                    };
-                    field[i * ny + j] += rows.iter().map(row).sum::<f64>();
-                }
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// The components at a point, at the place that was evaluated last.
-    pub(super) fn at(&self, point: [f64; 2]) -> Vec<f64> {
-        self.fields.iter().map(|field| field.at(point)).collect()
-    }
-
-    pub(super) fn has(&self, [i, j]: [usize; 2]) -> bool {
-        self.core[0].contains(&i) && self.core[1].contains(&j)
-    }
-}
-
 /// What a refined summary is made of.
 struct Refined<'a> {
     solution: &'a Solution,
-    member: Member,
+    /// Its pressure on the wanted body.
+    source: PressureSource<'a>,
     /// The bodies of the contact, without ends.
     bodies: Vec<Body>,
     /// The layers of the wanted one.
@@ -177,50 +66,48 @@ struct Patch {
     load: f64,
 }
 
-impl Solution {
-    /// The summary of [`Solution::stress_summary`], with finer cells where an extreme is more uncertain than the part
-    /// `target` of it.
-    pub(super) fn refined_summary(
-        &self,
-        member: Member,
-        strengths: &Strengths,
-        target: f64,
-        mut asked: WatchedStress,
-    ) -> Result<StressSummary> {
-        let requirement = "above 0 and below 1: the largest error of an extreme, as a part of it";
-        require("refine", target, target > 0.0 && target < 1.0, requirement)?;
-        refuse_if(
-            self.grid().is_periodic() != [false; 2],
-            "refine must be None on a periodic grid: the surface between its cells is not known",
-        )?;
-        refuse_if(
-            self.indentation.is_some(),
-            "refine must be None where the surface has yielded: dents are not known within cells",
-        )?;
-        refuse_if(
-            self.coefficients.is_some(),
-            "refine must be None with influence coefficients that were given: those of finer cells are not known",
-        )?;
-        let all = std::iter::once(&self.report.body).chain(&self.report.counterbody);
-        let plain = |body: &Body| match body.half_space() {
-            Some(layers) => Ok(Body::from(layers.clone().with_ends([None; 2])?)),
-            None => Ok(body.clone()),
-        };
-        let refined = Refined {
-            solution: self,
-            member,
-            bodies: all.map(plain).collect::<Result<_>>()?,
-            layers: self.member(member)?.clone().with_ends([None; 2])?,
-            options: asked.options(),
-            target,
-        };
-        refined.summary(strengths, &mut asked)
-    }
+/// The summary of [`Solution::stress_summary`], with finer cells where an extreme is more uncertain than the part
+/// `target` of it.
+pub(super) fn refined_summary(
+    solution: &Solution,
+    source: PressureSource,
+    strengths: &Strengths,
+    target: f64,
+    mut asked: WatchedStress,
+) -> Result<StressSummary> {
+    let requirement = "above 0 and below 1: the largest error of an extreme, as a part of it";
+    require("refine", target, target > 0.0 && target < 1.0, requirement)?;
+    refuse_if(
+        solution.grid().is_periodic() != [false; 2],
+        "refine must be None on a periodic grid: the surface between its cells is not known",
+    )?;
+    refuse_if(
+        solution.indentation.is_some(),
+        "refine must be None where the surface has yielded: dents are not known within cells",
+    )?;
+    refuse_if(
+        solution.coefficients.is_some(),
+        "refine must be None with influence coefficients that were given: those of finer cells are not known",
+    )?;
+    let all = std::iter::once(&solution.report.body).chain(&solution.report.counterbody);
+    let plain = |body: &Body| match body.half_space() {
+        Some(layers) => Ok(Body::from(layers.clone().with_ends([None; 2])?)),
+        None => Ok(body.clone()),
+    };
+    let refined = Refined {
+        solution,
+        bodies: all.map(plain).collect::<Result<_>>()?,
+        layers: source.body.clone().with_ends([None; 2])?,
+        source,
+        options: asked.options(),
+        target,
+    };
+    refined.summary(strengths, &mut asked)
 }
 
 impl Refined<'_> {
     fn summary(&self, strengths: &Strengths, asked: &mut WatchedStress) -> Result<StressSummary> {
-        let source = self.solution.source(self.member)?;
+        let source = &self.source;
         let body = source.body;
         let request =
             SummaryRequest::checked(body, source.grid, &source.sliding, strengths, self.options)?;
@@ -267,7 +154,8 @@ impl Refined<'_> {
                 })
                 .collect();
             let patch = self.patch(window)?;
-            let Some(plan) = self.fine_plan(&patch, &wanted, &mut progress)? else {
+            let wanted = (&*wanted, summary.least_value());
+            let Some(plan) = self.fine_plan(&patch, wanted, &mut progress)? else {
                 continue;
             };
             let beside = self.plans_beside(&patch)?;
@@ -305,10 +193,10 @@ impl Refined<'_> {
 
     /// Numbers of the extremes that are more uncertain than is asked for, the worst first.
     fn uncertain(&self, summary: &mut StressSummary) -> Vec<usize> {
-        let negligible = summary.negligible_error();
+        let least = summary.least_value();
         let ratio = |peak: &Peak| {
-            let error = peak.uncertainty.filter(|error| *error > negligible)?;
-            Some(error / peak.value.abs()).filter(|ratio| *ratio > self.target)
+            let ratio = peak.uncertainty? / peak.value.abs().max(least);
+            Some(ratio).filter(|ratio| *ratio > self.target)
         };
         let peaks = summary.peaks().into_iter().enumerate();
         let mut found: Vec<(usize, f64)> =
@@ -375,7 +263,7 @@ impl Refined<'_> {
     fn fine_plan(
         &self,
         patch: &Patch,
-        wanted: &[(Place, Peak)],
+        (wanted, least): (&[(Place, Peak)], f64),
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
         let most = self.solution.grid().shape().iter().product::<usize>().max(FEWEST_CELLS);
@@ -396,13 +284,14 @@ impl Refined<'_> {
             let options = Options::default();
             let solved = contact.solve(&patch.gap, &Motion::load(patch.load), &options)?;
             let solved = solved.require_converged(options.tolerance)?;
-            let whole = self.solution.source(self.member)?;
+            let sliding = self.source.sliding;
             let source = PressureSource {
                 body: &self.layers,
                 grid: &grid,
                 pressure: &solved.pressure,
                 solved: Some(BodyPair(self.bodies.iter().map(|body| &**body).collect())),
-                ..whole
+                sliding,
+                tractions: None,
             };
             let friction = source.sliding.traction(&self.layers, self.options)?;
             let Some(plan) = source.plan(self.options.threads, progress)? else {
@@ -423,7 +312,7 @@ impl Refined<'_> {
                 });
                 let errors = plan.whole.uncertainties_by_axis(place, friction, &near);
                 for (coarse, error) in coarse.iter_mut().zip(errors) {
-                    *coarse |= error > self.target * peak.value.abs();
+                    *coarse |= error > self.target * peak.value.abs().max(least);
                 }
             }
             found = Some(plan);
@@ -438,14 +327,21 @@ impl Refined<'_> {
 
     /// Plans on the whole grid of what the stress of a patch lacks, with the factor of each.
     fn plans_beside(&self, patch: &Patch) -> Result<Vec<(StressPlan, f64)>> {
-        let whole = self.solution.source(self.member)?;
+        let whole = &self.source;
         let mut outside = self.solution.pressure.clone();
         for i in patch.window[0].clone() {
             patch.window[1].clone().for_each(|j| outside[[i, j]] = 0.0);
         }
         let threads = StressOptions::with_threads(self.options.threads);
         let planned = |body: &HalfSpace, pressure: &Array2<f64>| {
-            let source = PressureSource { body, pressure, solved: None, ..whole };
+            let source = PressureSource {
+                body,
+                pressure,
+                grid: whole.grid,
+                solved: None,
+                sliding: whole.sliding,
+                tractions: None,
+            };
             source.planned((&threads).into())
         };
         if whole.body.ends() == [None; 2] {

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use super::beside::Beside;
 use super::field::{Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
-use super::refined::Beside;
 use super::subcell::CellPoint;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
@@ -147,6 +147,11 @@ impl StressSummary {
     pub(super) fn negligible_error(&self) -> f64 {
         let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
         NEGLIGIBLE_ERROR * peaks.fold(0.0, f64::max)
+    }
+
+    /// Value below which an extreme matters no more than this one: its error is negligible where it is resolved.
+    pub(super) fn least_value(&self) -> f64 {
+        self.negligible_error() / UNRESOLVED_EXTREME
     }
 
     /// All extremes, those of the layers first; none for a jump on a rigid base, and for what is no tension.

@@ -20,7 +20,7 @@
 //! and D_11 for waves k < 1/depth, the difference from their value at k = 1/depth is taken away where the load is. Under a
 //! given load and moment this changes no pressure.
 
-use std::f64::consts::{EULER_GAMMA, PI};
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use ndarray::Array2;
@@ -32,7 +32,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::quadrature::Rule;
-use crate::numerics::special::{chebyshev, legendre};
+use crate::numerics::special::{EULER_GAMMA, chebyshev, legendre};
 
 /// Number of polynomials φ.
 const POLYNOMIALS: usize = 8;

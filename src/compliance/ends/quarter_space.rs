@@ -4,7 +4,7 @@
 //! in closed form at the centre of a, and of the mean over a of what keeps the face free. The means make the
 //! second symmetric and positive; the first is symmetric as it is.
 
-use std::f64::consts::{EULER_GAMMA, PI};
+use std::f64::consts::PI;
 
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
 use crate::numerics::quadrature::Rule;
-use crate::numerics::special::{barycentric, chebyshev_nodes};
+use crate::numerics::special::{EULER_GAMMA, barycentric, chebyshev_nodes};
 
 /// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
 /// panels that end at twice the distance from which they start.

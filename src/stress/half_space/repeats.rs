@@ -389,7 +389,7 @@ mod tests {
     fn waves_along_one_direction_are_those_of_the_body() -> Result<()> {
         for (number, body) in bodies()?.iter().enumerate() {
             let deepest = match body.substrate() {
-                Substrate::Rigid => 2.9,
+                Substrate::Rigid | Substrate::Free => 2.9,
                 Substrate::Elastic(_) => 6.0,
             };
             for depth in [0.3, 1.7, deepest] {

@@ -409,7 +409,7 @@ def test_ctrl_c_interrupts_a_plan(solution: nacre.Solution) -> None:
 
 
 def test_refined_extremes_agree_with_a_finer_grid() -> None:
-    """On a patch of finer cells, tension and shear of a thin stiff coating are those of a finer grid.
+    """On a patch of finer cells, extremes of a thin stiff coating are those of a finer grid.
 
     The grid alone leaves them uncertain by more than a tenth; the bar is the sum of both estimated
     errors, and the patch must keep what was asked for.
