@@ -1,0 +1,776 @@
+"""Solved bearings: loads, tilts and pressures of all elements, and how they came about."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.progress import lasting
+from nacre._tools.units import printable, symbol, written
+from nacre.bearing.equilibrium import Balls, Kinematics, Problem, Rollers, State
+from nacre.bearing.geometry import RINGS, Bearing, Ring
+from nacre.bearing.iso import Edge, edge_factors, pressure_factors, rating, reference_life
+from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, bodies_of, law
+from nacre.contact import Contact
+from nacre.contact.solution import Solution
+from nacre.results import display, files
+from nacre.results.base import Result
+from nacre.results.listed import Listed, Tabular
+from nacre.results.quantities import BEARING, BEARING_LIFE
+from nacre.results.values import decode, encode, refusing
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+Model = Literal["solved", "iso16281"]
+
+EDGE = 0.1
+"""Share of the length at either end of a roller in which the edge pressure is looked for."""
+CELLS = {True: (3 * LAMINAE, 48), False: (96, 96)}
+"""Cells of contacts of rollers and of balls by default.
+
+With these the load of a ball at a given approach is right to 1e-4, and the peak pressure of a
+roller to 1 %.
+"""
+FINER = 0.1
+"""Tolerance of the contacts over that of the bearing, which their sums inherit."""
+ARRAYS = (
+    "angles",
+    "approaches",
+    "tilts",
+    "loads",
+    "moments",
+    "peak_pressures",
+    "edge_pressures",
+    "contact_angles",
+    "lamina_loads",
+    "lamina_pressures",
+    "grid_sizes",
+    "tangent",
+)
+"""Arrays in the state of a solution."""
+VECTORS = ("displacement", "tilt", "force", "moment")
+"""Numbers of the ring in the state of a solution."""
+EDGES = {
+    "standard": "edge factors of ISO/TS 16281, eq. 60",
+    "pressure": "edge factors from the solved pressure, eqs 58 and 59",
+    None: "without edge factors",
+}
+"""Words for the factors of a life."""
+
+
+@dataclass(frozen=True, repr=False)
+class BearingReport(Result):
+    """Report of a solved bearing: how it came about.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    >>> report = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").report
+    >>> report.converged, report.balance < 1e-9
+    (True, True)
+    """
+
+    termination: Literal["converged", "iteration limit", "stopped"]
+    """End of the iteration."""
+    iterations: int
+    """Newton steps of the ring with solved contacts, or with those of the standard."""
+    balance: float
+    """Largest mismatch of forces and moments of ring and elements, relative."""
+    warnings: tuple[str, ...]
+    """Warnings; each was also issued as a `nacre.NacreWarning`."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.termination == "converged"
+
+    def __repr__(self) -> str:
+        """Return how the iteration ended."""
+        return (
+            f"<BearingReport: {self.termination} after {self.iterations} steps, "
+            f"balance {self.balance:.1e}; {len(self.warnings)} warnings>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class BearingLife(Listed):
+    """Reference rating life of ISO/TS 16281: a model, at 90 % reliability.
+
+    Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the life
+    is that of bare ones under the same loads, or pressures.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(
+    ...     count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, capacity=23.4e3
+    ... )
+    >>> life = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").life()
+    >>> 13e3 < life.revolutions < 13.3e3
+    True
+    """
+
+    _QUANTITIES = BEARING_LIFE
+    _TITLE = "reference rating life of a bearing"
+
+    revolutions: float
+    """Life L_10r in millions of revolutions; infinite without load."""
+    equivalent_load: float
+    """Dynamic equivalent reference load [N]."""
+    capacity: float
+    """Dynamic load rating C_r of the bearing [N]."""
+    ring_capacities: tuple[float, float]
+    """Ratings of the contact of one element with inner and outer ring [N]."""
+    model: str
+    """Model in words."""
+
+    def _rows(self) -> list[tuple[str, str]]:
+        life = "infinite: no element is loaded"
+        if math.isfinite(self.revolutions):
+            life = f"{self.revolutions:.6g} million revolutions"
+        rows = [(name, value) for name, value in super()._rows() if name != "life"]
+        return [("life L10r", life), *rows, ("model", self.model)]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class BearingSolution(Tabular):
+    """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
+
+    Examples
+    --------
+    >>> from nacre.bearing import CylindricalRoller
+    >>> bearing = CylindricalRoller(
+    ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+    ... )
+    >>> solution = bearing.solve(force=(4450.0, 0.0, None), tilt=(None, 6e-4))
+    >>> solution.loads.shape, solution.report.converged
+    ((14, 2), True)
+    """
+
+    _QUANTITIES = BEARING
+    _TITLE = "bearing"
+
+    bearing: Bearing
+    """Bearing that was solved."""
+    model: Model
+    """Contacts: "solved" by nacre, or "iso16281"."""
+    rotation: float
+    """Angle of element 0 from the x axis [rad]."""
+    speed: float
+    """Angular velocity of the elements about the bearing's axis [rad/s]."""
+    displacement: tuple[float, float, float]
+    """Displacements of the inner ring against the outer one along x, y and z [m]."""
+    tilt: tuple[float, float]
+    """Slopes of the inner ring about x and y."""
+    force: tuple[float, float, float]
+    """Forces on the inner ring [N], which the elements balance."""
+    moment: tuple[float, float]
+    """Moments about x and y on the inner ring [N m]."""
+    angles: Array
+    """Angles of the elements from x ``(Z,)`` [rad]."""
+    approaches: Array
+    """Approaches of the contacts ``(Z, 2)`` [m], below 0 where nothing touches."""
+    tilts: Array
+    """Slopes of the elements to the raceways ``(Z, 2)``, 0 of balls."""
+    loads: Array
+    """Forces of the contacts ``(Z, 2)`` [N]."""
+    moments: Array
+    """First moments of the pressure about the middles of the elements ``(Z, 2)`` [N m]."""
+    peak_pressures: Array
+    """Largest pressures ``(Z, 2)`` [Pa]."""
+    edge_pressures: Array
+    """Largest pressures in the outer tenths of the length of a roller ``(Z, 2)`` [Pa].
+
+    They are NaN of balls.
+    """
+    contact_angles: Array
+    """Contact angles ``(Z, 2)`` [rad]; 0 of cylindrical rollers."""
+    lamina_loads: Array | None
+    """Loads of 40 laminae along each contact ``(Z, 2, 40)`` [N]; None of balls."""
+    lamina_pressures: Array | None
+    """Largest pressure in each lamina ``(Z, 2, 40)`` [Pa]; None of balls."""
+    tangent: Array
+    """Stiffness of the bearing ``(5, 5)``, which `stiffness` returns."""
+    grid_sizes: Array | None
+    """Sides of the grids of the contacts ``(Z, 2, 2)`` [m]; None for the standard's contacts."""
+    cells: tuple[int, int] | None
+    """Cells of each grid; None for the standard's contacts."""
+    report: BearingReport
+    """Report: how the solution came about."""
+    _contacts: dict[tuple[int, int], Solution] = field(default_factory=dict, repr=False)
+    """Contacts that are known, by element and ring."""
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure of all contacts [Pa]."""
+        return float(self.peak_pressures.max())
+
+    @property
+    def edge_pressure(self) -> float:
+        """Largest pressure in the outer tenths of a roller [Pa]; NaN of balls."""
+        return float(self.edge_pressures.max())
+
+    @property
+    def largest_load(self) -> float:
+        """Largest force of a contact [N]."""
+        return float(self.loads.max())
+
+    @property
+    def loaded(self) -> int:
+        """Number of elements that both rings load."""
+        return int((self.loads > 0).all(axis=1).sum())
+
+    @property
+    def reference_life(self) -> float:
+        """Life of ISO/TS 16281 with the standard's edge factors [million revolutions]."""
+        return self.life().revolutions
+
+    def stiffness(self) -> Array:
+        """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
+
+        The elements are in equilibrium with it. It is 0 along directions in which nothing is
+        elastic.
+
+        Returns
+        -------
+        numpy.ndarray
+            Derivatives of ``(F_x, F_y, F_z, M_x, M_y)`` on the inner ring with respect to
+            ``(δ_x, δ_y, δ_z, θ_x, θ_y)``, in N/m, N and N m.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> axial = bearing.solve(force=(0.0, 0.0, 1000.0), model="iso16281").stiffness()
+        >>> bool(np.allclose(axial, axial.T)), bool(axial[2, 2] > 0)
+        (True, True)
+        """
+        return self.tangent.copy()
+
+    def contact(self, element: int, ring: Ring) -> Solution | None:
+        """Contact of an element and a ring, with its pressure, stresses and gradients.
+
+        Parameters
+        ----------
+        element : int
+            Number of the element.
+        ring : {"inner", "outer"}
+            Ring. Its body is the `body` of the contact, and the element the `counterbody`.
+
+        Returns
+        -------
+        Solution or None
+            Contact; None where nothing touches. That of a loaded file is solved again.
+
+        Raises
+        ------
+        ValueError
+            If there is no such element or ring, or the contacts are those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(force=(1000.0, 0.0, None))
+        >>> contact = solution.contact(0, "inner")
+        >>> abs(contact.load / solution.loads[0, 0] - 1) < 1e-8
+        True
+        """
+        if self.model != "solved" or self.grid_sizes is None or self.cells is None:
+            raise ValueError('model must be "solved" for a contact, got "iso16281"')
+        if ring not in RINGS:
+            raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
+        if isinstance(element, bool) or not 0 <= element < self.bearing.count:
+            raise ValueError(
+                f"element must be from 0 to {self.bearing.count - 1}, got {element!r}"
+            )
+        number = RINGS.index(ring)
+        if not self.loads[element, number] > 0:
+            return None
+        key = int(element), number
+        if key not in self._contacts:
+            body, counterbody = bodies_of(self.bearing, ring)
+            size = tuple(self.grid_sizes[key].tolist())
+            plan = Contact(body, core.Grid(self.cells, size), counterbody)
+            self._contacts[key] = plan.solve(
+                self.bearing.shape(ring),
+                approach=float(self.approaches[key]),
+                tilt=(float(self.tilts[key]), None),
+                tolerance=1e-10,
+            )
+        return self._contacts[key]
+
+    def life(
+        self, edge: Edge = "standard", *, rotating: Ring = "inner"
+    ) -> BearingLife:
+        """Reference rating life of ISO/TS 16281, in millions of revolutions.
+
+        Parameters
+        ----------
+        edge : {"standard", "pressure"} or None, optional
+            Factors by which the loads of the laminae are multiplied: those of the standard, which
+            hold for its profile, medium loads and tilts below 4'; the solved pressure over that of
+            Hertz; or none. Balls have none.
+        rotating : {"inner", "outer"}, optional
+            Ring that rotates against the load.
+
+        Returns
+        -------
+        BearingLife
+            Life, equivalent load, and the ratings they are made of.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind of factors, or factors from the pressure are asked of contacts
+            that are those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import CylindricalRoller
+        >>> bearing = CylindricalRoller(
+        ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+        ... )
+        >>> solution = bearing.solve(force=(4450.0, 0.0, None), model="iso16281")
+        >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
+        (4999, 7639)
+        """
+        if edge not in EDGES:
+            raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
+        if rotating not in RINGS:
+            raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
+        words = "ISO/TS 16281, 90 % reliability, a model"
+        loads, factors = self.loads, np.array(1.0)
+        if self.lamina_loads is not None:
+            loads, words = self.lamina_loads, f"{words}; {EDGES[edge]}"
+            if edge == "standard":
+                factors = edge_factors(LAMINAE)
+            elif edge == "pressure":
+                if self.model != "solved" or self.lamina_pressures is None:
+                    raise ValueError(
+                        'edge must be "standard" or None for contacts of the standard, whose '
+                        'pressure is not known, got "pressure"'
+                    )
+                factors = pressure_factors(self.bearing, loads, self.lamina_pressures)
+        found = reference_life(self.bearing, loads, factors, rotating)
+        capacity = self.bearing.capacity or rating(self.bearing)
+        return BearingLife(
+            found.revolutions, found.equivalent_load, capacity, found.capacities, words
+        )
+
+    def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+        """Draw loads over the angle, and the pressure along the heaviest element.
+
+        Needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : dict of matplotlib.axes.Axes, optional
+            Axes "loads", which must be polar, and "pressure"; a new figure by default.
+
+        Returns
+        -------
+        dict of matplotlib.axes.Axes
+            The axes, by name.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> sorted(bearing.solve(force=(1000.0, 0.0, None)).plot())
+        ['loads', 'pressure']
+        """
+        from nacre import plot
+
+        return plot.bearing(self, axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of all numbers over elements, rings and laminae; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Numbers by name, with units.
+        """
+        variables = {}
+        for row in BEARING:
+            if (value := row.of(self)) is not None:
+                variables[row.name] = (row.dims, np.asarray(value))
+        coordinates = {"ring": list(RINGS)}
+        table = [(row, row.si()) for row in BEARING]
+        return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
+
+    def save(self, path: Any) -> Any:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``; ``.csv`` for the table of the elements; ``.png``, ``.pdf`` and
+            ``.svg`` for the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(force=(1000.0, 0.0, None), model="iso16281")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(solution.save(f"{folder}/bearing.nc")) == solution
+        True
+        """
+        writers = files.tabular(self, self._file_rows(), **self._comments())
+        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        return files.save(path, writers)
+
+    def _comments(self) -> dict[str, Any]:
+        found = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
+        notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
+        return {"model": self.model, **found, **notes}
+
+    def _columns(self) -> list[tuple[str, str, Array]]:
+        """Return heading, unit and values of the columns of the table of elements."""
+        found = [("angle", "rad", self.angles)]
+        for row in BEARING:
+            if row.dims == ("element", "ring") and row.label:
+                for k, ring in enumerate(RINGS):
+                    found.append((f"{row.label} {ring}", row.si(), row.of(self)[:, k]))
+        return found
+
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
+        columns = self._columns()
+        yield ["element", *(f"{n} [{symbol(u)}]" if u else n for n, u, _ in columns)]
+        for j in range(self.bearing.count):
+            yield [j, *(float(values[j]) for _, _, values in columns)]
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+        kinds = {row.name: row for row in BEARING}
+        rows = [
+            (row.label, display.pair(row.of(self), row.si()))
+            for row in (kinds[name] for name in VECTORS)
+        ]
+        for name in ("largest_load", "peak_pressure", "edge_pressure"):
+            value = getattr(self, name)
+            if not math.isnan(value):
+                rows.append((kinds[name].label, written(value, kinds[name].si())))
+        report = self.report
+        contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
+        return [
+            *rows,
+            ("loaded", f"{self.loaded} of {self.bearing.count} elements"),
+            ("contacts", contacts),
+            (
+                "ended",
+                f"{report.termination} after {report.iterations} steps, "
+                f"balance {report.balance:.0e}",
+            ),
+        ]
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        rows = ", ".join(" ".join(row) for row in self._rows())
+        return printable(f"<{type(self).__name__}: {rows}>")
+
+    def __str__(self) -> str:
+        """Return the main numbers, and a table of the loaded elements."""
+        columns = [(n, u, v) for n, u, v in self._columns() if not np.isnan(v).all()]
+        lines = [["element", *(name for name, _, _ in columns)]]
+        for j in np.flatnonzero((self.loads > 0).any(axis=1)):
+            lines.append([f"{j}", *(written(float(v[j]), unit, 4) for _, unit, v in columns)])
+        table = "\n".join(display.aligned(lines))
+        return display.text(self._rows(), self.report.warnings) + printable(f"\n\n{table}")
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.report.warnings)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all numbers are equal; NaN is equal to NaN."""
+        if not isinstance(other, BearingSolution):
+            return NotImplemented
+        return repr(self._state()) == repr(other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        words = ["bearing", "model", "rotation", "speed", *VECTORS]
+        return [*words, *ARRAYS, "cells", "report"]
+
+    def _state(self) -> dict[str, Any]:
+        state = {name: getattr(self, name) for name in ("model", "rotation", "speed")}
+        state |= {name: list(getattr(self, name)) for name in (*VECTORS,)}
+        arrays = {name: getattr(self, name) for name in ARRAYS}
+        state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
+        cells = None if self.cells is None else list(self.cells)
+        report = self.report._state()
+        return state | {"bearing": encode(self.bearing), "cells": cells, "report": report}
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        with refusing(cls.__name__):
+            made = dict(state)
+            made["bearing"] = decode(state["bearing"])
+            for name in VECTORS:
+                made[name] = tuple(map(float, state[name]))
+            for name in ARRAYS:
+                if state[name] is not None:
+                    made[name] = np.array(state[name], dtype=np.float64)
+            made["cells"] = None if state["cells"] is None else tuple(state["cells"])
+            report = BearingReport._restored(dict(state["report"]))
+            found = cls(**made | {"report": report})
+            found._check()
+            return found
+
+    def _check(self) -> None:
+        """Raise a `ValueError` unless all fields fit each other."""
+        if not isinstance(self.bearing, Bearing):
+            raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
+        if self.model not in ("solved", "iso16281"):
+            raise ValueError(f"model must be one of nacre's, got {self.model!r}")
+        count = self.bearing.count
+        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(ARRAYS, (count, 2))
+        shapes |= {"angles": (count,), "tangent": (5, 5), "grid_sizes": (count, 2, 2)}
+        shapes |= dict.fromkeys(("lamina_loads", "lamina_pressures"), (count, 2, LAMINAE))
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            may_lack = name == "grid_sizes" or name.startswith("lamina")
+            if value is None and may_lack:
+                continue
+            if np.shape(value) != shape:
+                raise ValueError(f"{name} must have the shape {shape}, got {np.shape(value)}")
+        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
+        if any(len(getattr(self, name)) != length for name, length in lengths):
+            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
+
+
+def _asked(bearing: Bearing, given: Mapping[str, Any]) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """Return loads, displacements, and which of the five directions are loaded, checked."""
+    values: dict[str, list[float | None]] = {}
+    for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
+        told = given[name]
+        if isinstance(told, str) or not isinstance(told, Iterable):
+            raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
+        found = [*told]
+        if len(found) != length:
+            raise ValueError(f"{name} must be {length} numbers or None, got {told!r}")
+        for value in found:
+            if value is not None and (
+                isinstance(value, bool) or not isinstance(value, int | float | np.number)
+            ):
+                raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
+            if value is not None and not math.isfinite(value):
+                raise ValueError(f"{name} must be finite, got {told!r}")
+        values[name] = found
+    loads = values["force"] + values["moment"]
+    moved = values["displacement"] + values["tilt"]
+    words = ["force", "force", "force", "moment", "moment"]
+    others = ["displacement", "displacement", "displacement", "tilt", "tilt"]
+    axes = "xyzxy"
+    for k in range(5):
+        if loads[k] is not None and moved[k] is not None:
+            raise ValueError(
+                f"{words[k]} and {others[k]} must not both be given "
+                f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
+            )
+    if bearing.rolls and (loads[2] is not None or moved[2] is not None):
+        name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
+        raise ValueError(f"{name} along z must be None: cylindrical rollers carry none, got {value!r}")
+    free = np.array([value is not None for value in loads])
+    return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+
+
+def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
+    """Return the solution of what a user asked of a bearing with these arguments of `solve`."""
+    loads, moved, free = _asked(bearing, given)
+    model, cells, tolerance = given["model"], given["cells"], given["tolerance"]
+    for name in ("rotation", "speed"):
+        if not math.isfinite(given[name]):
+            raise ValueError(f"{name} must be finite, got {given[name]!r}")
+    if model not in ("solved", "iso16281"):
+        raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
+    if not 0 < tolerance < 1:
+        raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
+    if given["max_iterations"] < 1:
+        raise ValueError(f"max_iterations must be at least 1, got {given['max_iterations']!r}")
+    if cells is None:
+        cells = CELLS[bearing.rolls]
+    if len(cells) != 2 or min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
+        multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
+        raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
+    angles = given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
+    kinematics: Kinematics = (Rollers if bearing.rolls else Balls)(bearing, angles)
+    centrifugal = bearing.mass * bearing.pitch / 2 * given["speed"] ** 2
+    problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
+    limit = given["max_iterations"]
+    pressed = _pressed(problem.law, centrifugal)
+    with lasting("bearing") as bar:
+
+        def tell(done: int, balance: float) -> object:
+            if given["progress"] is not None:
+                return given["progress"](done, balance)
+            if bar is not None:
+                bar(f"step {done}, balance {balance:.0e}")
+            return None
+
+        first = None if model == "solved" else tell
+        ring, own = problem.start(moved, pressed)
+        rough = tolerance if first else min(1e-6, math.sqrt(tolerance))
+        state, done, ended = problem.solve(ring, own, rough, 10 * limit if first is None else limit, first)
+        if model == "solved":
+            lines = _lines(bearing, problem.law, state)
+            contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
+            problem = Problem(kinematics, contacts, loads, free, centrifugal)
+            state, done, ended = problem.solve(state.ring, state.own, tolerance, limit, tell)
+    found = _found(bearing, given, problem, state, (done, ended), cells)
+    for message in found.report.warnings:
+        warnings.warn(message, core.NacreWarning, stacklevel=3)
+    if given["check"] and ended == "iteration limit":
+        error = core.ConvergenceError(
+            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; raise "
+            "max_iterations or the tolerance"
+        )
+        error.solution = found
+        raise error
+    return found
+
+
+def _pressed(law: Any, force: float) -> float:
+    """Return a guess of the approach of an element that is pressed on the outer ring."""
+    if force == 0:
+        return 0.0
+    spring = law.spring[1]
+    if isinstance(law, Hertzian):
+        return float((force / spring) ** (2 / 3))
+    return float((force / spring[0] / LAMINAE) ** 0.9)
+
+
+def _lines(bearing: Any, law: Any, state: State) -> Array:
+    """Return the expected loads of the contacts by which their grids are chosen."""
+    places = state.places
+    if not state.reaction.force.any():
+        # Nothing touches: grids for an approach of a millionth of the diameter.
+        places = np.zeros_like(places)
+        places[..., 0] = 1e-6 * bearing.diameter
+    if isinstance(law, Slices):
+        lines: Array = law.loads(places).max(-1) * LAMINAE / bearing.length
+        return lines
+    return law(places).force[..., 0]  # type: ignore[no-any-return]
+
+
+def _found(
+    bearing: Bearing,
+    given: Mapping[str, Any],
+    problem: Problem,
+    state: State,
+    ended: tuple[int, str],
+    cells: tuple[int, int],
+) -> BearingSolution:
+    """Return the solution that a state is."""
+    places, force = state.places, state.reaction.force
+    loads = force[..., 0]
+    laminae, pressures, sizes = None, None, None
+    contacts: dict[tuple[int, int], Solution] = {}
+    if isinstance(problem.law, Solved):
+        contacts = dict(state.reaction.contacts)
+        peaks = np.zeros(loads.shape)
+        sizes = problem.law.sizes()
+        if bearing.rolls:
+            laminae, pressures = np.zeros((*loads.shape, LAMINAE)), np.zeros((*loads.shape, LAMINAE))
+        for key, contact in contacts.items():
+            peaks[key] = contact.peak_pressure
+            if laminae is not None and pressures is not None:
+                width = contact.grid.spacing[0]
+                laminae[key] = contact.line_load.reshape(LAMINAE, -1).sum(1) * width
+                pressures[key] = contact.pressure.max(1).reshape(LAMINAE, -1).max(1)
+    elif isinstance(problem.law, Slices):
+        laminae = problem.law.loads(places)
+        signs = np.array([1, -1]) / np.array(bearing.raceways)
+        curvature = (2 / bearing.diameter + signs)[:, None]
+        line = laminae * LAMINAE / bearing.length  # type: ignore[attr-defined]
+        pressures = np.sqrt(line * STANDARD * curvature / math.pi)
+        peaks = pressures.max(-1)
+    else:
+        assert isinstance(problem.law, Hertzian)
+        peaks = problem.law.pressures(loads)
+    edges = np.full(loads.shape, np.nan)
+    if pressures is not None:
+        outer = round(EDGE * LAMINAE)
+        edges = np.maximum(pressures[..., :outer].max(-1), pressures[..., -outer:].max(-1))
+    kinematics = problem.kinematics
+    angles = np.zeros(loads.shape)
+    if isinstance(kinematics, Balls):
+        angles = kinematics.angles(kinematics.motion @ state.ring, state.own)
+    total = state.wanting + problem.loads
+    notes = tuple(_notes(bearing, given["model"], contacts, len(contacts)))
+    return BearingSolution(
+        bearing=bearing,
+        model=given["model"],
+        rotation=float(given["rotation"]),
+        speed=float(given["speed"]),
+        displacement=tuple(state.ring[:3].tolist()),
+        tilt=tuple(state.ring[3:].tolist()),
+        force=tuple(total[:3].tolist()),
+        moment=tuple(total[3:].tolist()),
+        angles=given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count,
+        approaches=places[..., 0].copy(),
+        tilts=places[..., 1].copy(),
+        loads=loads.copy(),
+        moments=force[..., 1].copy(),
+        peak_pressures=peaks,
+        edge_pressures=edges,
+        contact_angles=angles,
+        lamina_loads=laminae,
+        lamina_pressures=pressures,
+        tangent=(state.tangent + state.tangent.T) / 2,
+        grid_sizes=sizes,
+        cells=None if sizes is None else cells,
+        report=BearingReport(ended[1], ended[0], state.balance, notes),  # type: ignore[arg-type]
+        _contacts=dict(contacts),
+    )
+
+
+def _notes(
+    bearing: Bearing, model: Model, contacts: Mapping[Any, Solution], count: int
+) -> Iterable[str]:
+    """Yield warnings: those of contacts by kind, and what the standard's contacts leave out."""
+    if model == "iso16281":
+        if bearing.layered:
+            yield "layers are not counted: the contacts of ISO/TS 16281 are bare"
+        moduli = np.array(bearing.modulus)
+        if bearing.rolls and np.abs(moduli / STANDARD - 1).max() > 0.05:
+            yield "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
+        return
+    texts: dict[str, str] = {}
+    kinds: Counter[str] = Counter()
+    for contact in contacts.values():
+        report = contact.report
+        for kind, text in zip(report.warning_kinds, report.warnings, strict=True):
+            texts.setdefault(kind, text)
+            kinds[kind] += 1
+    for kind, number in kinds.items():
+        yield f"{number} of {count} contacts: {texts[kind]}"
