@@ -7,6 +7,15 @@ tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 1628
 
 from nacre.bearing.bearings import AngularContactBall, CylindricalRoller, DeepGrooveBall
 from nacre.bearing.iso import edge_factors, load_integrals, rating
+from nacre.bearing.life import (
+    IoannidesHarris,
+    LifeRatio,
+    LundbergPalmgren,
+    StressVolume,
+    Zaretsky,
+    life_ratio,
+    stress_volume,
+)
 from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
 
 __all__ = [
@@ -16,7 +25,14 @@ __all__ = [
     "BearingSolution",
     "CylindricalRoller",
     "DeepGrooveBall",
+    "IoannidesHarris",
+    "LifeRatio",
+    "LundbergPalmgren",
+    "StressVolume",
+    "Zaretsky",
     "edge_factors",
+    "life_ratio",
     "load_integrals",
     "rating",
+    "stress_volume",
 ]

@@ -100,7 +100,7 @@ class Bearing:
             if isinstance(body, core.HalfSpace):
                 if not isinstance(body.substrate, core.Elastic):
                     raise ValueError(f"{name} must have an elastic substrate, got {body!r}")
-                if body.ends != (-math.inf, math.inf):
+                if body.ends != (None, None):
                     raise ValueError(f"{name} must have no ends: those of rollers are free_ends")
 
     def _check_room(self) -> None:

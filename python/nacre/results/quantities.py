@@ -247,6 +247,28 @@ BEARING_LIFE = (
     Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
 )
 """Quantities of the life of a bearing."""
+COATING = (
+    Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
+    Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
+    Quantity("interface_tension", "largest tension there", "Pa", label="interface tension"),
+)
+STRESS_VOLUME = (
+    Quantity("integral", "integral of the stress"),
+    Quantity("change", "change where it begins at half the depth", label="change"),
+    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
+    Quantity("slope", "Weibull slope", label="slope e"),
+    *COATING,
+)
+"""Quantities of the volume under stress."""
+LIFE_RATIO = (
+    Quantity("ratio", "life over that of the reference"),
+    Quantity("slope", "Weibull slope", label="slope e"),
+    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
+    Quantity("reference_largest", "the same of the reference", "Pa", label="of the reference"),
+    Quantity("change", "change where integrals begin at half the depth", label="change"),
+    *COATING,
+)
+"""Quantities of a ratio of lives."""
 
 PARAMETERS = {
     "load": "N",
