@@ -36,6 +36,8 @@ STANDARD = 206e9 / (2 * (1 - 0.3**2))
 """Contact modulus of the steel of the standard [Pa]."""
 WIDER = 1.5
 """Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
+STEPS = 4
+"""Steps of the width of a grid between a width and twice of it."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
 
@@ -162,8 +164,10 @@ class Solved:
         self.reach = reach
         self.plans: dict[tuple[int, int], Contact] = {}
         self.kept: dict[tuple[int, int], Solution] = {}
-        heaviest = float(lines.max())
         power = 2 if bearing.rolls else 3  # of the width, in the load
+        # Widths in steps, so that a small change of the loads does not change the cells.
+        steps = math.ceil(STEPS * math.log2(float(lines.max())) / power)
+        heaviest = 2.0 ** (steps * power / STEPS)
         with np.errstate(divide="ignore"):
             halved = np.floor(np.log2(heaviest / np.maximum(lines, 1e-300)) / power)
         self.halved = np.clip(halved, 0, NARROWEST).astype(int)

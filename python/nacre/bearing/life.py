@@ -39,7 +39,8 @@ Under a line, 0.24 % of Lundberg and Palmgren's lies above, and 1e-6 below. Zare
 below. The change on beginning at half the depth is reported.
 """
 NODES = 16
-"""Gauss points in a decade of depth; twice as many change the integrals by less than 1e-5."""
+"""Gauss points in a decade of depth. Twice as many change the integral of the largest shear stress by 3e-7,
+and that of the orthogonal one, which cells make rough near the surface, by 1e-4."""
 LINE, POINT = 9 / 8, 10 / 9
 """Weibull slopes e of line and point contacts, Lundberg and Palmgren."""
 
