@@ -270,7 +270,9 @@ class CylindricalRoller(Solvable):
         found = np.asarray(profile.drop_at(x), dtype=np.float64)
         found = found if crown is None else found + x**2 / (2 * crown)
         if not np.isfinite(found).any():
-            raise ValueError(f"profile must cover the roller of {millimetres(self.length)}, got {profile}")
+            raise ValueError(
+                f"profile must cover the roller of {millimetres(self.length)}, got {profile}"
+            )
         return found - min(0.0, float(found.min()))
 
     def shape(self, ring: Ring) -> core.Shape:
@@ -468,7 +470,9 @@ class AngularContactBall(_Balls):
         if self.contact_angle >= math.pi / 2:
             raise ValueError(f"contact_angle must be below π/2, got {self.contact_angle!r}")
         if self.clearance is not None:
-            raise ValueError("clearance must not be given: the contact angle says where balls touch")
+            raise ValueError(
+                "clearance must not be given: the contact angle says where balls touch"
+            )
         super().__post_init__()
 
     @property

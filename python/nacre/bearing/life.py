@@ -278,9 +278,7 @@ def _highest(values: Array) -> Array:
     if values.shape[-1] < 3:
         return values.max(-1)
     middle = np.clip(values.argmax(-1), 1, values.shape[-1] - 2)[..., None]
-    left, top, right = (
-        np.take_along_axis(values, middle + k, -1)[..., 0] for k in (-1, 0, 1)
-    )
+    left, top, right = (np.take_along_axis(values, middle + k, -1)[..., 0] for k in (-1, 0, 1))
     bend = left - 2 * top + right
     with np.errstate(divide="ignore", invalid="ignore"):
         raised = top - (right - left) ** 2 / (8 * bend)
@@ -345,7 +343,9 @@ def stress_volume(
         raise TypeError(f"solution must be a Solution, got {solution!r}")
     if not solution.load > 0:
         raise ValueError("solution must be one in contact, got a load of 0")
-    models: Mapping[int | str, Model] = model if isinstance(model, Mapping) else {"substrate": model}
+    models: Mapping[int | str, Model] = (
+        model if isinstance(model, Mapping) else {"substrate": model}
+    )
     if not models or not all(isinstance(one, Model) for one in models.values()):
         raise TypeError(f"model must be a model of a life, or models by layer, got {model!r}")
     plan = solution.stress_plan(body, threads)
@@ -394,9 +394,7 @@ def stress_volume(
         shears = [one.shear[0] for one in summary.interfaces]
         tensions = [one.tension[0] for one in summary.interfaces]
         extremes = [max(found) for found in (coats, shears, tensions)]
-    return StressVolume(
-        total, change / total if total > 0 else 0.0, largest, slope, *extremes
-    )
+    return StressVolume(total, change / total if total > 0 else 0.0, largest, slope, *extremes)
 
 
 def _is_line(solution: Solution) -> bool:

@@ -24,7 +24,7 @@ from nacre.contact.solution import Solution
 from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.listed import Listed, Tabular
-from nacre.results.quantities import BEARING, BEARING_LIFE
+from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
 from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 Model = Literal["solved", "iso16281"]
 
+SLIGHT = 1e-8
+"""Share of loads and approaches below which a number is printed as 0."""
 EDGE = 0.1
 """Share of the length at either end of a roller in which the edge pressure is looked for."""
 CELLS = {True: (3 * LAMINAE, 48), False: (96, 96)}
@@ -294,9 +296,7 @@ class BearingSolution(Tabular):
         if ring not in RINGS:
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
         if isinstance(element, bool) or not 0 <= element < self.bearing.count:
-            raise ValueError(
-                f"element must be from 0 to {self.bearing.count - 1}, got {element!r}"
-            )
+            raise ValueError(f"element must be from 0 to {self.bearing.count - 1}, got {element!r}")
         number = RINGS.index(ring)
         if not self.loads[element, number] > 0:
             return None
@@ -313,9 +313,7 @@ class BearingSolution(Tabular):
             )
         return self._contacts[key]
 
-    def life(
-        self, edge: Edge = "standard", *, rotating: Ring = "inner"
-    ) -> BearingLife:
+    def life(self, edge: Edge = "standard", *, rotating: Ring = "inner") -> BearingLife:
         """Reference rating life of ISO/TS 16281, in millions of revolutions.
 
         Parameters
@@ -452,28 +450,32 @@ class BearingSolution(Tabular):
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         return {"model": self.model, **found, **notes}
 
-    def _columns(self) -> list[tuple[str, str, Array]]:
-        """Return heading, unit and values of the columns of the table of elements."""
-        found = [("angle", "rad", self.angles)]
+    def _columns(self) -> list[tuple[Quantity, str, Array]]:
+        """Return quantity, heading and values of the columns of the table of elements."""
+        kinds = {row.name: row for row in BEARING}
+        found = [(kinds["angles"], "angle", self.angles)]
         for row in BEARING:
-            if row.dims == ("element", "ring") and row.label:
+            if row.dims == PER_CONTACT and row.label:
                 for k, ring in enumerate(RINGS):
-                    found.append((f"{row.label} {ring}", row.si(), row.of(self)[:, k]))
+                    found.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return found
 
     def _file_rows(self) -> Iterable[Iterable[Any]]:
         columns = self._columns()
-        yield ["element", *(f"{n} [{symbol(u)}]" if u else n for n, u, _ in columns)]
+        units = [symbol(row.si()) for row, _, _ in columns]
+        names = [name for _, name, _ in columns]
+        heads = zip(names, units, strict=True)
+        yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
         for j in range(self.bearing.count):
             yield [j, *(float(values[j]) for _, _, values in columns)]
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
         kinds = {row.name: row for row in BEARING}
-        rows = [
-            (row.label, display.pair(row.of(self), row.si()))
-            for row in (kinds[name] for name in VECTORS)
-        ]
+        rows = []
+        for row in (kinds[name] for name in VECTORS):
+            values = [self._rounded(row.name, value) for value in row.of(self)]
+            rows.append((row.label, display.pair(values, row.si())))
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
             value = getattr(self, name)
             if not math.isnan(value):
@@ -491,6 +493,13 @@ class BearingSolution(Tabular):
             ),
         ]
 
+    def _rounded(self, name: str, value: float) -> float:
+        """Return a number as it is printed: 0 where it is rounding beside loads and approaches."""
+        deepest, arm = float(self.approaches.max(initial=0.0)), self.bearing.pitch / 2
+        scale = {"displacement": deepest, "force": self.largest_load, "tilt": deepest / arm}
+        scale |= {"tilts": deepest / arm, "moment": self.largest_load * arm}
+        return 0.0 if abs(value) < SLIGHT * scale.get(name, 0.0) else value
+
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
         rows = ", ".join(" ".join(row) for row in self._rows())
@@ -498,10 +507,11 @@ class BearingSolution(Tabular):
 
     def __str__(self) -> str:
         """Return the main numbers, and a table of the loaded elements."""
-        columns = [(n, u, v) for n, u, v in self._columns() if not np.isnan(v).all()]
-        lines = [["element", *(name for name, _, _ in columns)]]
+        columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
+        lines = [["element", *(name for _, name, _ in columns)]]
         for j in np.flatnonzero((self.loads > 0).any(axis=1)):
-            lines.append([f"{j}", *(written(float(v[j]), unit, 4) for _, unit, v in columns)])
+            values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
+            lines.append([f"{j}", *(written(value, row.si()) for row, value in values)])
         table = "\n".join(display.aligned(lines))
         return display.text(self._rows(), self.report.warnings) + printable(f"\n\n{table}")
 
@@ -568,7 +578,9 @@ class BearingSolution(Tabular):
             raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
 
 
-def _asked(bearing: Bearing, given: Mapping[str, Any]) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+def _asked(
+    bearing: Bearing, given: Mapping[str, Any]
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
@@ -599,7 +611,9 @@ def _asked(bearing: Bearing, given: Mapping[str, Any]) -> tuple[Array, Array, np
             )
     if bearing.rolls and (loads[2] is not None or moved[2] is not None):
         name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
-        raise ValueError(f"{name} along z must be None: cylindrical rollers carry none, got {value!r}")
+        raise ValueError(
+            f"{name} along z must be None: cylindrical rollers carry none, got {value!r}"
+        )
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
 
@@ -640,7 +654,9 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
         first = None if model == "solved" else tell
         ring, own = problem.start(moved, pressed)
         rough = tolerance if first else min(1e-6, math.sqrt(tolerance))
-        state, done, ended = problem.solve(ring, own, rough, 10 * limit if first is None else limit, first)
+        state, done, ended = problem.solve(
+            ring, own, rough, 10 * limit if first is None else limit, first
+        )
         if model == "solved":
             lines = _lines(bearing, problem.law, state)
             contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
@@ -700,7 +716,10 @@ def _found(
         peaks = np.zeros(loads.shape)
         sizes = problem.law.sizes()
         if bearing.rolls:
-            laminae, pressures = np.zeros((*loads.shape, LAMINAE)), np.zeros((*loads.shape, LAMINAE))
+            laminae, pressures = (
+                np.zeros((*loads.shape, LAMINAE)),
+                np.zeros((*loads.shape, LAMINAE)),
+            )
         for key, contact in contacts.items():
             peaks[key] = contact.peak_pressure
             if laminae is not None and pressures is not None:

@@ -284,6 +284,10 @@ PARAMETERS = {
     "crown_radius": "m",
     "flat_length": "m",
     "depth": "m",
+    "diameter": "m",
+    "pitch_diameter": "m",
+    "length": "m",
+    "clearance": "m",
     "hardness": "Pa",
     "work": "N/m",
     "flat": "m",
@@ -297,7 +301,9 @@ PARAMETERS = {
 """SI units of parameters of studies and fits, by the last part of their names."""
 
 
-def units(*, line: bool = False, rolls: bool = False, indents: bool = False) -> dict[str, str]:
+def units(
+    *, line: bool = False, rolls: bool = False, indents: bool = False, bears: bool = False
+) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    rows = INDENT if indents else (*FRICTION, *CONTACT, *STRESS)
+    rows = INDENT if indents else BEARING if bears else (*FRICTION, *CONTACT, *STRESS)
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}
