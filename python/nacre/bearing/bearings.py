@@ -147,7 +147,7 @@ class CylindricalRoller(Solvable):
     free_ends : bool, optional
         Whether the rollers end, as they do; False takes them as half-spaces that go on.
     element, inner, outer : HalfSpace or Elastic, optional
-        Bodies of rollers and rings; steel with E = 206 GPa by default.
+        Bodies of rollers and rings; steel with E = 210 GPa by default.
     capacity : float, optional
         Dynamic load rating C_r [N]; by default that of ISO 281.
     rating_factor : float, optional
@@ -378,7 +378,7 @@ class DeepGrooveBall(_Balls):
     clearance : float, optional
         Diametral clearance [m], below 0 with preload; 0 by default.
     element, inner, outer : HalfSpace or Elastic, optional
-        Bodies of balls and rings; steel with E = 206 GPa by default.
+        Bodies of balls and rings; steel with E = 210 GPa by default.
     capacity : float, optional
         Dynamic load rating C_r [N]; by default that of ISO 281.
     rating_factor : float, optional
@@ -434,7 +434,7 @@ class AngularContactBall(_Balls):
     osculation : tuple of float, optional
         Radii of the grooves of inner and outer ring over the diameter of a ball, above 0.5.
     element, inner, outer : HalfSpace or Elastic, optional
-        Bodies of balls and rings; steel with E = 206 GPa by default.
+        Bodies of balls and rings; steel with E = 210 GPa by default.
     capacity : float, optional
         Dynamic load rating C_r [N]; by default that of ISO 281.
     rating_factor : float, optional

@@ -22,8 +22,8 @@ Array = npt.NDArray[np.float64]
 FLAT = 1e-11
 """Stiffness that is added to that of a free position, relative to the stiffest element's.
 
-It is some 1e5 roundings: what rests in a flat direction stays, and the steps in all others are exact
-to 1e-11 of the stiffest.
+It is some 1e5 roundings: what rests in a flat direction stays, and the steps in all others are
+exact to 1e-11 of the stiffest.
 """
 FARTHEST = 2.0
 """Largest step over the largest approach of a contact: beyond it the energy is not quadratic."""

@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 Ring = Literal["inner", "outer"]
 
 RINGS: tuple[Ring, Ring] = ("inner", "outer")
-STEEL = core.Elastic(young=206e9, poisson=0.3)
+STEEL = core.Elastic(young=210e9, poisson=0.3)
 """Steel of bearings, as ISO/TS 16281 has it: its E and ν give the standard's factor 271."""
 DEEPEST = 1 / 200
 """Largest preload of a contact over the diameter of the element.
@@ -38,6 +38,7 @@ def above(name: str, value: Any, least: float = 0.0) -> None:
 
 
 def millimetres(length: float) -> str:
+    """Return a length in words."""
     return f"{length * 1e3:.6g} mm"
 
 
@@ -52,8 +53,8 @@ def substrate(body: Layers) -> core.Elastic:
 class Bearing:
     """What all bearings have: one row of elements between two rings.
 
-    The bearing's axis is z. Element j stands at the angle ``rotation + 2 π j / count`` from x. Rings
-    are rigid in the large, so that only contacts are elastic.
+    The bearing's axis is z. Element j stands at the angle ``rotation + 2 π j / count`` from x.
+    Rings are rigid in the large, so that only contacts are elastic.
     """
 
     count: int
@@ -109,19 +110,22 @@ class Bearing:
         if pitch <= diameter:
             raise ValueError(
                 f"pitch_diameter must be above the diameter of an element, "
-                f"{millimetres(diameter)}, for there is no room for an inner ring; got {millimetres(pitch)}"
+                f"{millimetres(diameter)}, for there is no room for an inner ring; "
+                f"got {millimetres(pitch)}"
             )
         apart = pitch * math.sin(math.pi / self.count)
         if apart < diameter:
             most = math.floor(math.pi / math.asin(diameter / pitch))
             raise ValueError(
-                f"count must be at most {most}: on a pitch circle of {millimetres(pitch)}, {self.count} "
-                f"elements are {millimetres(apart)} apart, less than their diameter of {millimetres(diameter)}"
+                f"count must be at most {most}: on a pitch circle of {millimetres(pitch)}, "
+                f"{self.count} elements are {millimetres(apart)} apart, less than their diameter, "
+                f"{millimetres(diameter)}"
             )
         if self.play < -4 * DEEPEST * diameter:
             raise ValueError(
-                f"clearance must be at least {millimetres(-4 * DEEPEST * diameter)}, where contacts of "
-                f"steel carry 5 GPa and are no longer small; got {millimetres(self.play)}"
+                f"clearance must be at least {millimetres(-4 * DEEPEST * diameter)}, where "
+                f"contacts of steel carry 5 GPa and are no longer small; "
+                f"got {millimetres(self.play)}"
             )
 
     @property

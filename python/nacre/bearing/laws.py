@@ -1,8 +1,9 @@
 """Contacts of elements and rings: energy, force and stiffness over approach and tilt.
 
-A contact of element j has the coordinates ``(δ, s)``: the approach of the middle of the element to
-the raceway, and the slope along its axis. Its potential energy is convex in both; the derivatives of
-the energy are the force W and its first moment M about the middle, and those of these the stiffness.
+A contact of element j has the coordinates ``(δ, s)``: the approach of the middle of the element
+to the raceway, and the slope along its axis. Its potential energy is convex in both; the
+derivatives of the energy are the force W and its first moment M about the middle, and those of
+these the stiffness.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ SPRING = 35948.0
 L_we^(8/9)."""
 LINE = 10 / 9
 """Exponent of the deflection in the load of a lamina, ISO/TS 16281."""
-STANDARD = 206e9 / (2 * (1 - 0.3**2))
+STANDARD = 210e9 / (2 * (1 - 0.3**2))
 """Contact modulus of the steel of the standard [Pa]."""
 WIDER = 1.5
 """Width of a grid over that of the widest contact that is expected; wider ones are solved again."""

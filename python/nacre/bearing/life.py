@@ -1,10 +1,10 @@
 """Lives from the volume under stress, as ratios: Lundberg–Palmgren, Ioannides–Harris, Zaretsky.
 
-``ln(1/S) = A N^e ∫ (τ − τ_u)₊^c z^(−h) dV`` says how many of many equal contacts survive N cycles. A
-is not known for coatings, and differs from steel to steel, so that only ratios of lives of equal
+``ln(1/S) = A N^e ∫ (τ − τ_u)₊^c z^(−h) dV`` says how many of many equal contacts survive N cycles.
+A is not known for coatings, and differs from steel to steel, so that only ratios of lives of equal
 materials mean anything: ``L/L_ref = (I_ref/I)^(1/e)``. The forms and exponents are recalled from
-Lundberg and Palmgren (1947), Ioannides and Harris (1985, doi:10.1115/1.3261081), whose depth is here
-z in place of a mean weighted by the stress, and Zaretsky (1987).
+Lundberg and Palmgren (1947), Ioannides and Harris (1985), whose depth is here z in place of a mean
+weighted by the stress, and Zaretsky (1987).
 """
 
 from __future__ import annotations
@@ -39,8 +39,11 @@ Under a line, 0.24 % of Lundberg and Palmgren's lies above, and 1e-6 below. Zare
 below. The change on beginning at half the depth is reported.
 """
 NODES = 16
-"""Gauss points in a decade of depth. Twice as many change the integral of the largest shear stress by 3e-7,
-and that of the orthogonal one, which cells make rough near the surface, by 1e-4."""
+"""Gauss points in a decade of depth.
+
+Twice as many change the integral of the largest shear stress by 3e-7, and that of the orthogonal
+one, which cells make rough near the surface, by 1e-4.
+"""
 LINE, POINT = 9 / 8, 10 / 9
 """Weibull slopes e of line and point contacts, Lundberg and Palmgren."""
 
@@ -502,8 +505,9 @@ def life_ratio(
 def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of the inner one.
 
-    The inner ring sees ``Z (1 + γ)/2`` cycles in a revolution, the outer one ``Z (1 − γ)/2``; cycles
-    of different loads add up as Miner's (derived here: it gives the exponents of ISO/TS 16281).
+    The inner ring sees ``Z (1 + γ)/2`` cycles in a revolution, the outer one ``Z (1 − γ)/2``;
+    cycles of different loads add up as Miner's (derived here: it gives the exponents of
+    ISO/TS 16281).
     """
     bearing: Bearing = solution.bearing
     loaded = np.argwhere(solution.loads > 0)

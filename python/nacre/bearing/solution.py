@@ -110,8 +110,8 @@ class BearingReport(Result):
 class BearingLife(Listed):
     """Reference rating life of ISO/TS 16281: a model, at 90 % reliability.
 
-    Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the life
-    is that of bare ones under the same loads, or pressures.
+    Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the
+    life is that of bare ones under the same loads, or pressures.
 
     Examples
     --------
@@ -314,7 +314,7 @@ class BearingSolution(Tabular):
         return self._contacts[key]
 
     def life(self, edge: Edge = "standard", *, rotating: Ring = "inner") -> BearingLife:
-        """Reference rating life of ISO/TS 16281, in millions of revolutions.
+        """Rate the bearing by ISO/TS 16281: its reference life, in millions of revolutions.
 
         Parameters
         ----------

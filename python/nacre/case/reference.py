@@ -173,7 +173,7 @@ def _key(name: str, node: Node, required: bool) -> str:
 
 
 def table_for(data: Any) -> type[Keys]:
-    """Return the table for a case: with a tip or a table ``indent`` an indentation, or a bearing."""
+    """Return the table for a case: a bearing; or with a tip or ``indent`` an indentation."""
     keys = data.keys() if isinstance(data, dict) else set()
     if "bearing" in keys:
         return BearingCase

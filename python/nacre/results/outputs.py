@@ -84,8 +84,9 @@ def named(
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     told: dict[Room, str] = {
-        "contact": f"attributes of Solution that hold numbers ({', '.join(sorted(NUMBERS))}), or of "
-        f"FrictionSolution ({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
+        "contact": "attributes of Solution that hold numbers "
+        f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
+        f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
         "indent": "attributes of nacre.indent.IndentSolution that hold numbers "
         f"({', '.join(OF_INDENT)})",
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
