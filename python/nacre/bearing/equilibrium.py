@@ -216,7 +216,7 @@ class Problem:
 
     def mismatch(self, state: State) -> float:
         """Return the largest mismatch of forces and moments, relative to those that act."""
-        force = max(
+        force: float = max(
             float(np.abs(state.reaction.force[..., 0]).sum()) / 2,
             float(np.linalg.norm(self.loads[:3])),
             float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
@@ -278,9 +278,9 @@ class Problem:
         """Return the positions of elements; what carries nothing is midway at the next place."""
         if self.centrifugal > 0:
             return state.own
-        idle = ~(state.reaction.force[..., 0] > 0).any(axis=1)
+        idle = np.logical_not((state.reaction.force[..., 0] > 0).any(axis=1))
         neutral = self.kinematics.neutral(self.kinematics.motion @ ring, 0.0)
-        return np.where(idle[:, None], neutral, state.own)
+        return np.where(np.asarray(idle)[:, None], neutral, state.own)
 
     def solve(
         self,

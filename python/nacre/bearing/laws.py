@@ -76,11 +76,13 @@ class Slices:
 
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
-        return np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
+        found: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
+        return found
 
     def loads(self, places: Array) -> Array:
         """Return the loads of the laminae ``(Z, 2, laminae)`` [N]."""
-        return self.spring * self.deflections(places) ** LINE
+        loads: Array = self.spring * self.deflections(places) ** LINE
+        return loads
 
     def __call__(self, places: Array) -> Reaction:
         """Return the reaction of all contacts."""

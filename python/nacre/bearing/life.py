@@ -182,7 +182,8 @@ class Zaretsky(LundbergPalmgren):
 
     def shear(self, stress: Stress) -> Array:
         """Return the stress that counts, ``(nz, nx, ny)`` [Pa]."""
-        return stress.max_shear.reshape(stress.z.size, stress.x.size, stress.y.size)
+        found: Array = stress.max_shear.reshape(stress.z.size, stress.x.size, stress.y.size)
+        return found
 
 
 Model = LundbergPalmgren
@@ -279,7 +280,7 @@ def _layered(result: Any, rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
 def _highest(values: Array) -> Array:
     """Return the maxima over y, by parabolas through three cells."""
     if values.shape[-1] < 3:
-        return values.max(-1)
+        return np.asarray(values.max(-1), dtype=np.float64)
     middle = np.clip(values.argmax(-1), 1, values.shape[-1] - 2)[..., None]
     left, top, right = (np.take_along_axis(values, middle + k, -1)[..., 0] for k in (-1, 0, 1))
     bend = left - 2 * top + right
@@ -287,7 +288,8 @@ def _highest(values: Array) -> Array:
         raised = top - (right - left) ** 2 / (8 * bend)
     highest = np.maximum(np.maximum(left, right), top)
     inside = (bend < 0) & (np.abs(right - left) <= -2 * bend)
-    return np.where(inside, np.maximum(raised, highest), highest)
+    found: Array = np.where(inside, np.maximum(raised, highest), highest)
+    return found
 
 
 def _nodes(first: float, last: float) -> tuple[Array, Array]:
@@ -359,7 +361,9 @@ def stress_volume(
     (slope,) = slopes
     faces = [0.0, *plan.body.interfaces]
     deepest = faces[-1] + DEEPEST * half
-    parts = {k: (faces[k], faces[k + 1]) for k in range(len(faces) - 1)}
+    parts: dict[int | str, tuple[float, float]] = {
+        k: (faces[k], faces[k + 1]) for k in range(len(faces) - 1)
+    }
     depths: dict[int | str, tuple[float, float]] = {**parts, "substrate": (faces[-1], deepest)}
     total, change, largest = 0.0, 0.0, 0.0
     across = 1.0 if line else solution.grid.spacing[0]

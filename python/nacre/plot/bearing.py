@@ -192,16 +192,18 @@ def elements_pressure(
     if elements is None:
         order = np.argsort(-solution.loads[:, 0], kind="stable")[:MOST]
         elements = [int(j) for j in order if solution.loads[j, 0] > 0]
-    rings = [ring] if ring is not None else [*RINGS] if len(elements) == 1 else ["inner"]
+    rings: list[Ring] = (
+        [ring] if ring is not None else [*RINGS] if len(elements) == 1 else ["inner"]
+    )
     scale = Scale.of(solution.peak_pressure, "Pa")
     with styled():
         axes = axes or new_axes(0.8, 0.45)
         axes.set_ylabel(f"pressure [{scale.unit}]")
         if solution.model != "solved" and solution.lamina_pressures is None:
-            for number, name in enumerate(RINGS):
+            for number, one in enumerate(RINGS):
                 peaks = scale.factor * solution.peak_pressures[:, number]
                 mark = {"marker": "o", "linestyle": "none", "color": look(number)["color"]}
-                axes.plot(solution.angles, peaks, label=f"{name} ring", **mark)
+                axes.plot(solution.angles, peaks, label=f"{one} ring", **mark)
             axes.set(xlabel="angle [rad]", title="peak pressures, Hertz")
             axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
             axes.legend()
@@ -218,9 +220,9 @@ def elements_pressure(
                     break
             else:
                 drawn.append(([element], name, x, values))
-        for number, (alike, name, x, values) in enumerate(drawn):
+        for number, (alike, which, x, values) in enumerate(drawn):
             told = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
-            label = f"{name} ring" if len(elements) == 1 else told
+            label = f"{which} ring" if len(elements) == 1 else told
             peak = written(float(values.max()), "Pa", 3)
             style = {**look(number), "label": f"{label} (peak {peak})"}
             axes.plot(length.factor * x, scale.factor * values, **style)
