@@ -85,6 +85,8 @@ ELSEWHERE = {
     "BearingSolution": "nacre.bearing",
     "BearingLife": "nacre.bearing",
     "BearingReport": "nacre.bearing",
+    "StressVolume": "nacre.bearing",
+    "LifeRatio": "nacre.bearing",
 }
 """Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
