@@ -15,7 +15,6 @@ import numpy as np
 
 from nacre import plot
 from nacre.bearing import CylindricalRoller, edge_factors
-from nacre.bearing.iso import pressure_factors
 
 bearing = CylindricalRoller(
     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
@@ -28,9 +27,8 @@ with plt.rc_context(plot.STYLE):
         for angle, colour in zip(angles, ("#0072B2", "#D55E00", "#009E73"), strict=True):
             tilt = math.tan(math.radians(angle / 60))
             solution = bearing.solve(force=(4450.0, 0.0, None), tilt=(None, tilt))
-            loads = solution.lamina_loads
-            factors = pressure_factors(bearing, loads, solution.lamina_pressures)[0, 0]
-            known = np.where(loads[0, 0] > 0, factors, np.nan)
+            known = solution.edge_factors()[0, 0]
+            known[np.asarray(solution.lamina_pressures)[0, 0] == 0] = np.nan
             axes.plot(lamina, known, "o-", color=colour, markersize=3, label=f"solved, {angle}'")
         axes.set(xlabel="lamina", title="within 4'" if angles[0] == 0 else "beyond 4'")
         axes.legend(frameon=False, loc="upper center")

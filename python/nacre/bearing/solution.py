@@ -313,6 +313,41 @@ class BearingSolution(Tabular):
             )
         return self._contacts[key]
 
+    def edge_factors(self) -> Array:
+        """Solved pressures of laminae over those of Hertz under their loads.
+
+        They are the factors of ISO/TS 16281, equations 58 and 59, with the moduli of the substrates
+        in place of the standard's steel.
+
+        Returns
+        -------
+        numpy.ndarray
+            Factors ``(Z, 2, 40)``; 1 where a lamina has no load.
+
+        Raises
+        ------
+        ValueError
+            If the elements are balls, or the contacts those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import CylindricalRoller
+        >>> bearing = CylindricalRoller(
+        ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+        ... )
+        >>> factors = bearing.solve(force=(4450.0, 0.0, None)).edge_factors()
+        >>> 0.95 < factors[0, 0, 20] < 1.05
+        True
+        """
+        if self.lamina_loads is None or self.lamina_pressures is None:
+            raise ValueError("the elements must be rollers for edge factors, got balls")
+        if self.model != "solved":
+            raise ValueError(
+                'edge must be "standard" or None for contacts of the standard, whose '
+                'pressure is not known, got "pressure"'
+            )
+        return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
+
     def life(self, edge: Edge = "standard", *, rotating: Ring = "inner") -> BearingLife:
         """Rate the bearing by ISO/TS 16281: its reference life, in millions of revolutions.
 
@@ -357,12 +392,7 @@ class BearingSolution(Tabular):
             if edge == "standard":
                 factors = edge_factors(LAMINAE)
             elif edge == "pressure":
-                if self.model != "solved" or self.lamina_pressures is None:
-                    raise ValueError(
-                        'edge must be "standard" or None for contacts of the standard, whose '
-                        'pressure is not known, got "pressure"'
-                    )
-                factors = pressure_factors(self.bearing, loads, self.lamina_pressures)
+                factors = self.edge_factors()
         found = reference_life(self.bearing, loads, factors, rotating)
         capacity = self.bearing.capacity or rating(self.bearing)
         return BearingLife(

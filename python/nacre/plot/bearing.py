@@ -208,7 +208,7 @@ def elements_pressure(
             axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
             axes.legend()
             return axes
-        curves = [(j, r, *_curve(solution, j, r)) for j in elements for r in rings]  # type: ignore[arg-type]
+        curves = [(j, r, *_curve(solution, j, r)) for j in elements for r in rings]
         curves = [curve for curve in curves if curve[2].size]
         longest = max((float(np.abs(x).max()) for _, _, x, _ in curves), default=1e-3)
         length = Scale.of(longest, "m")

@@ -173,7 +173,7 @@ def test_rollers_approach_as_laminae(load: float, solved: float, slices: float) 
     for ring in ("inner", "outer"):
         steel = nacre.Elastic(young=210e9, poisson=0.3)
         roller = nacre.HalfSpace(steel, ends=(-4.8e-3, 4.8e-3))
-        shape = bearing.shape(ring)  # type: ignore[arg-type]
+        shape = bearing.shape(ring)
         half += nacre.Contact(steel, grid, steel).solve(shape, load=load).approach
         free += nacre.Contact(steel, grid, roller).solve(shape, load=load).approach
     assert bearing.shape("inner") == ends.shape("inner")

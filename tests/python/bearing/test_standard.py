@@ -89,7 +89,7 @@ def test_rollers_of_the_standard(row: dict[str, Any]) -> None:
         force=(given["Fr"], None, None), tilt=(None, tilt), model="iso16281", tolerance=1e-12
     )
     life = solution.life("standard" if given.get("edge", True) else None)
-    near = {"rtol": 1e-9}  # the bar; the table is right to 1e-10
+    near: dict[str, Any] = {"rtol": 1e-9}  # the bar; the table is right to 1e-10
     np.testing.assert_allclose(solution.displacement[0] * 1e3, expected["delta_r"], **near)
     np.testing.assert_allclose(
         solution.loads, np.transpose([expected["Qj"]] * 2), atol=1e-9 * given["Fr"], rtol=0
