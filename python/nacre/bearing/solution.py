@@ -286,9 +286,9 @@ class BearingSolution(Tabular):
         --------
         >>> from nacre.bearing import DeepGrooveBall
         >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
-        >>> solution = bearing.solve(force=(1000.0, 0.0, None))
+        >>> solution = bearing.solve(force=(20.0, 0.0, None))
         >>> contact = solution.contact(0, "inner")
-        >>> abs(contact.load / solution.loads[0, 0] - 1) < 1e-8
+        >>> bool(abs(contact.load / solution.loads[0, 0] - 1) < 1e-8)
         True
         """
         if self.model != "solved" or self.grid_sizes is None or self.cells is None:
@@ -336,7 +336,7 @@ class BearingSolution(Tabular):
         ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
         ... )
         >>> factors = bearing.solve(force=(4450.0, 0.0, None)).edge_factors()
-        >>> 0.95 < factors[0, 0, 20] < 1.05
+        >>> bool(0.95 < factors[0, 0, 20] < 1.05)
         True
         """
         if self.lamina_loads is None or self.lamina_pressures is None:
@@ -379,7 +379,7 @@ class BearingSolution(Tabular):
         ... )
         >>> solution = bearing.solve(force=(4450.0, 0.0, None), model="iso16281")
         >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
-        (4999, 7639)
+        (4999, 5186)
         """
         if edge not in EDGES:
             raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
@@ -418,7 +418,7 @@ class BearingSolution(Tabular):
         --------
         >>> from nacre.bearing import DeepGrooveBall
         >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
-        >>> sorted(bearing.solve(force=(1000.0, 0.0, None)).plot())
+        >>> sorted(bearing.solve(force=(20.0, 0.0, None)).plot())
         ['loads', 'pressure']
         """
         from nacre import plot

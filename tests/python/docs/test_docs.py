@@ -19,8 +19,8 @@ from support import ROOT, command, printed, python
 
 DOCS = ROOT / "docs"
 MODULES = (
-    *(nacre.bearing, nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot, nacre.rough),
-    nacre.types,
+    *(nacre.bearing, nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot),
+    *(nacre.rough, nacre.types),
 )
 PAGES = [DOCS / "start.md", *sorted((DOCS / "howto").glob("*.md"))]
 FENCE = re.compile(
