@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +20,6 @@ from nacre.bearing.geometry import (
     millimetres,
 )
 from nacre.bearing.solution import BearingSolution, solved
-from nacre.results.values import CALLS
 
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None]
@@ -490,6 +488,3 @@ KINDS: dict[str, type[Bearing]] = {
     made.kind: made for made in (CylindricalRoller, DeepGrooveBall, AngularContactBall)
 }
 """Bearings by their names in case files."""
-
-for _made in KINDS.values():  # as values, bearings are read from files
-    CALLS[_made.__name__] = (_made, tuple(field.name for field in dataclasses.fields(_made)))

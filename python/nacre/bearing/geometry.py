@@ -14,6 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import Layers
 from nacre.hertz import contact_modulus
+from nacre.results.values import decode
 
 Array = npt.NDArray[np.float64]
 Ring = Literal["inner", "outer"]
@@ -49,6 +50,10 @@ def substrate(body: Layers) -> core.Elastic:
     return found
 
 
+KNOWN: dict[str, type[Bearing]] = {}
+"""Bearings by the names of their classes, which files have."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Bearing:
     """What all bearings have: one row of elements between two rings.
@@ -82,6 +87,12 @@ class Bearing:
     """Name in case files."""
     rolls: ClassVar[bool]
     """Whether the elements are rollers, in line contact."""
+
+    def __init_subclass__(cls) -> None:
+        """Make a kind of bearing known to files."""
+        super().__init_subclass__()
+        if "kind" in vars(cls):
+            KNOWN[cls.__name__] = cls
 
     def __post_init__(self) -> None:
         """Check what all bearings have in common."""
@@ -191,6 +202,12 @@ class Bearing:
     def _arguments(self) -> dict[str, Any]:
         """Return what makes the bearing again, for files and journals of studies."""
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+
+def decoded(data: Any) -> Bearing:
+    """Return the bearing that plain data describe; other data raise an error."""
+    ((name, given),) = data.items()
+    return KNOWN[name](**decode(given))
 
 
 def laminae_of(length: float, laminae: int) -> Array:

@@ -24,6 +24,7 @@ from nacre._tools.typing import Member
 from nacre.bearing.geometry import RINGS, Bearing
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution
+from nacre.results import display
 from nacre.results.listed import Listed
 from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
 
@@ -190,8 +191,27 @@ Model = LundbergPalmgren
 Models = Model | Mapping[int | str, Model]
 
 
+class _Beside(Listed, is_base=True):
+    """Base of results that have the extremes of coating and interfaces beside them."""
+
+    interface_shear: float
+    notes: tuple[str, ...]
+
+    def _layered(self) -> list[tuple[str, str]]:
+        """Return the rows of the table, those of layers only where there are some."""
+        rows = super()._rows()
+        return rows if self.interface_shear > 0 else rows[: -len(COATING)]
+
+    def __str__(self) -> str:
+        """Return a table."""
+        return display.text(self._rows(), self.notes)
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.notes)
+
+
 @dataclass(frozen=True, repr=False)
-class StressVolume(Listed):
+class StressVolume(_Beside):
     """Integral of the stress in the volume that one contact passes, per length of the track.
 
     Examples
@@ -221,14 +241,16 @@ class StressVolume(Listed):
     """Largest shear traction at an interface [Pa]; 0 without layers."""
     interface_tension: float
     """Largest tension at an interface [Pa]; 0 without layers."""
+    notes: tuple[str, ...]
+    """What makes the extremes of layers and interfaces uncertain, as `StressSummary.warnings`."""
 
     def _rows(self) -> list[tuple[str, str]]:
         said = f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
-        return [("integral", said), *_layered(self, super()._rows())]
+        return [("integral", said), *self._layered()]
 
 
 @dataclass(frozen=True, repr=False)
-class LifeRatio(Listed):
+class LifeRatio(_Beside):
     """Life over that of a reference, both at the same probability: a model.
 
     Examples
@@ -263,18 +285,15 @@ class LifeRatio(Listed):
     """Largest tension at an interface [Pa]; 0 without layers."""
     model: str
     """Model in words."""
+    notes: tuple[str, ...]
+    """What makes the extremes of layers and interfaces uncertain, as `StressSummary.warnings`."""
 
     def _rows(self) -> list[tuple[str, str]]:
         said = f"{self.ratio:.5g}"
         if math.isinf(self.ratio):
             said = "infinite: no stress is above the fatigue limit"
-        rows = _layered(self, super()._rows())
+        rows = self._layered()
         return [("life over that of the reference", said), *rows, ("model", self.model)]
-
-
-def _layered(result: Any, rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return rows of a table, those of layers only where there are some."""
-    return rows if result.interface_shear > 0 else rows[: -len(COATING)]
 
 
 def _highest(values: Array) -> Array:
@@ -392,7 +411,7 @@ def stress_volume(
             sums.append(float((weights[:, None] * inside).sum()) * across * one.weight)
         total += sums[0]
         change += sum(sums[1:])
-    extremes = [0.0, 0.0, 0.0]
+    extremes, notes = [0.0, 0.0, 0.0], tuple[str, ...]()
     if plan.body.layers:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
@@ -400,8 +419,11 @@ def stress_volume(
         coats = [one.tension[0] for one in summary.layers[: len(plan.body.layers)]]
         shears = [one.shear[0] for one in summary.interfaces]
         tensions = [one.tension[0] for one in summary.interfaces]
+        notes = tuple(summary.warnings)
         extremes = [max(found) for found in (coats, shears, tensions)]
-    return StressVolume(total, change / total if total > 0 else 0.0, largest, slope, *extremes)
+    return StressVolume(
+        total, change / total if total > 0 else 0.0, largest, slope, *extremes, notes
+    )
 
 
 def _is_line(solution: Solution) -> bool:
@@ -503,6 +525,7 @@ def life_ratio(
         one.interface_shear,
         one.interface_tension,
         f"{names} {kinds}, a model: ratios of equal materials only",
+        one.notes,
     )
 
 
@@ -541,4 +564,6 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
         for name in ("largest", "coating_tension", "interface_shear", "interface_tension")
     )
     change = changed / total - 1 if total > 0 else 0.0
-    return StressVolume(total, change, largest, slope, *extremes)
+    heaviest = tuple(np.unravel_index(solution.loads.argmax(), solution.loads.shape))
+    notes = volumes[int(heaviest[0]), int(heaviest[1])].notes
+    return StressVolume(total, change, largest, slope, *extremes, notes)

@@ -16,7 +16,7 @@ import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.units import printable, symbol, written
 from nacre.bearing.equilibrium import Balls, Kinematics, Problem, Rollers, State
-from nacre.bearing.geometry import RINGS, Bearing, Ring
+from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, rating, reference_life
 from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, bodies_of, law
 from nacre.contact import Contact
@@ -25,7 +25,7 @@ from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.listed import Listed, Tabular
 from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
-from nacre.results.values import decode, encode, refusing
+from nacre.results.values import encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -574,7 +574,7 @@ class BearingSolution(Tabular):
     def _restored(cls, state: dict[str, Any]) -> Self:
         with refusing(cls.__name__):
             made = dict(state)
-            made["bearing"] = decode(state["bearing"])
+            made["bearing"] = decoded(state["bearing"])
             for name in VECTORS:
                 made[name] = tuple(map(float, state[name]))
             for name in ARRAYS:
