@@ -421,9 +421,8 @@ def stress_volume(
         tensions = [one.tension[0] for one in summary.interfaces]
         notes = tuple(summary.warnings)
         extremes = [max(found) for found in (coats, shears, tensions)]
-    return StressVolume(
-        total, change / total if total > 0 else 0.0, largest, slope, *extremes, notes
-    )
+    share = change / total if total > 0 else 0.0
+    return StressVolume(total, share, largest, slope, *extremes, notes)
 
 
 def _is_line(solution: Solution) -> bool:
