@@ -25,8 +25,10 @@ FLAT = 1e-11
 It is some 1e5 roundings: what rests in a flat direction stays, and the steps in all others are
 exact to 1e-11 of the stiffest.
 """
-FARTHEST = 2.0
-"""Largest step over the largest approach of a contact: beyond it the energy is not quadratic."""
+FARTHEST, FARTHER = 2.0, 4.0
+"""Largest step over the largest approach of a contact, as the energy is not quadratic beyond; and
+the factor by which it grows where a step of this length lowers the energy.
+"""
 HALVINGS = 30
 """Largest number of times that a step is halved: 1e-9 of it is left."""
 SLACK = 1e-8
@@ -252,8 +254,11 @@ class Problem:
             ring = given + way * along
         return ring, self.kinematics.neutral(self.kinematics.motion @ ring, pressed)
 
-    def step(self, state: State) -> tuple[Array, Array]:
-        """Return Newton's step of the ring and of the elements, shortened where it is long."""
+    def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
+        """Return Newton's step of the ring and of the elements, and whether it was shortened.
+
+        It goes no farther than `reach` times the largest approach of a contact.
+        """
         free, kinematics = self.free, self.kinematics
         ring = np.zeros(5)
         if free.any():
@@ -265,14 +270,15 @@ class Problem:
         step, follow = state.back
         own = step + follow @ ring
         moved = kinematics.motion @ ring
-        farthest = FARTHEST * max(float(state.places[..., 0].max()), 0.0)
+        farthest = reach * max(float(state.places[..., 0].max()), 0.0)
         largest = max(
             float((np.abs(moved) * kinematics.lengths).max()),
             float((np.abs(own) * kinematics.lengths).max()),
         )
-        if largest > farthest > 0:
+        shorter = largest > farthest > 0
+        if shorter:
             ring, own = ring * (farthest / largest), own * (farthest / largest)
-        return ring, own
+        return ring, own, shorter
 
     def rested(self, state: State, ring: Array) -> Array:
         """Return the positions of elements; what carries nothing is midway at the next place."""
@@ -291,7 +297,7 @@ class Problem:
         tell: Callable[[int, float], object] | None,
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
-        state = self.state(ring, own)
+        state, reach = self.state(ring, own), FARTHEST
         for done in range(max_iterations + 1):
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
@@ -299,7 +305,7 @@ class Problem:
                 return state, done, "converged"
             if done == max_iterations:
                 break
-            ring_step, own_step = self.step(state)
+            ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
                 moved = state.ring + share * ring_step
@@ -312,5 +318,9 @@ class Problem:
                 share /= 2
             else:
                 break  # nothing lowers the energy any more: rounding is reached
+            if share < 1:
+                reach = max(FARTHEST, share * reach)
+            elif shorter:
+                reach *= FARTHER
             state = tried
         return state, done, "iteration limit"

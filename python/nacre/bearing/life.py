@@ -242,7 +242,7 @@ class StressVolume(_Beside):
     interface_tension: float
     """Largest tension at an interface [Pa]; 0 without layers."""
     notes: tuple[str, ...]
-    """What makes the extremes of layers and interfaces uncertain, as `StressSummary.warnings`."""
+    """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
     def _rows(self) -> list[tuple[str, str]]:
         said = f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
@@ -286,7 +286,7 @@ class LifeRatio(_Beside):
     model: str
     """Model in words."""
     notes: tuple[str, ...]
-    """What makes the extremes of layers and interfaces uncertain, as `StressSummary.warnings`."""
+    """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
     def _rows(self) -> list[tuple[str, str]]:
         said = f"{self.ratio:.5g}"
@@ -419,7 +419,7 @@ def stress_volume(
         coats = [one.tension[0] for one in summary.layers[: len(plan.body.layers)]]
         shears = [one.shear[0] for one in summary.interfaces]
         tensions = [one.tension[0] for one in summary.interfaces]
-        notes = tuple(summary.warnings)
+        notes = tuple(text for text in summary.warnings if "substrate" not in text)
         extremes = [max(found) for found in (coats, shears, tensions)]
     share = change / total if total > 0 else 0.0
     return StressVolume(total, share, largest, slope, *extremes, notes)

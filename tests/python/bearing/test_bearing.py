@@ -13,7 +13,13 @@ import pytest
 
 import nacre
 from bodies import quiet
-from nacre.bearing import AngularContactBall, BearingSolution, CylindricalRoller, DeepGrooveBall
+from nacre.bearing import (
+    AngularContactBall,
+    BearingSolution,
+    CylindricalRoller,
+    DeepGrooveBall,
+    rating,
+)
 
 STEEL = nacre.Elastic(young=206e9, poisson=0.3)
 DLC = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(300e9, 0.25), 3e-6, name="DLC")])
@@ -128,6 +134,34 @@ def test_stiffness_is_the_derivative(
         change = (change - reaction(bearing, place - moved, options)) / (2 * step)
         unit = np.where(scale > 0, scale, 1.0) * scale[k]
         np.testing.assert_allclose(change / unit, stiffness[:, k] / unit, atol=1e-6)  # the bar
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_bearings_find_their_equilibrium(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    count, diameter = int(draw.integers(5, 30)), 10 ** draw.uniform(-3, -1.5)
+    pitch = diameter * (draw.uniform(1.02, 1.6) / math.sin(math.pi / count) + 0.4)
+    given: dict[str, Any] = {
+        "count": count,
+        "diameter": diameter,
+        "pitch_diameter": pitch,
+        "clearance": diameter * draw.uniform(-5e-4, 4e-3),
+    }
+    bearing: Any = DeepGrooveBall(**given)
+    if seed % 2:
+        bearing = CylindricalRoller(**given, length=diameter * draw.uniform(0.8, 5))
+    load = rating(bearing) * 10 ** draw.uniform(-3, -0.3) * draw.normal(size=3)
+    force = (load[0], load[1], None if seed % 2 else load[2])
+    tilt = draw.normal(size=2) * 1e-3
+    rotation, speed = draw.uniform(0, 1), draw.uniform(0, 2) / diameter
+    solution = bearing.solve(
+        force=force, tilt=tilt, rotation=rotation, speed=speed, model="iso16281"
+    )
+    assert solution.report.balance <= 1e-9
+    scale = solution.loads.sum()
+    for found, asked in zip(solution.force, force, strict=True):
+        assert asked is None or found == pytest.approx(asked, abs=1e-9 * scale)
+    assert np.linalg.eigvalsh(solution.stiffness()).min() > -1e-9 * scale / diameter
 
 
 def test_centrifugal_force_presses_on_the_outer_ring() -> None:
