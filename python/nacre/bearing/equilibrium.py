@@ -31,6 +31,8 @@ the factor by which it grows where a step of this length lowers the energy.
 """
 HALVINGS = 30
 """Largest number of times that a step is halved: 1e-9 of it is left."""
+ROUNDING = 1e-14
+"""Approach over the pitch diameter that is rounding: some 50 units in the last place."""
 SLACK = 1e-8
 """Rounding of the energy, relative, which contacts of a tolerance of 1e-9 have."""
 
@@ -59,7 +61,7 @@ class Rollers:
             ],
             axis=1,
         )
-        self.play, self.count = bearing.play, len(angles)
+        self.play, self.count, self.size = bearing.play, len(angles), bearing.pitch
         self.lengths = np.array([1.0, bearing.length / math.sqrt(12)])
         """A slope times this length moves a lamina as far, in the mean of squares."""
         self.arm = bearing.length
@@ -103,7 +105,7 @@ class Balls:
             ],
             axis=1,
         )
-        between = bearing.between
+        between, self.size = bearing.between, bearing.pitch
         if bearing.nominal_angle:
             start = (between * math.cos(free), between * math.sin(free))
         else:
@@ -223,7 +225,8 @@ class Problem:
             float(np.linalg.norm(self.loads[:3])),
             float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
         )
-        if force == 0.0:
+        pressed = float(state.places[..., 0].max()) > ROUNDING * self.kinematics.size
+        if force == 0.0 or not (pressed or self.loads.any() or self.centrifugal):
             return 0.0
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
         ring = np.abs(state.wanting / arm)[self.free]

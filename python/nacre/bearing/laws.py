@@ -244,7 +244,7 @@ class Solved:
                     force[j, r] = solution.load, solution.moment[0]
                     stiffness[j, r] = tangent[:2, :2]
         finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+            pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
         if not self.bearing.rolls:  # a ball has no moment along its axis
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0

@@ -411,7 +411,7 @@ def stress_volume(
             sums.append(float((weights[:, None] * inside).sum()) * across * one.weight)
         total += sums[0]
         change += sum(sums[1:])
-    extremes, notes = [0.0, 0.0, 0.0], tuple[str, ...]()
+    extremes, notes = (0.0, 0.0, 0.0), tuple[str, ...]()
     if plan.body.layers:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
@@ -420,7 +420,7 @@ def stress_volume(
         shears = [one.shear[0] for one in summary.interfaces]
         tensions = [one.tension[0] for one in summary.interfaces]
         notes = tuple(text for text in summary.warnings if "substrate" not in text)
-        extremes = [max(found) for found in (coats, shears, tensions)]
+        extremes = max(coats), max(shears), max(tensions)
     share = change / total if total > 0 else 0.0
     return StressVolume(total, share, largest, slope, *extremes, notes)
 
@@ -558,11 +558,12 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
         means = means * cycles**slope * 2 * math.pi * bearing.raceways[r]
         total, changed = total + float(means[0]), changed + float(means[1])
 
-    largest, *extremes = (
-        max(getattr(volume, name) for volume in volumes.values())
-        for name in ("largest", "coating_tension", "interface_shear", "interface_tension")
-    )
+    def largest(name: str) -> float:
+        return float(max(getattr(volume, name) for volume in volumes.values()))
+
+    shear, tension = largest("interface_shear"), largest("interface_tension")
     change = changed / total - 1 if total > 0 else 0.0
     heaviest = tuple(np.unravel_index(solution.loads.argmax(), solution.loads.shape))
     notes = volumes[int(heaviest[0]), int(heaviest[1])].notes
-    return StressVolume(total, change, largest, slope, *extremes, notes)
+    coats = largest("coating_tension"), shear, tension
+    return StressVolume(total, change, largest("largest"), slope, *coats, notes)

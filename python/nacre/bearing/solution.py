@@ -542,8 +542,8 @@ class BearingSolution(Tabular):
         for j in np.flatnonzero((self.loads > 0).any(axis=1)):
             values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
             lines.append([f"{j}", *(written(value, row.si()) for row, value in values)])
-        table = "\n".join(display.aligned(lines))
-        return display.text(self._rows(), self.report.warnings) + printable(f"\n\n{table}")
+        table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
+        return display.text(self._rows(), self.report.warnings) + printable(table)
 
     def _repr_html_(self) -> str:
         return display.markup(self._rows(), self.report.warnings)
