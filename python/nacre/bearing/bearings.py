@@ -19,7 +19,8 @@ from nacre.bearing.geometry import (
     laminae_of,
     millimetres,
 )
-from nacre.bearing.solution import BearingSolution, solved
+from nacre.bearing.solution import BearingSolution
+from nacre.bearing.solving import solved
 
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None]
