@@ -19,7 +19,8 @@ STANDARD = ROLLERS.solve(force=(4450.0, 0.0, None), tilt=(None, 6e-4), model="is
 
 def test_bars_are_the_loads() -> None:
     axes = plot.load_distribution(STANDARD)
-    heights = [bar.get_height() for bar in axes.patches]
+    bars: list[Any] = list(axes.patches)
+    heights = [bar.get_height() for bar in bars]
     np.testing.assert_allclose(heights, STANDARD.loads[:, 0] / 1e3)  # kN
     fast = ROLLERS.solve(force=(4450.0, 0.0, None), speed=600.0, model="iso16281")
     both = plot.load_distribution(fast)
