@@ -1,7 +1,8 @@
-"""Case files: a contact or an indentation, and a study of it, in TOML.
+"""Case files: a contact, an indentation or a bearing, and a study of it, in TOML.
 
 There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`; a file
-with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`.
+with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`, and one
+with the table ``bearing`` is a bearing of `nacre.bearing`.
 Materials have names. ``nacre schema`` prints the reference of all tables and keys::
 
     units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
@@ -45,16 +46,17 @@ from typing import Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre.results.outputs import named
+from nacre.results.outputs import Room, named
 
 __all__ = ["Case", "CaseError"]
 
 with extra("cli"):
     from pydantic import ValidationError
 
+    from nacre.case.bearing import BearingCase
     from nacre.case.indent import IndentCase
     from nacre.case.reference import Place, nearest, place, table_for
-    from nacre.case.schema import MOST_VALUES, Bodies, CaseTable, Range, WrongValue, at
+    from nacre.case.schema import MOST_VALUES, CaseTable, Keys, Range, WrongValue, at
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
@@ -132,6 +134,13 @@ class Case:
         return isinstance(self._table, IndentCase)
 
     @property
+    def room(self) -> Room:
+        """What the case is: a contact, an indentation or a bearing."""
+        if isinstance(self._table, BearingCase):
+            return "bearing"
+        return "indent" if self.is_indentation else "contact"
+
+    @property
     def friction(self) -> str | None:
         """Name of the table of friction, "slide" or "roll"; None without one."""
         if not isinstance(self._table, CaseTable):
@@ -142,13 +151,14 @@ class Case:
         """Return the arguments that the case describes.
 
         They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`; those of
-        an indentation are of `nacre.indent.solve`.
+        an indentation are of `nacre.indent.solve`, and those of a bearing the bearing and the
+        keywords of its ``solve``.
         """
         table = self._table
         try:
             if isinstance(table, CaseTable):
                 return table.arguments(self.folder)
-            assert isinstance(table, IndentCase)
+            assert isinstance(table, IndentCase | BearingCase)
             return table.arguments()
         except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
@@ -162,6 +172,10 @@ class Case:
         if self.friction is not None:
             found = {name: found[name] for name in found if name not in ("friction", "direction")}
         return found
+
+    def life(self) -> dict[str, Any] | None:
+        """Return the arguments of `BearingSolution.life`, or None without a table for it."""
+        return self._table.life() if isinstance(self._table, BearingCase) else None
 
     def __call__(self, **values: Any) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
@@ -196,7 +210,7 @@ class Case:
         if sweep.outputs is not None:
             try:
                 with at("sweep"):
-                    named(sweep.outputs, self.is_indentation)
+                    named(sweep.outputs, self.room)
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
             found["outputs"] = sweep.outputs
@@ -245,7 +259,7 @@ class Case:
                 f"nearest are {keys}"
             ) from error
 
-    def _checked(self, data: Mapping[str, Any]) -> Bodies:
+    def _checked(self, data: Mapping[str, Any]) -> Keys:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:

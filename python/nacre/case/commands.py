@@ -1,4 +1,4 @@
-"""The commands of ``nacre``, with Typer: contacts, indentations and studies in case files."""
+"""The commands of ``nacre``, with Typer: contacts, indentations, bearings and studies of them."""
 
 from __future__ import annotations
 
@@ -83,10 +83,15 @@ def solve(
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the contact that a case file describes."""
+    """Solve the contact or the bearing that a case file describes."""
     described = _read_case(case, units)
     if described.is_indentation:
         raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
+    if described.room == "bearing":
+        if initial is not None:
+            raise CaseError(f"{case}: --initial must not be given for a bearing")
+        _solve_bearing(case, described, save or [], as_json)
+        return
     arguments, asked = described.arguments(), described.stress()
     if initial is not None:
         try:
@@ -107,6 +112,33 @@ def _read_case(case: Path, units: str | None) -> Case:
     """Return the case of a file, in other units if these are given."""
     described = Case.read(case)
     return described if units is None else described.in_units(units)
+
+
+def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool) -> None:
+    """Solve a bearing, save and print it, with its life where that is asked for."""
+    for path in save:
+        if path.suffix.lower() == ".vtr":
+            raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
+        _check_ending(path)
+    arguments = described.arguments()
+    bearing, asked = arguments.pop("bearing"), described.life()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+        try:
+            with alive():
+                solution = bearing.solve(**arguments)
+                life = None if asked is None else solution.life(**asked)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: bearing: {error}") from error
+    for path in save:
+        solution.save(path)
+    if as_json:
+        left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
+        state = {k: v for k, v in solution.to_dict().items() if k not in left}
+        lived = {} if life is None else {"life": life._state()}
+        print(json.dumps(_plain(state | lived), indent=2))
+    else:
+        print(solution if life is None else f"{solution}\n\n{life}")
 
 
 def _solve(
@@ -198,8 +230,8 @@ def indent(
 ) -> None:
     """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
     described = _read_case(case, units)
-    if not described.is_indentation:
-        raise CaseError(f"{case}: this case is a contact, without [tip] and [indent]: nacre solve")
+    if described.room != "indent":
+        raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
     for path in save or []:
         if path.suffix.lower() not in (".nc", ".csv"):
             raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")

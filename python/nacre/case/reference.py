@@ -13,8 +13,9 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from nacre.case.bearing import BearingCase
 from nacre.case.indent import IndentCase
-from nacre.case.schema import Bodies, CaseTable
+from nacre.case.schema import CaseTable, Keys
 
 Node = dict[str, Any]
 """A part of a JSON schema."""
@@ -39,8 +40,8 @@ VALUES = {
 @functools.cache
 def schema() -> Node:
     """Return the JSON schema of case files, for editors too."""
-    both: Any = CaseTable | IndentCase
-    return {"title": "case file of nacre", **TypeAdapter(both).json_schema()}
+    all_kinds: Any = CaseTable | IndentCase | BearingCase
+    return {"title": "case file of nacre", **TypeAdapter(all_kinds).json_schema()}
 
 
 def options(node: Node) -> Iterator[Node]:
@@ -116,6 +117,7 @@ def sections() -> Iterator[tuple[str, Node]]:
 
     yield "Whole file of a contact", known["CaseTable"]
     yield "Whole file of an indentation", known["IndentCase"]
+    yield "Whole file of a bearing", known["BearingCase"]
     yield "`[materials.NAME]`", known["Material"]
     yield from kinds("CaseTable", "shape", "shape")
     yield from kinds("RollerShape", "profile", "shape.profile")
@@ -133,6 +135,12 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield from kinds("IndentCase", "tip", "tip")
     yield from kinds("IndentCase", "adhesion", "adhesion")
     yield "`[indent]`", known["Indent"]
+    yield from kinds("BearingCase", "bearing", "bearing")
+    yield "`[bearing.raceway_crown]`", known["Rings"]
+    yield "`[bearing.solve]`", known["BearingSolve"]
+    yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", known["InSpace"]
+    yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", known["About"]
+    yield "`[bearing.life]`", known["BearingLife"]
     yield "`[sweep]`", known["Sweep"]
     yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', known["Range"]
 
@@ -164,9 +172,12 @@ def _key(name: str, node: Node, required: bool) -> str:
     return f"- `{name}`: {value}{f' {unit[1]}' if unit else ''}{default}. {UNIT.sub('', told)}"
 
 
-def table_for(data: Any) -> type[Bodies]:
-    """Return the table for a case: one with a tip or a table ``indent`` is an indentation."""
-    return IndentCase if isinstance(data, dict) and {"tip", "indent"} & data.keys() else CaseTable
+def table_for(data: Any) -> type[Keys]:
+    """Return the table for a case: a bearing; or with a tip or ``indent`` an indentation."""
+    keys = data.keys() if isinstance(data, dict) else set()
+    if "bearing" in keys:
+        return BearingCase
+    return IndentCase if {"tip", "indent"} & keys else CaseTable
 
 
 @dataclass(frozen=True)

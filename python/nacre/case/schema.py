@@ -245,8 +245,8 @@ class Sweep(Table):
     )
 
 
-class Bodies(Table):
-    """Keys that all case files have: units, materials and bodies, and a study."""
+class Keys(Table):
+    """Keys that all case files have: units, materials, and a study."""
 
     solved: ClassVar[tuple[str, ...]] = ()
     """Tables that describe a solve, whose values a study can change."""
@@ -259,10 +259,6 @@ class Bodies(Table):
     materials: Annotated[dict[str, Material], said("a table of materials")] = Field(
         {}, description="Materials by name."
     )
-    body: Body = Field(description="Body that the shape or the tip is pressed into.")
-    counterbody: Body | None = Field(
-        None, description="Body of the shape or the tip; rigid where it is left out."
-    )
     sweep: Sweep | None = Field(None, description="A study of the case.")
 
     @field_validator("units")
@@ -270,11 +266,6 @@ class Bodies(Table):
     def _consistent(cls, units: str) -> str:
         System(units)
         return units
-
-    def bodies(self) -> dict[str, Any]:
-        """Return the bodies by name."""
-        named = (("body", self.body), ("counterbody", self.counterbody))
-        return {name: self._body(name, body) for name, body in named if body is not None}
 
     def _body(self, name: str, body: Body) -> nacre.HalfSpace:
         with at(f"{name}.substrate"):
@@ -308,6 +299,20 @@ class Bodies(Table):
             with at(f"materials.{named}"):
                 return self.materials[named].make()
         return named.make()
+
+
+class Bodies(Keys):
+    """Keys of case files of contacts and indentations, too: bodies."""
+
+    body: Body = Field(description="Body that the shape or the tip is pressed into.")
+    counterbody: Body | None = Field(
+        None, description="Body of the shape or the tip; rigid where it is left out."
+    )
+
+    def bodies(self) -> dict[str, Any]:
+        """Return the bodies by name."""
+        named = (("body", self.body), ("counterbody", self.counterbody))
+        return {name: self._body(name, body) for name, body in named if body is not None}
 
 
 class CaseTable(Bodies):

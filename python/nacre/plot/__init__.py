@@ -5,6 +5,7 @@ carry units with a prefix, SI or those of `nacre.display_units`. `nacre.Solution
 functions as methods.
 """
 
+from nacre.plot.bearing import bearing, elements_pressure, load_distribution
 from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
@@ -18,16 +19,19 @@ from nacre.plot.style import STYLE
 
 __all__ = [
     "STYLE",
+    "bearing",
     "chart",
     "compare",
     "course",
     "creep_curve",
     "curve",
     "distribution",
+    "elements_pressure",
     "friction",
     "heights",
     "interface_map",
     "load_curve",
+    "load_distribution",
     "loop",
     "overview",
     "patches",

@@ -157,7 +157,8 @@ def load(path: AnyPath) -> Any:
     -------
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
-        `StressSummary`, `CreepCoefficients`, an `IndentSolution` or a `Fit` of `nacre.indent`.
+        `StressSummary`, `CreepCoefficients`, an `IndentSolution` or a `Fit` of `nacre.indent`, a
+        `BearingSolution`, `BearingLife`, `StressVolume` or `LifeRatio` of `nacre.bearing`.
 
     Raises
     ------

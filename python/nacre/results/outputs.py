@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from nacre.results.quantities import AXIS, CONTACT, FRICTION, INDENT
+from nacre.results.quantities import AXIS, BEARING, CONTACT, FRICTION, INDENT
 
 if TYPE_CHECKING:
+    from nacre.bearing.solution import BearingSolution
     from nacre.contact.friction import FrictionSolution
     from nacre.contact.solution import Solution
     from nacre.contact.stresses import StressSummary
     from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
+Room = Literal["contact", "indent", "bearing"]
+"""What a study solves."""
 
 OUTPUTS = (
     "load",
@@ -29,6 +32,14 @@ OUTPUTS = (
 """Outputs of a contact by default."""
 INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 """Outputs of an indentation by default."""
+OF_RINGS = ("displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure")
+"""Outputs of a bearing by default; its life is asked for, as it is a model."""
+USUAL: dict[Room, tuple[str, ...]] = {
+    "contact": OUTPUTS,
+    "indent": INDENTED,
+    "bearing": OF_RINGS,
+}
+"""Outputs by default."""
 
 NUMBERS = [row.name for row in CONTACT]
 """Quantities of a solution."""
@@ -36,8 +47,13 @@ OF_FRICTION = {row.name: row for row in FRICTION if row.dims in ((), AXIS)}
 """Numbers of a contact with friction."""
 OF_INDENT = [row.name for row in INDENT]
 """Numbers of an indentation."""
+OF_BEARING = {row.name: row for row in BEARING}
+"""Numbers of a bearing."""
 AXES = {row.name for row in (*CONTACT, *FRICTION) if row.dims == AXIS}
 """Outputs with a value along x and one along y."""
+
+RING_AXES = {row.name for row in BEARING if row.dims == AXIS}
+"""The same of a bearing."""
 
 STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
@@ -58,23 +74,30 @@ ERROR = "_discretisation"
 
 
 def named(
-    outputs: Sequence[Output] | Mapping[str, Output], indents: bool | None = None
+    outputs: Sequence[Output] | Mapping[str, Output], room: Room | None = None
 ) -> dict[str, Output]:
-    """Return outputs by name, checked: those of an indentation, of a contact, or of both."""
+    """Return outputs by name, checked: those of what a study solves, or of any."""
     if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
         raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
     if isinstance(outputs, Mapping):
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    told = {
-        False: f"attributes of Solution that hold numbers ({', '.join(sorted(NUMBERS))}), or of "
-        f"FrictionSolution ({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
-        True: "attributes of nacre.indent.IndentSolution that hold numbers "
+    told: dict[Room, str] = {
+        "contact": "attributes of Solution that hold numbers "
+        f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
+        f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
+        "indent": "attributes of nacre.indent.IndentSolution that hold numbers "
         f"({', '.join(OF_INDENT)})",
+        "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
+        f"({', '.join(OF_BEARING)})",
     }
-    known = {False: {*NUMBERS, *OF_FRICTION, *STRESSES}, True: {*OF_INDENT}}
-    kinds = [True, False] if indents is None else [indents]
+    known: dict[Room, set[str]] = {
+        "contact": {*NUMBERS, *OF_FRICTION, *STRESSES},
+        "indent": {*OF_INDENT},
+        "bearing": {*OF_BEARING},
+    }
+    kinds: list[Room] = ["indent", "contact", "bearing"] if room is None else [room]
     for name, output in items:
         if not (any(output in known[kind] for kind in kinds) or callable(output)):
             said = ", ".join(told[kind] for kind in kinds)
@@ -88,12 +111,17 @@ def named(
     return found
 
 
-def indented(solution: IndentSolution, outputs: Mapping[str, Output]) -> dict[str, Any]:
-    """Return the outputs of an indentation as plain numbers."""
+def plain(
+    solution: IndentSolution | BearingSolution, outputs: Mapping[str, Output]
+) -> dict[str, Any]:
+    """Return the outputs of an indentation or of a bearing as plain numbers."""
+    own, words = (
+        (OF_INDENT, "an indentation") if hasattr(solution, "tip") else (OF_BEARING, "a bearing")
+    )
     found: dict[str, Any] = {}
     for name, output in outputs.items():
-        if isinstance(output, str) and output not in OF_INDENT:
-            raise ValueError(f"the output {output} is not one of an indentation")
+        if isinstance(output, str) and output not in own:
+            raise ValueError(f"the output {output} is not one of {words}")
         value = getattr(solution, output) if isinstance(output, str) else output(solution)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
     return found
@@ -144,6 +172,8 @@ def _number(solution: Any, name: str) -> Any:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
     if name in OF_INDENT and name not in NUMBERS:
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")
+    if name in OF_BEARING and name not in {*NUMBERS, *OF_FRICTION}:
+        raise ValueError(f"the output {name} needs a bearing in the case")
     normal = getattr(solution, "normal", None)
     if normal is None:
         if name in OF_FRICTION:

@@ -216,6 +216,60 @@ FIT = (
 )
 """Quantities at the points of the curves of a fit."""
 
+PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
+"""Dimensions of numbers of each contact of a bearing, and of its laminae."""
+BEARING = (
+    Quantity("displacement", "displacement of the ring", "m", None, ("direction",), "displacement"),
+    Quantity("tilt", "slopes of the inner ring", dims=AXIS, label="tilt"),
+    Quantity("force", "force on the inner ring", "N", None, ("direction",), "force"),
+    Quantity("moment", "moment on the inner ring", "N m", dims=AXIS, label="moment"),
+    Quantity("largest_load", "largest force of a contact", "N", label="largest load"),
+    Quantity("peak_pressure", "largest pressure", "Pa", label="peak pressure"),
+    Quantity("edge_pressure", "largest pressure in outer tenths", "Pa", label="edge pressure"),
+    Quantity("reference_life", "life of ISO/TS 16281, million revolutions"),
+    Quantity("loaded", "number of loaded elements"),
+    Quantity("angles", "angles of the elements", "rad", dims=("element",)),
+    Quantity("approaches", "approaches of the contacts", "m", dims=PER_CONTACT),
+    Quantity("loads", "forces of the contacts", "N", None, PER_CONTACT, "load"),
+    Quantity("tilts", "slopes of the elements to the rings", "", None, PER_CONTACT, "tilt"),
+    Quantity("moments", "first moments of the pressure", "N m", dims=PER_CONTACT),
+    Quantity("peak_pressures", "largest pressures", "Pa", None, PER_CONTACT, "peak pressure"),
+    Quantity("edge_pressures", "pressures at the edges", "Pa", None, PER_CONTACT, "edge pressure"),
+    Quantity("contact_angles", "contact angles", "rad", dims=PER_CONTACT),
+    Quantity("lamina_loads", "loads of laminae", "N", dims=PER_LAMINA),
+    Quantity("lamina_pressures", "largest pressures of laminae", "Pa", dims=PER_LAMINA),
+)
+"""Quantities of a bearing: of its rings, and of each element."""
+BEARING_LIFE = (
+    Quantity("revolutions", "life, million revolutions", label="life"),
+    Quantity("equivalent_load", "equivalent reference load", "N", label="equivalent load"),
+    Quantity("capacity", "dynamic load rating", "N", label="rating"),
+    Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
+)
+"""Quantities of the life of a bearing."""
+COATING = (
+    Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
+    Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
+    Quantity("interface_tension", "largest tension there", "Pa", label="interface tension"),
+)
+STRESS_VOLUME = (
+    Quantity("integral", "integral of the stress"),
+    Quantity("change", "change where it begins at half the depth", label="change"),
+    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
+    Quantity("slope", "Weibull slope", label="slope e"),
+    *COATING,
+)
+"""Quantities of the volume under stress."""
+LIFE_RATIO = (
+    Quantity("ratio", "life over that of the reference"),
+    Quantity("slope", "Weibull slope", label="slope e"),
+    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
+    Quantity("reference_largest", "the same of the reference", "Pa", label="of the reference"),
+    Quantity("change", "change where integrals begin at half the depth", label="change"),
+    *COATING,
+)
+"""Quantities of a ratio of lives."""
+
 PARAMETERS = {
     "load": "N",
     "approach": "m",
@@ -230,6 +284,10 @@ PARAMETERS = {
     "crown_radius": "m",
     "flat_length": "m",
     "depth": "m",
+    "diameter": "m",
+    "pitch_diameter": "m",
+    "length": "m",
+    "clearance": "m",
     "hardness": "Pa",
     "work": "N/m",
     "flat": "m",
@@ -243,7 +301,9 @@ PARAMETERS = {
 """SI units of parameters of studies and fits, by the last part of their names."""
 
 
-def units(*, line: bool = False, rolls: bool = False, indents: bool = False) -> dict[str, str]:
+def units(
+    *, line: bool = False, rolls: bool = False, indents: bool = False, bears: bool = False
+) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    rows = INDENT if indents else (*FRICTION, *CONTACT, *STRESS)
+    rows = INDENT if indents else BEARING if bears else (*FRICTION, *CONTACT, *STRESS)
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

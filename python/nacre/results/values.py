@@ -79,7 +79,16 @@ are still read, and older studies found again. Versions that do not know them re
 name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
-ELSEWHERE = {"IndentSolution": "nacre.indent", "Fit": "nacre.indent", "Roughness": "nacre.rough"}
+ELSEWHERE = {
+    "IndentSolution": "nacre.indent",
+    "Fit": "nacre.indent",
+    "Roughness": "nacre.rough",
+    "BearingSolution": "nacre.bearing",
+    "BearingLife": "nacre.bearing",
+    "BearingReport": "nacre.bearing",
+    "StressVolume": "nacre.bearing",
+    "LifeRatio": "nacre.bearing",
+}
 """Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""

@@ -21,14 +21,14 @@ from nacre._tools.progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
 from nacre.results.outputs import (
-    INDENTED,
-    OUTPUTS,
     STRESSES,
+    USUAL,
     Output,
+    Room,
     check_direction,
     evaluated,
-    indented,
     named,
+    plain,
     rolls,
 )
 from nacre.studies.dataset import assembled, counted, laid_out
@@ -48,6 +48,11 @@ ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
 INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
 """Arguments of `nacre.indent.solve`."""
+BEARING = frozenset(
+    "bearing force displacement moment tilt rotation speed model cells tolerance max_iterations "
+    "threads".split()
+)
+"""Arguments of the solve of a bearing, and the bearing."""
 
 
 def sweep(
@@ -74,7 +79,8 @@ def sweep(
         dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
         arguments, some of which the parameters replace. Arguments of `nacre.slide` or `nacre.roll`
         make contacts with friction; of a history, the last step counts. Arguments of
-        `nacre.indent.solve`, with a tip, make indentations.
+        `nacre.indent.solve`, with a tip, make indentations; a ``bearing`` of `nacre.bearing` and
+        the keywords of its ``solve`` make bearings.
     parameters : mapping
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
@@ -91,7 +97,9 @@ def sweep(
         ``"force"``, ``"torque"``, ``"shift"``, ``"twist"``, ``"creepage"``, ``"dissipated"``.
         Outputs of an indentation are numbers of `nacre.indent.IndentSolution`, by default load,
         approach, radius, stiffness and central pressure; ``"pull_off_load"`` is NaN without
-        adhesion.
+        adhesion. Outputs of a bearing are numbers of `nacre.bearing.BearingSolution`, by default
+        displacement, tilt, largest load, peak and edge pressure; ``"reference_life"`` is that of
+        ISO/TS 16281.
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
         ``direction``, ``residual``, ``refine``.
@@ -160,9 +168,9 @@ def sweep(
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
     _check_store(path)
     coordinates, points = laid_out(parameters)
-    indents = _indents(case, points) if outputs is None or isinstance(case, Mapping) else None
-    usual = [name for name in (INDENTED if indents else OUTPUTS) if name not in parameters]
-    wanted = named(usual if outputs is None else outputs, indents)
+    room = _room(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in USUAL[room or "contact"] if name not in parameters]
+    wanted = named(usual if outputs is None else outputs, room)
     if taken := set(wanted) & set(parameters):
         raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
@@ -246,6 +254,13 @@ def _describe(
                 f"got {sorted(unknown)}"
             )
         return arguments, None
+    if "bearing" in arguments:
+        if unknown := set(arguments) - BEARING:
+            raise TypeError(
+                f"case must give keywords of the solve of a bearing beside it, "
+                f"got {sorted(unknown)}"
+            )
+        return {"threads": 1, **arguments}, None
     unknown = set(arguments) - ARGUMENTS
     frictionless = unknown and not {"friction", "steps"} & unknown
     if frictionless or (unknown - SLIDE and unknown - ROLL):
@@ -273,14 +288,17 @@ def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _indents(case: Case, points: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether the cases of a study are indentations, as the first one that is a case."""
+def _room(case: Case, points: Sequence[Mapping[str, Any]]) -> Room:
+    """Return what the cases of a study are, as the first one that is a case."""
+    found: set[str] = set()
     if isinstance(case, Mapping):
-        return "tip" in case or any("tip" in point for point in points[:1])
-    for point in points:
-        with suppress(ValueError, ArithmeticError):
-            return "tip" in _arguments(case, point)
-    return False
+        found = {*case}.union(*points[:1])
+    else:
+        for point in points:
+            with suppress(ValueError, ArithmeticError):
+                found = {*_arguments(case, point)}
+                break
+    return "indent" if "tip" in found else "bearing" if "bearing" in found else "contact"
 
 
 def _said(point: Mapping[str, Any]) -> dict[str, Any]:
@@ -364,7 +382,13 @@ def _solve(
 
             found = indentation.solve(**arguments)
             told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
-            return {"values": indented(found, outputs), "indents": True} | told
+            return {"values": plain(found, outputs), "indents": True} | told
+        if "bearing" in arguments:
+            made = {**arguments}
+            solved = made.pop("bearing").solve(**made)
+            said = list(solved.report.warnings)
+            told = {"warnings": said, "kinds": ["bearing"] * len(said)}
+            return {"values": plain(solved, outputs), "bears": True} | told
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []

@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import symbol, system
 from nacre.results import quantities
-from nacre.results.outputs import AXES, ERROR, Output, errors
+from nacre.results.outputs import AXES, ERROR, RING_AXES, Output, errors
 from nacre.studies.journal import Record
 
 if TYPE_CHECKING:
@@ -71,9 +71,11 @@ def assembled(
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
-        kind: any(record.get(kind) for record in records) for kind in ("line", "rolls", "indents")
+        kind: any(record.get(kind) for record in records)
+        for kind in ("line", "rolls", "indents", "bears")
     }
     units = quantities.units(**kinds)
+    axes = RING_AXES if kinds["bears"] else AXES
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
         found = [a.shape for a in arrays if a is not None]
@@ -85,8 +87,8 @@ def assembled(
             if array is not None:
                 place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
                 data[place] = array
-        extra_dims = ("axis",) if output in AXES else tuple(f"{name}_{k}" for k in range(rank))
-        if output in AXES:
+        extra_dims = ("axis",) if output in axes else tuple(f"{name}_{k}" for k in range(rank))
+        if output in axes:
             dataset = dataset.assign_coords(axis=["x", "y"])
             if rank == 0:  # every case failed
                 data = np.full((len(records), 2), np.nan)
@@ -95,7 +97,9 @@ def assembled(
         if isinstance(output, str) and output in units:
             dataset[name].attrs["units"] = symbol(units[output])
     taken = {*outputs, *map(str, dataset.coords)}
-    for name, quantity in ({} if kinds["indents"] else errors(outputs, taken)).items():
+    for name, quantity in (
+        {} if kinds["indents"] or kinds["bears"] else errors(outputs, taken)
+    ).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
@@ -106,7 +110,7 @@ def assembled(
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
     dataset.attrs = {
-        "title": "study of coated contacts",
+        "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",
         "unit_system": system().name,
     }

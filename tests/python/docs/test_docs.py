@@ -11,6 +11,7 @@ from typing import NamedTuple
 import pytest
 
 import nacre
+import nacre.bearing
 import nacre.design
 import nacre.plot
 import nacre.rough
@@ -18,8 +19,8 @@ from support import ROOT, command, printed, python
 
 DOCS = ROOT / "docs"
 MODULES = (
-    *(nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot, nacre.rough),
-    nacre.types,
+    *(nacre.bearing, nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot),
+    *(nacre.rough, nacre.types),
 )
 PAGES = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md")), *sorted(DOCS.glob("limits/*.md"))]
 FENCE = re.compile(
@@ -85,6 +86,7 @@ def test_what_a_page_prints_is_what_it_says(page: Path, tmp_path: Path) -> None:
     ("page", "files"),
     [
         ("start.md", {"roller.nc", "roller.png", "rollers.nc"}),
+        ("howto/bearing.md", {"bearing.nc", "bearing.png", "tilts.nc"}),
         ("howto/indentation.md", {"film.nc", "film.csv", "films.nc"}),
     ],
 )

@@ -3,6 +3,7 @@
 import ast
 import dataclasses
 import doctest
+import importlib
 import inspect
 import itertools
 import re
@@ -15,6 +16,7 @@ import pytest
 
 import nacre
 import nacre._tools.units
+import nacre.bearing
 import nacre.design
 import nacre.plot.rough
 import nacre.plot.sections
@@ -134,8 +136,13 @@ def test_its_examples_are_true(name: str) -> None:
         nacre._tools.units,
         nacre.design,
         nacre.rough,
+        importlib.import_module("nacre.plot.bearing"),  # whose name is a function, too
         nacre.plot.rough,
         nacre.plot.sections,
+        nacre.bearing.bearings,
+        nacre.bearing.iso,
+        nacre.bearing.life,
+        nacre.bearing.solution,
         nacre.indent.curves,
         nacre.indent.checks,
     ],

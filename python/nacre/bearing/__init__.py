@@ -1,0 +1,38 @@
+"""Bearings: from their contacts to load, stiffness, edge pressure and life.
+
+A bearing is described by what a catalogue or a drawing says of it. `CylindricalRoller.solve` and
+its like find loads, tilts and pressures of all elements under forces, displacements, moments and
+tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281.
+"""
+
+from nacre.bearing.bearings import AngularContactBall, CylindricalRoller, DeepGrooveBall
+from nacre.bearing.iso import edge_factors, load_integrals, rating
+from nacre.bearing.life import (
+    IoannidesHarris,
+    LifeRatio,
+    LundbergPalmgren,
+    StressVolume,
+    Zaretsky,
+    life_ratio,
+    stress_volume,
+)
+from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
+
+__all__ = [
+    "AngularContactBall",
+    "BearingLife",
+    "BearingReport",
+    "BearingSolution",
+    "CylindricalRoller",
+    "DeepGrooveBall",
+    "IoannidesHarris",
+    "LifeRatio",
+    "LundbergPalmgren",
+    "StressVolume",
+    "Zaretsky",
+    "edge_factors",
+    "life_ratio",
+    "load_integrals",
+    "rating",
+    "stress_volume",
+]

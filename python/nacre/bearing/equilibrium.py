@@ -1,0 +1,329 @@
+"""Equilibrium of the inner ring and of all elements: Newton's method on a convex energy.
+
+The unknowns are the free displacements q of the ring and, for each element, its own position z. The
+positions are eliminated element by element, so that a step solves at most five equations. Derived
+here; for rollers the kinematics are those of ISO/TS 16281, equations 38 to 41.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre.bearing.laws import Law, Reaction
+
+Array = npt.NDArray[np.float64]
+
+FLAT = 1e-11
+"""Stiffness that is added to that of a free position, relative to the stiffest element's.
+
+It is some 1e5 roundings: what rests in a flat direction stays, and the steps in all others are
+exact to 1e-11 of the stiffest.
+"""
+FARTHEST, FARTHER = 2.0, 4.0
+"""Largest step over the largest approach of a contact, as the energy is not quadratic beyond; and
+the factor by which it grows where a step of this length lowers the energy.
+"""
+HALVINGS = 30
+"""Largest number of times that a step is halved: 1e-9 of it is left."""
+ROUNDING = 1e-14
+"""Approach over the pitch diameter that is rounding: some 50 units in the last place."""
+SLACK = 1e-8
+"""Rounding of the energy, relative, which contacts of a tolerance of 1e-9 have."""
+
+
+class Places(NamedTuple):
+    """Coordinates of all contacts, and their derivatives by ``(t, z)`` of the element."""
+
+    places: Array
+    """Approach and slope ``(Z, 2, 2)``."""
+    jacobian: Array
+    """Derivatives ``(Z, 2, 2, 4)``."""
+    curvature: Array
+    """Second derivatives of the approaches ``(Z, 2, 4, 4)``."""
+
+
+class Rollers:
+    """Rollers between raceways. ``t = (u, ψ)`` of the ring and ``z = (v, w)`` of the roller."""
+
+    def __init__(self, bearing: Any, angles: Array) -> None:
+        cos, sin = np.cos(angles), np.sin(angles)
+        zero = np.zeros_like(angles)
+        self.motion = np.stack(
+            [
+                np.stack([cos, sin, zero, zero, zero], axis=-1),
+                np.stack([zero, zero, zero, -sin, cos], axis=-1),
+            ],
+            axis=1,
+        )
+        self.play, self.count, self.size = bearing.play, len(angles), bearing.pitch
+        self.lengths = np.array([1.0, bearing.length / math.sqrt(12)])
+        """A slope times this length moves a lamina as far, in the mean of squares."""
+        self.arm = bearing.length
+        self.jacobian = np.zeros((self.count, 2, 2, 4))
+        self.jacobian[:, 0, 0] = [1, 0, -1, 0]
+        self.jacobian[:, 0, 1] = [0, 1, 0, -1]
+        self.jacobian[:, 1, 0] = [0, 0, 1, 0]
+        self.jacobian[:, 1, 1] = [0, 0, 0, 1]
+        self.curvature = np.zeros((self.count, 2, 4, 4))
+
+    def neutral(self, moved: Array, pressed: float) -> Array:
+        """Return positions of elements midway, or on the outer ring to which they are pressed."""
+        middle: Array = moved / 2
+        if pressed > 0:
+            middle[:, 0] = np.maximum(middle[:, 0], self.play / 4 + pressed)
+        return middle
+
+    def places(self, moved: Array, own: Array) -> Places:
+        """Return the coordinates of all contacts."""
+        found = np.stack([moved - own, own], axis=1)
+        found[..., 0] -= self.play / 4
+        return Places(found, self.jacobian, self.curvature)
+
+
+class Balls:
+    """Balls in grooves. ``t`` is the shift of the inner groove's centre, z the ball's position.
+
+    Both are (radial, axial), and z counts from the centre of the outer groove.
+    """
+
+    def __init__(self, bearing: Any, angles: Array) -> None:
+        cos, sin = np.cos(angles), np.sin(angles)
+        zero = np.zeros_like(angles)
+        groove = [(f - 0.5) * bearing.diameter for f in bearing.osculation]
+        free = bearing.free_angle
+        self.arm = bearing.pitch / 2 + groove[0] * math.cos(free)
+        self.motion = np.stack(
+            [
+                np.stack([cos, sin, zero, zero, zero], axis=-1),
+                np.stack([zero, zero, zero + 1, self.arm * sin, -self.arm * cos], axis=-1),
+            ],
+            axis=1,
+        )
+        between, self.size = bearing.between, bearing.pitch
+        if bearing.nominal_angle:
+            start = (between * math.cos(free), between * math.sin(free))
+        else:
+            start = (between - bearing.play / 2, 0.0)
+        self.start, self.groove = np.array(start), np.array(groove)
+        self.lengths = np.array([1.0, 1.0])
+
+    def neutral(self, moved: Array, pressed: float) -> Array:
+        """Return positions of balls midway, or on the outer ring to which they are pressed."""
+        away = self.start + moved
+        distance = np.linalg.norm(away, axis=1, keepdims=True)
+        share = self.groove[1] / self.groove.sum()
+        middle: Array = away * share
+        if pressed > 0:
+            outward = np.maximum(share * distance, self.groove[1] + pressed) / distance
+            middle = away * outward
+        return middle
+
+    def places(self, moved: Array, own: Array) -> Places:
+        """Return the coordinates of all contacts."""
+        arms = np.stack([self.start + moved - own, own], axis=1)
+        distance = np.linalg.norm(arms, axis=2)
+        unit = arms / distance[..., None]
+        places = np.zeros((len(own), 2, 2))
+        places[..., 0] = distance - self.groove
+        jacobian = np.zeros((len(own), 2, 2, 4))
+        jacobian[:, 0, 0, :2], jacobian[:, 0, 0, 2:] = unit[:, 0], -unit[:, 0]
+        jacobian[:, 1, 0, 2:] = unit[:, 1]
+        bend = (np.eye(2) - unit[..., None] * unit[..., None, :]) / distance[..., None, None]
+        curvature = np.zeros((len(own), 2, 4, 4))
+        signs = np.array([[1, -1], [-1, 1]])
+        curvature[:, 0] = np.einsum("ab,zij->zaibj", signs, bend[:, 0]).reshape(-1, 4, 4)
+        curvature[:, 1, 2:, 2:] = bend[:, 1]
+        return Places(places, jacobian, curvature)
+
+    def angles(self, moved: Array, own: Array) -> Array:
+        """Return the contact angles ``(Z, 2)`` [rad]."""
+        arms = np.stack([self.start + moved - own, own], axis=1)
+        return np.arctan2(arms[..., 1], arms[..., 0])
+
+
+Kinematics = Rollers | Balls
+
+
+@dataclass
+class State:
+    """Displacements, positions and reactions, with the gradient of the energy and its tangent."""
+
+    ring: Array
+    own: Array
+    places: Array
+    reaction: Reaction
+    energy: float
+    wanting: Array
+    """Forces and moments that the ring wants from outside, less those that it has ``(5,)``."""
+    slack: Array
+    """Gradients of the energy by the positions of the elements ``(Z, 2)``."""
+    tangent: Array
+    """Stiffness ``(5, 5)`` with the elements in equilibrium."""
+    condensed: Array = field(repr=False)
+    """Gradient ``(5,)`` with the elements moved into equilibrium."""
+    back: tuple[Array, Array] = field(repr=False)
+    """Steps of the elements ``(Z, 2)``, and their change by the ring's ``(Z, 2, 5)``."""
+    balance: float = math.inf
+    """Largest mismatch, relative."""
+
+
+@dataclass
+class Problem:
+    """What is asked of the ring: loads along free directions, displacements along the others."""
+
+    kinematics: Kinematics
+    law: Law
+    loads: Array
+    """Forces and moments ``(5,)``, those of directions that are not free 0."""
+    free: npt.NDArray[np.bool_]
+    centrifugal: float
+    """Force on each element [N]."""
+
+    def state(self, ring: Array, own: Array) -> State:
+        """Return what holds at a displacement and positions."""
+        kinematics = self.kinematics
+        moved = kinematics.motion @ ring
+        found = kinematics.places(moved, own)
+        reaction = self.law(found.places)
+        gradient = np.einsum("zrak,zra->zk", found.jacobian, reaction.force)
+        gradient[:, 2] -= self.centrifugal
+        hessian = np.einsum(
+            "zrak,zrab,zrbl->zkl", found.jacobian, reaction.stiffness, found.jacobian
+        )
+        hessian += np.einsum("zr,zrkl->zkl", reaction.force[..., 0], found.curvature)
+        scale = np.trace(hessian[:, 2:, 2:], axis1=1, axis2=2).max(initial=0.0) or 1.0
+        inner = hessian[:, 2:, 2:] + FLAT * scale * np.diag(kinematics.lengths**2)
+        inverse = np.linalg.inv(inner)
+        cross = hessian[:, :2, 2:] @ inverse
+        tangent = hessian[:, :2, :2] - cross @ hessian[:, 2:, :2]
+        pull = gradient[:, :2] - np.einsum("zab,zb->za", cross, gradient[:, 2:])
+        motion = kinematics.motion
+        wanting = np.einsum("zak,za->k", motion, gradient[:, :2]) - self.loads
+        step = -np.einsum("zab,zb->za", inverse, gradient[:, 2:])
+        follow = -inverse @ hessian[:, 2:, :2] @ motion
+        energy = float(reaction.energy.sum() - self.loads @ ring)
+        energy -= self.centrifugal * float(own[:, 0].sum())
+        state = State(
+            ring, own, found.places, reaction, energy, wanting, gradient[:, 2:],
+            np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
+            np.einsum("zak,za->k", motion, pull) - self.loads,
+            (step, follow),
+        )  # fmt: skip
+        state.balance = self.mismatch(state)
+        return state
+
+    def mismatch(self, state: State) -> float:
+        """Return the largest mismatch of forces and moments, relative to those that act."""
+        force: float = max(
+            float(np.abs(state.reaction.force[..., 0]).sum()) / 2,
+            float(np.linalg.norm(self.loads[:3])),
+            float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
+        )
+        pressed = float(state.places[..., 0].max()) > ROUNDING * self.kinematics.size
+        if force == 0.0 or not (pressed or self.loads.any() or self.centrifugal):
+            return 0.0
+        arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
+        ring = np.abs(state.wanting / arm)[self.free]
+        own = np.abs(state.slack / self.kinematics.lengths)
+        return max(float(ring.max(initial=0.0)), float(own.max(initial=0.0))) / force
+
+    def start(self, given: Array, pressed: float) -> tuple[Array, Array]:
+        """Return a first guess: where the energy is least along the direction of the loads."""
+        arm = np.array([1, 1, 1, 1 / self.kinematics.arm, 1 / self.kinematics.arm])
+        along = np.where(self.free, self.loads * arm**2, 0.0)
+        size = float(np.linalg.norm(along / arm))
+        ring = given.copy()
+        if size > 0:
+            along = along / size
+
+            def slope(way: float) -> float:
+                at = given + way * along
+                own = self.kinematics.neutral(self.kinematics.motion @ at, pressed)
+                return float(self.state(at, own).wanting @ along)
+
+            way = 1e-7
+            while slope(way) < 0 and way < 1.0:
+                way *= 2
+            low = 0.0
+            for _ in range(20):
+                middle = (low + way) / 2
+                low, way = (middle, way) if slope(middle) < 0 else (low, middle)
+            ring = given + way * along
+        return ring, self.kinematics.neutral(self.kinematics.motion @ ring, pressed)
+
+    def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
+        """Return Newton's step of the ring and of the elements, and whether it was shortened.
+
+        It goes no farther than `reach` times the largest approach of a contact.
+        """
+        free, kinematics = self.free, self.kinematics
+        ring = np.zeros(5)
+        if free.any():
+            arm = np.array([1, 1, 1, kinematics.arm, kinematics.arm])[free]
+            tangent = state.tangent[np.ix_(free, free)] / np.outer(arm, arm)
+            scale = np.trace(tangent) or 1.0
+            tangent = tangent + FLAT * scale * np.eye(len(arm))
+            ring[free] = np.linalg.solve(tangent, -state.condensed[free] / arm) / arm
+        step, follow = state.back
+        own = step + follow @ ring
+        moved = kinematics.motion @ ring
+        farthest = reach * max(float(state.places[..., 0].max()), 0.0)
+        largest = max(
+            float((np.abs(moved) * kinematics.lengths).max()),
+            float((np.abs(own) * kinematics.lengths).max()),
+        )
+        shorter = largest > farthest > 0
+        if shorter:
+            ring, own = ring * (farthest / largest), own * (farthest / largest)
+        return ring, own, shorter
+
+    def rested(self, state: State, ring: Array) -> Array:
+        """Return the positions of elements; what carries nothing is midway at the next place."""
+        if self.centrifugal > 0:
+            return state.own
+        idle = np.logical_not((state.reaction.force[..., 0] > 0).any(axis=1))
+        neutral = self.kinematics.neutral(self.kinematics.motion @ ring, 0.0)
+        return np.where(np.asarray(idle)[:, None], neutral, state.own)
+
+    def solve(
+        self,
+        ring: Array,
+        own: Array,
+        tolerance: float,
+        max_iterations: int,
+        tell: Callable[[int, float], object] | None,
+    ) -> tuple[State, int, str]:
+        """Return the equilibrium, the number of steps, and how the iteration ended."""
+        state, reach = self.state(ring, own), FARTHEST
+        for done in range(max_iterations + 1):
+            if tell is not None and tell(done, state.balance) is False:
+                return state, done, "stopped"
+            if state.balance <= tolerance:
+                return state, done, "converged"
+            if done == max_iterations:
+                break
+            ring_step, own_step, shorter = self.step(state, reach)
+            share = 1.0
+            for _ in range(HALVINGS):
+                moved = state.ring + share * ring_step
+                tried = self.state(moved, self.rested(state, moved) + share * own_step)
+                rounding = SLACK * float(np.abs(tried.reaction.energy).sum())
+                if tried.energy <= state.energy or (
+                    tried.energy <= state.energy + rounding and tried.balance < state.balance
+                ):
+                    break
+                share /= 2
+            else:
+                break  # nothing lowers the energy any more: rounding is reached
+            if share < 1:
+                reach = max(FARTHEST, share * reach)
+            elif shorter:
+                reach *= FARTHER
+            state = tried
+        return state, done, "iteration limit"

@@ -1,0 +1,265 @@
+"""Contacts of elements and rings: energy, force and stiffness over approach and tilt.
+
+A contact of element j has the coordinates ``(δ, s)``: the approach of the middle of the element
+to the raceway, and the slope along its axis. Its potential energy is convex in both; the
+derivatives of the energy are the force W and its first moment M about the middle, and those of
+these the stiffness.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre.bearing.geometry import RINGS, Bearing, Ring, laminae_of
+from nacre.contact import Contact
+from nacre.contact.solution import Solution
+from nacre.hertz import Ellipse
+
+Array = npt.NDArray[np.float64]
+
+LAMINAE = 40
+"""Laminae of a roller: ISO/TS 16281 asks for 30 at least."""
+SPRING = 35948.0
+"""Spring constant c_L of ISO/TS 16281, of both contacts of a steel roller [N/mm^(10/9)], over
+L_we^(8/9)."""
+LINE = 10 / 9
+"""Exponent of the deflection in the load of a lamina, ISO/TS 16281."""
+STANDARD = 210e9 / (2 * (1 - 0.3**2))
+"""Contact modulus of the steel of the standard [Pa]."""
+WIDER = 1.5
+"""Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
+STEPS = 4
+"""Steps of the width of a grid between a width and twice of it."""
+NARROWEST = 3
+"""Largest number of times that a grid is halved for lighter contacts."""
+
+
+class Reaction(NamedTuple):
+    """Energy, force and stiffness of the contacts of all elements with both rings."""
+
+    energy: Array
+    """Potential energies ``(Z, 2)`` [J]."""
+    force: Array
+    """Forces and moments ``(Z, 2, 2)`` [N, N m]."""
+    stiffness: Array
+    """Their derivatives ``(Z, 2, 2, 2)`` with respect to approach and slope."""
+    contacts: Mapping[tuple[int, int], Solution] = MappingProxyType({})
+    """Contacts that were solved, by element and ring."""
+
+
+Law = Callable[[Array], Reaction]
+
+
+class Slices:
+    """Laminae of a roller after ISO/TS 16281, each contact on its own.
+
+    A lamina carries ``q = c_s δ^(10/9)`` where both contacts together approach by δ, so that one of
+    two equal ones has the factor ``2^(10/9)``; and the standard's ``2 P(x)`` is a drop at each.
+    """
+
+    def __init__(self, bearing: Any, *, standard: bool = True) -> None:
+        """Take the standard's steel, or the moduli of the substrates for a first guess."""
+        self.x = laminae_of(bearing.length, LAMINAE)
+        self.drop = np.stack([bearing.drop(ring, LAMINAE) for ring in RINGS])
+        both = SPRING * (bearing.length * 1e3) ** (8 / 9) * 1e3**LINE / LAMINAE
+        moduli = (STANDARD, STANDARD) if standard else bearing.modulus
+        self.spring = 2**LINE * both * np.array(moduli)[:, None] / STANDARD
+
+    def deflections(self, places: Array) -> Array:
+        """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
+        found: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
+        return found
+
+    def loads(self, places: Array) -> Array:
+        """Return the loads of the laminae ``(Z, 2, laminae)`` [N]."""
+        loads: Array = self.spring * self.deflections(places) ** LINE
+        return loads
+
+    def __call__(self, places: Array) -> Reaction:
+        """Return the reaction of all contacts."""
+        deflection = self.deflections(places)
+        loads = self.spring * deflection**LINE
+        slopes = np.where(deflection > 0, LINE * self.spring * deflection ** (LINE - 1), 0.0)
+        arms = np.stack([np.ones_like(self.x), self.x])
+        return Reaction(
+            (self.spring * deflection ** (LINE + 1)).sum(-1) / (LINE + 1),
+            np.einsum("zrk,ak->zra", loads, arms),
+            np.einsum("zrk,ak,bk->zrab", slopes, arms, arms),
+        )
+
+
+class Hertzian:
+    """Hertz's ellipses of balls in grooves, of the substrates."""
+
+    def __init__(self, bearing: Any) -> None:
+        self.unit = [
+            Ellipse(bearing.diameter / 2, bearing.diameter / 2, modulus, 1.0, *radii)
+            for modulus, radii in zip(bearing.modulus, bearing.radii, strict=True)
+        ]
+        self.spring = np.array([one.approach**-1.5 for one in self.unit])
+
+    def pressures(self, loads: Array) -> Array:
+        """Return the peak pressures under loads ``(Z, 2)`` [Pa]."""
+        return np.array([one.peak_pressure for one in self.unit]) * np.cbrt(loads)
+
+    def __call__(self, places: Array) -> Reaction:
+        """Return the reaction of all contacts."""
+        deflection = np.maximum(places[..., 0], 0.0)
+        force, stiffness = np.zeros(places.shape), np.zeros((*places.shape, 2))
+        force[..., 0] = self.spring * deflection**1.5
+        stiffness[..., 0, 0] = 1.5 * self.spring * deflection**0.5
+        return Reaction(0.4 * self.spring * deflection**2.5, force, stiffness)
+
+
+def grid_of(bearing: Any, ring: Ring, line: float, cells: tuple[int, int]) -> core.Grid:
+    """Return a grid for a contact that carries a load.
+
+    That of a roller spans its length. `line` is the largest load per length [N/m] of a roller, and
+    the load of a ball [N].
+    """
+    number = RINGS.index(ring)
+    if bearing.rolls:
+        curvature = 2 / bearing.diameter + (1, -1)[number] / bearing.raceways[number]
+        half = math.sqrt(4 * line / (math.pi * bearing.modulus[number] * curvature))
+        return core.Grid(cells, (bearing.length, 2 * WIDER * half))
+    along, rolling = bearing.radii[number]
+    radius = bearing.diameter / 2
+    ellipse = Ellipse(radius, radius, bearing.modulus[number], line, along, rolling)
+    a, b = ellipse.semi_axes
+    return core.Grid(cells, (2 * WIDER * a, 2 * WIDER * b))
+
+
+def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
+    """Return the bodies of a contact: ring and element, whose ends are free where they are so."""
+    element = bearing.element
+    if bearing.rolls and bearing.free_ends:
+        layers = element.layers if isinstance(element, core.HalfSpace) else ()
+        half = bearing.length / 2
+        base = element.substrate if isinstance(element, core.HalfSpace) else element
+        element = core.HalfSpace(base, layers, ends=(-half, half))
+    return getattr(bearing, ring), element
+
+
+class Solved:
+    """Contacts that nacre solves, with warm starts; one plan for contacts of similar width."""
+
+    def __init__(
+        self,
+        bearing: Any,
+        lines: Array,
+        cells: tuple[int, int],
+        tolerance: float,
+        threads: int | None,
+    ) -> None:
+        """Plan for the expected loads ``(Z, 2)`` of `grid_of`."""
+        self.bearing, self.tolerance = bearing, tolerance
+        self.shapes = [bearing.shape(ring) for ring in RINGS]
+        reach = bearing.length / 2 if bearing.rolls else 0.0
+        self.reach = reach
+        self.plans: dict[tuple[int, int], Contact] = {}
+        self.kept: dict[tuple[int, int], Solution] = {}
+        power = 2 if bearing.rolls else 3  # of the width, in the load
+        # Widths in steps, so that a small change of the loads does not change the cells.
+        steps = math.ceil(STEPS * math.log2(float(lines.max())) / power)
+        heaviest = 2.0 ** (steps * power / STEPS)
+        with np.errstate(divide="ignore"):
+            halved = np.floor(np.log2(heaviest / np.maximum(lines, 1e-300)) / power)
+        self.halved = np.clip(halved, 0, NARROWEST).astype(int)
+        self.heaviest, self.power, self.cells = heaviest, power, cells
+        self.workers = threads or core.Convolution([[1.0]], None).threads()
+
+    def _plan(self, element: int, ring: int) -> Contact:
+        """Return the plan for a contact."""
+        key = ring, int(self.halved[element, ring])
+        if key not in self.plans:
+            line = self.heaviest * 2.0 ** (-self.power * key[1])
+            grid = grid_of(self.bearing, RINGS[ring], line, self.cells)
+            body, counterbody = bodies_of(self.bearing, RINGS[ring])
+            self.plans[key] = Contact(body, grid, counterbody, threads=1)
+        return self.plans[key]
+
+    def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
+        """Return a contact and its stiffness, of which a warning says nothing yet."""
+        initial = self.kept.get((element, ring))
+        while True:
+            plan = self._plan(element, ring)
+            solution = plan.solve(
+                self.shapes[ring],
+                approach=float(place[0]),
+                tilt=(float(place[1]), None),
+                tolerance=self.tolerance,
+                initial=initial,
+            )
+            halved = self.halved[element, ring]
+            if self._within(solution):
+                return solution, solution.stiffness()
+            if halved > 0:
+                self.halved[element, ring] -= 1
+            else:
+                self._widen()
+            initial = None
+
+    def _within(self, solution: Solution) -> bool:
+        """Return whether a contact ends within its grid, but for the ends of a roller."""
+        inside = solution.in_contact
+        across = inside[:, 0].any() or inside[:, -1].any()
+        along = not self.bearing.rolls and (inside[0].any() or inside[-1].any())
+        return not (across or along)
+
+    def _widen(self) -> None:
+        """Make the widest grids twice as wide; the others keep theirs."""
+        self.heaviest *= 2.0**self.power
+        self.halved = self.halved + 1
+        shifted = {(ring, halved + 1): plan for (ring, halved), plan in self.plans.items()}
+        self.plans = shifted
+
+    def __call__(self, places: Array) -> Reaction:
+        """Return the reaction of all contacts."""
+        count = places.shape[0]
+        energy = np.zeros((count, 2))
+        force, stiffness = np.zeros((count, 2, 2)), np.zeros((count, 2, 2, 2))
+        touching = places[..., 0] + np.abs(places[..., 1]) * self.reach > 0
+        tasks = [(int(j), int(r)) for j, r in np.argwhere(touching)]
+        for element, ring in tasks:  # plans are made one at a time
+            self._plan(element, ring)
+        kept: dict[tuple[int, int], Solution] = {}
+        pool = ThreadPoolExecutor(self.workers)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", core.NacreWarning)
+                futures = [pool.submit(self._solve, j, r, places[j, r]) for j, r in tasks]
+                for (j, r), future in zip(tasks, futures, strict=True):
+                    solution, tangent = future.result()
+                    kept[j, r] = solution
+                    energy[j, r] = solution.elastic_energy
+                    force[j, r] = solution.load, solution.moment[0]
+                    stiffness[j, r] = tangent[:2, :2]
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
+        if not self.bearing.rolls:  # a ball has no moment along its axis
+            force[..., 1] = 0.0
+            stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
+        self.kept = kept
+        return Reaction(energy, force, stiffness, kept)
+
+    def sizes(self) -> Array:
+        """Return the sides of the grids ``(Z, 2, 2)`` [m]."""
+        pairs = np.ndindex(self.halved.shape)
+        sizes = [self._plan(element, ring).grid.size for element, ring in pairs]
+        return np.array(sizes).reshape(-1, 2, 2)
+
+
+def law(bearing: Bearing, model: str) -> Law:
+    """Return the contacts of the standard, or those for a first guess of solved ones."""
+    if bearing.rolls:
+        return Slices(bearing, standard=model == "iso16281")
+    return Hertzian(bearing)

@@ -1,0 +1,596 @@
+"""Solved bearings: loads, tilts and pressures of all elements, and how they came about."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.units import printable, symbol, written
+from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
+from nacre.bearing.iso import Edge, edge_factors, pressure_factors, rating, reference_life
+from nacre.bearing.laws import LAMINAE, bodies_of
+from nacre.contact import Contact
+from nacre.contact.solution import Solution
+from nacre.results import display, files
+from nacre.results.base import Result
+from nacre.results.listed import Listed, Tabular
+from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
+from nacre.results.values import encode, refusing
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+Model = Literal["solved", "iso16281"]
+
+SLIGHT = 1e-8
+"""Share of loads and approaches below which a number is printed as 0."""
+EDGE = 0.1
+"""Share of the length at either end of a roller in which the edge pressure is looked for."""
+ARRAYS = (
+    "angles",
+    "approaches",
+    "tilts",
+    "loads",
+    "moments",
+    "peak_pressures",
+    "edge_pressures",
+    "contact_angles",
+    "lamina_loads",
+    "lamina_pressures",
+    "grid_sizes",
+    "tangent",
+)
+"""Arrays in the state of a solution."""
+VECTORS = ("displacement", "tilt", "force", "moment")
+"""Numbers of the ring in the state of a solution."""
+EDGES = {
+    "standard": "edge factors of ISO/TS 16281, eq. 60",
+    "pressure": "edge factors from the solved pressure, eqs 58 and 59",
+    None: "without edge factors",
+}
+"""Words for the factors of a life."""
+
+
+@dataclass(frozen=True, repr=False)
+class BearingReport(Result):
+    """Report of a solved bearing: how it came about.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    >>> report = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").report
+    >>> report.converged, report.balance < 1e-9
+    (True, True)
+    """
+
+    termination: Literal["converged", "iteration limit", "stopped"]
+    """End of the iteration."""
+    iterations: int
+    """Newton steps of the ring with solved contacts, or with those of the standard."""
+    balance: float
+    """Largest mismatch of forces and moments of ring and elements, relative."""
+    warnings: tuple[str, ...]
+    """Warnings; each was also issued as a `nacre.NacreWarning`."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.termination == "converged"
+
+    def __repr__(self) -> str:
+        """Return how the iteration ended."""
+        return (
+            f"<BearingReport: {self.termination} after {self.iterations} steps, "
+            f"balance {self.balance:.1e}; {len(self.warnings)} warnings>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class BearingLife(Listed):
+    """Reference rating life of ISO/TS 16281: a model, at 90 % reliability.
+
+    Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the
+    life is that of bare ones under the same loads, or pressures.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(
+    ...     count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, capacity=23.4e3
+    ... )
+    >>> life = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").life()
+    >>> 13e3 < life.revolutions < 13.3e3
+    True
+    """
+
+    _QUANTITIES = BEARING_LIFE
+    _TITLE = "reference rating life of a bearing"
+
+    revolutions: float
+    """Life L_10r in millions of revolutions; infinite without load."""
+    equivalent_load: float
+    """Dynamic equivalent reference load [N]."""
+    capacity: float
+    """Dynamic load rating C_r of the bearing [N]."""
+    ring_capacities: tuple[float, float]
+    """Ratings of the contact of one element with inner and outer ring [N]."""
+    model: str
+    """Model in words."""
+
+    def _rows(self) -> list[tuple[str, str]]:
+        life = "infinite: no element is loaded"
+        if math.isfinite(self.revolutions):
+            life = f"{self.revolutions:.6g} million revolutions"
+        rows = [(name, value) for name, value in super()._rows() if name != "life"]
+        return [("life L10r", life), *rows, ("model", self.model)]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class BearingSolution(Tabular):
+    """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
+
+    Examples
+    --------
+    >>> from nacre.bearing import CylindricalRoller
+    >>> bearing = CylindricalRoller(
+    ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+    ... )
+    >>> solution = bearing.solve(force=(4450.0, 0.0, None), tilt=(None, 6e-4))
+    >>> solution.loads.shape, solution.report.converged
+    ((14, 2), True)
+    """
+
+    _QUANTITIES = BEARING
+    _TITLE = "bearing"
+
+    bearing: Bearing
+    """Bearing that was solved."""
+    model: Model
+    """Contacts: "solved" by nacre, or "iso16281"."""
+    rotation: float
+    """Angle of element 0 from the x axis [rad]."""
+    speed: float
+    """Angular velocity of the elements about the bearing's axis [rad/s]."""
+    displacement: tuple[float, float, float]
+    """Displacements of the inner ring against the outer one along x, y and z [m]."""
+    tilt: tuple[float, float]
+    """Slopes of the inner ring about x and y."""
+    force: tuple[float, float, float]
+    """Forces on the inner ring [N], which the elements balance."""
+    moment: tuple[float, float]
+    """Moments about x and y on the inner ring [N m]."""
+    angles: Array
+    """Angles of the elements from x ``(Z,)`` [rad]."""
+    approaches: Array
+    """Approaches of the contacts ``(Z, 2)`` [m], below 0 where nothing touches."""
+    tilts: Array
+    """Slopes of the elements to the raceways ``(Z, 2)``, 0 of balls."""
+    loads: Array
+    """Forces of the contacts ``(Z, 2)`` [N]."""
+    moments: Array
+    """First moments of the pressure about the middles of the elements ``(Z, 2)`` [N m]."""
+    peak_pressures: Array
+    """Largest pressures ``(Z, 2)`` [Pa]."""
+    edge_pressures: Array
+    """Largest pressures in the outer tenths of the length of a roller ``(Z, 2)`` [Pa].
+
+    They are NaN of balls.
+    """
+    contact_angles: Array
+    """Contact angles ``(Z, 2)`` [rad]; 0 of cylindrical rollers."""
+    lamina_loads: Array | None
+    """Loads of 40 laminae along each contact ``(Z, 2, 40)`` [N]; None of balls."""
+    lamina_pressures: Array | None
+    """Largest pressure in each lamina ``(Z, 2, 40)`` [Pa]; None of balls."""
+    tangent: Array
+    """Stiffness of the bearing ``(5, 5)``, which `stiffness` returns."""
+    grid_sizes: Array | None
+    """Sides of the grids of the contacts ``(Z, 2, 2)`` [m]; None for the standard's contacts."""
+    cells: tuple[int, int] | None
+    """Cells of each grid; None for the standard's contacts."""
+    report: BearingReport
+    """Report: how the solution came about."""
+    _contacts: dict[tuple[int, int], Solution] = field(default_factory=dict, repr=False)
+    """Contacts that are known, by element and ring."""
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure of all contacts [Pa]."""
+        return float(self.peak_pressures.max())
+
+    @property
+    def edge_pressure(self) -> float:
+        """Largest pressure in the outer tenths of a roller [Pa]; NaN of balls."""
+        return float(self.edge_pressures.max())
+
+    @property
+    def largest_load(self) -> float:
+        """Largest force of a contact [N]."""
+        return float(self.loads.max())
+
+    @property
+    def loaded(self) -> int:
+        """Number of elements that both rings load."""
+        return int((self.loads > 0).all(axis=1).sum())
+
+    @property
+    def reference_life(self) -> float:
+        """Life of ISO/TS 16281 with the standard's edge factors [million revolutions]."""
+        return self.life().revolutions
+
+    def stiffness(self) -> Array:
+        """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
+
+        The elements are in equilibrium with it. It is 0 along directions in which nothing is
+        elastic.
+
+        Returns
+        -------
+        numpy.ndarray
+            Derivatives of ``(F_x, F_y, F_z, M_x, M_y)`` on the inner ring with respect to
+            ``(δ_x, δ_y, δ_z, θ_x, θ_y)``, in N/m, N and N m.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> axial = bearing.solve(force=(0.0, 0.0, 1000.0), model="iso16281").stiffness()
+        >>> bool(np.allclose(axial, axial.T)), bool(axial[2, 2] > 0)
+        (True, True)
+        """
+        return self.tangent.copy()
+
+    def contact(self, element: int, ring: Ring) -> Solution | None:
+        """Contact of an element and a ring, with its pressure, stresses and gradients.
+
+        Parameters
+        ----------
+        element : int
+            Number of the element.
+        ring : {"inner", "outer"}
+            Ring. Its body is the `body` of the contact, and the element the `counterbody`.
+
+        Returns
+        -------
+        Solution or None
+            Contact; None where nothing touches. That of a loaded file is solved again.
+
+        Raises
+        ------
+        ValueError
+            If there is no such element or ring, or the contacts are those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(force=(20.0, 0.0, None))
+        >>> contact = solution.contact(0, "inner")
+        >>> bool(abs(contact.load / solution.loads[0, 0] - 1) < 1e-8)
+        True
+        """
+        if self.model != "solved" or self.grid_sizes is None or self.cells is None:
+            raise ValueError('model must be "solved" for a contact, got "iso16281"')
+        if ring not in RINGS:
+            raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
+        if isinstance(element, bool) or not 0 <= element < self.bearing.count:
+            raise ValueError(f"element must be from 0 to {self.bearing.count - 1}, got {element!r}")
+        number = RINGS.index(ring)
+        if not self.loads[element, number] > 0:
+            return None
+        key = int(element), number
+        if key not in self._contacts:
+            body, counterbody = bodies_of(self.bearing, ring)
+            size = tuple(self.grid_sizes[key].tolist())
+            plan = Contact(body, core.Grid(self.cells, size), counterbody)
+            self._contacts[key] = plan.solve(
+                self.bearing.shape(ring),
+                approach=float(self.approaches[key]),
+                tilt=(float(self.tilts[key]), None),
+                tolerance=1e-10,
+            )
+        return self._contacts[key]
+
+    def edge_factors(self) -> Array:
+        """Solved pressures of laminae over those of Hertz under their loads.
+
+        They are the factors of ISO/TS 16281, equations 58 and 59, with the moduli of the substrates
+        in place of the standard's steel.
+
+        Returns
+        -------
+        numpy.ndarray
+            Factors ``(Z, 2, 40)``; 1 where a lamina has no load.
+
+        Raises
+        ------
+        ValueError
+            If the elements are balls, or the contacts those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import CylindricalRoller
+        >>> bearing = CylindricalRoller(
+        ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+        ... )
+        >>> factors = bearing.solve(force=(4450.0, 0.0, None)).edge_factors()
+        >>> bool(0.95 < factors[0, 0, 20] < 1.05)
+        True
+        """
+        if self.lamina_loads is None or self.lamina_pressures is None:
+            raise ValueError("the elements must be rollers for edge factors, got balls")
+        if self.model != "solved":
+            raise ValueError(
+                'edge must be "standard" or None for contacts of the standard, whose '
+                'pressure is not known, got "pressure"'
+            )
+        return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
+
+    def life(self, edge: Edge = "standard", *, rotating: Ring = "inner") -> BearingLife:
+        """Rate the bearing by ISO/TS 16281: its reference life, in millions of revolutions.
+
+        Parameters
+        ----------
+        edge : {"standard", "pressure"} or None, optional
+            Factors by which the loads of the laminae are multiplied: those of the standard, which
+            hold for its profile, medium loads and tilts below 4'; the solved pressure over that of
+            Hertz; or none. Balls have none.
+        rotating : {"inner", "outer"}, optional
+            Ring that rotates against the load.
+
+        Returns
+        -------
+        BearingLife
+            Life, equivalent load, and the ratings they are made of.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind of factors, or factors from the pressure are asked of contacts
+            that are those of the standard.
+
+        Examples
+        --------
+        >>> from nacre.bearing import CylindricalRoller
+        >>> bearing = CylindricalRoller(
+        ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+        ... )
+        >>> solution = bearing.solve(force=(4450.0, 0.0, None), model="iso16281")
+        >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
+        (4999, 5186)
+        """
+        if edge not in EDGES:
+            raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
+        if rotating not in RINGS:
+            raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
+        words = "ISO/TS 16281, 90 % reliability, a model"
+        loads, factors = self.loads, np.array(1.0)
+        if self.lamina_loads is not None:
+            loads, words = self.lamina_loads, f"{words}; {EDGES[edge]}"
+            if edge == "standard":
+                factors = edge_factors(LAMINAE)
+            elif edge == "pressure":
+                factors = self.edge_factors()
+        found = reference_life(self.bearing, loads, factors, rotating)
+        capacity = self.bearing.capacity or rating(self.bearing)
+        return BearingLife(
+            found.revolutions, found.equivalent_load, capacity, found.capacities, words
+        )
+
+    def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+        """Draw loads over the angle, and the pressure along the heaviest element.
+
+        Needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : dict of matplotlib.axes.Axes, optional
+            Axes "loads", which must be polar, and "pressure"; a new figure by default.
+
+        Returns
+        -------
+        dict of matplotlib.axes.Axes
+            The axes, by name.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> sorted(bearing.solve(force=(20.0, 0.0, None)).plot())
+        ['loads', 'pressure']
+        """
+        from nacre import plot
+
+        return plot.bearing(self, axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of all numbers over elements, rings and laminae; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Numbers by name, with units.
+        """
+        variables = {}
+        for row in BEARING:
+            if (value := row.of(self)) is not None:
+                variables[row.name] = (row.dims, np.asarray(value))
+        coordinates = {"ring": list(RINGS)}
+        table = [(row, row.si()) for row in BEARING]
+        return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
+
+    def save(self, path: Any) -> Any:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``; ``.csv`` for the table of the elements; ``.png``, ``.pdf`` and
+            ``.svg`` for the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(force=(1000.0, 0.0, None), model="iso16281")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(solution.save(f"{folder}/bearing.nc")) == solution
+        True
+        """
+        writers = files.tabular(self, self._file_rows(), **self._comments())
+        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        return files.save(path, writers)
+
+    def _comments(self) -> dict[str, Any]:
+        found = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
+        notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
+        return {"model": self.model, **found, **notes}
+
+    def _columns(self) -> list[tuple[Quantity, str, Array]]:
+        """Return quantity, heading and values of the columns of the table of elements."""
+        kinds = {row.name: row for row in BEARING}
+        found = [(kinds["angles"], "angle", self.angles)]
+        for row in BEARING:
+            if row.dims == PER_CONTACT and row.label:
+                for k, ring in enumerate(RINGS):
+                    found.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
+        return found
+
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
+        columns = self._columns()
+        units = [symbol(row.si()) for row, _, _ in columns]
+        names = [name for _, name, _ in columns]
+        heads = zip(names, units, strict=True)
+        yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
+        for j in range(self.bearing.count):
+            yield [j, *(float(values[j]) for _, _, values in columns)]
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+        kinds = {row.name: row for row in BEARING}
+        rows = []
+        for row in (kinds[name] for name in VECTORS):
+            values = [self._rounded(row.name, value) for value in row.of(self)]
+            rows.append((row.label, display.pair(values, row.si())))
+        for name in ("largest_load", "peak_pressure", "edge_pressure"):
+            value = getattr(self, name)
+            if not math.isnan(value):
+                rows.append((kinds[name].label, written(value, kinds[name].si())))
+        report = self.report
+        contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
+        return [
+            *rows,
+            ("loaded", f"{self.loaded} of {self.bearing.count} elements"),
+            ("contacts", contacts),
+            (
+                "ended",
+                f"{report.termination} after {report.iterations} steps, "
+                f"balance {report.balance:.0e}",
+            ),
+        ]
+
+    def _rounded(self, name: str, value: float) -> float:
+        """Return a number as it is printed: 0 where it is rounding beside loads and approaches."""
+        deepest, arm = float(self.approaches.max(initial=0.0)), self.bearing.pitch / 2
+        scale = {"displacement": deepest, "force": self.largest_load, "tilt": deepest / arm}
+        scale |= {"tilts": deepest / arm, "moment": self.largest_load * arm}
+        return 0.0 if abs(value) < SLIGHT * scale.get(name, 0.0) else value
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        rows = ", ".join(" ".join(row) for row in self._rows())
+        return printable(f"<{type(self).__name__}: {rows}>")
+
+    def __str__(self) -> str:
+        """Return the main numbers, and a table of the loaded elements."""
+        columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
+        lines = [["element", *(name for _, name, _ in columns)]]
+        for j in np.flatnonzero((self.loads > 0).any(axis=1)):
+            values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
+            lines.append([f"{j}", *(written(value, row.si()) for row, value in values)])
+        table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
+        return display.text(self._rows(), self.report.warnings) + printable(table)
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.report.warnings)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all numbers are equal; NaN is equal to NaN."""
+        if not isinstance(other, BearingSolution):
+            return NotImplemented
+        return repr(self._state()) == repr(other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        words = ["bearing", "model", "rotation", "speed", *VECTORS]
+        return [*words, *ARRAYS, "cells", "report"]
+
+    def _state(self) -> dict[str, Any]:
+        state = {name: getattr(self, name) for name in ("model", "rotation", "speed")}
+        state |= {name: list(getattr(self, name)) for name in (*VECTORS,)}
+        arrays = {name: getattr(self, name) for name in ARRAYS}
+        state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
+        cells = None if self.cells is None else list(self.cells)
+        report = self.report._state()
+        return state | {"bearing": encode(self.bearing), "cells": cells, "report": report}
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        with refusing(cls.__name__):
+            made = dict(state)
+            made["bearing"] = decoded(state["bearing"])
+            for name in VECTORS:
+                made[name] = tuple(map(float, state[name]))
+            for name in ARRAYS:
+                if state[name] is not None:
+                    made[name] = np.array(state[name], dtype=np.float64)
+            made["cells"] = None if state["cells"] is None else tuple(state["cells"])
+            report = BearingReport._restored(dict(state["report"]))
+            found = cls(**made | {"report": report})
+            found._check()
+            return found
+
+    def _check(self) -> None:
+        """Raise a `ValueError` unless all fields fit each other."""
+        if not isinstance(self.bearing, Bearing):
+            raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
+        if self.model not in ("solved", "iso16281"):
+            raise ValueError(f"model must be one of nacre's, got {self.model!r}")
+        count = self.bearing.count
+        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(ARRAYS, (count, 2))
+        shapes |= {"angles": (count,), "tangent": (5, 5), "grid_sizes": (count, 2, 2)}
+        shapes |= dict.fromkeys(("lamina_loads", "lamina_pressures"), (count, 2, LAMINAE))
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            may_lack = name == "grid_sizes" or name.startswith("lamina")
+            if value is None and may_lack:
+                continue
+            if np.shape(value) != shape:
+                raise ValueError(f"{name} must have the shape {shape}, got {np.shape(value)}")
+        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
+        if any(len(getattr(self, name)) != length for name, length in lengths):
+            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")

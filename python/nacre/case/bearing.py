@@ -1,0 +1,172 @@
+"""Tables of case files for bearings: by kind, with what is asked of them."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
+
+from pydantic import Field, create_model, model_validator
+
+from nacre.bearing.bearings import KINDS, Solvable
+from nacre.case.schema import Body, Keys, at
+from nacre.case.shapes import AnyProfile
+from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, said
+
+SOLVE = described(Solvable.solve)
+
+
+class InSpace(Directions):
+    """A value along x, y, z, or several of them."""
+
+    x: Number | None = Field(None, description="Value along x.")
+    y: Number | None = Field(None, description="Value along y.")
+    z: Number | None = Field(None, description="Value along z, the bearing's axis.")
+
+
+class About(Directions):
+    """A value about x, about y, or both."""
+
+    x: Number | None = Field(None, description="Value about x.")
+    y: Number | None = Field(None, description="Value about y.")
+
+
+class Rings(Directions):
+    """A value of the inner ring, of the outer one, or both."""
+
+    inner: Number | None = Field(None, description="Value of the inner ring.")
+    outer: Number | None = Field(None, description="Value of the outer ring.")
+
+
+class BearingSolve(Table):
+    """What is asked of the inner ring: each direction loaded, prescribed, or locked at 0."""
+
+    force: InSpace | None = Field(None, description=SOLVE["force"])
+    displacement: InSpace | None = Field(None, description=SOLVE["displacement"])
+    moment: About | None = Field(None, description=SOLVE["moment"])
+    tilt: About | None = Field(None, description=SOLVE["tilt"])
+    rotation: Number = Field(0.0, description=SOLVE["rotation"])
+    speed: Number = Field(0.0, description=SOLVE["speed"])
+    model: Literal["solved", "iso16281"] = Field("solved", description=SOLVE["model"])
+    cells: Counts | None = Field(None, description=SOLVE["cells"])
+    tolerance: Number = Field(1e-9, description=SOLVE["tolerance"])
+    max_iterations: Count = Field(50, description=SOLVE["max_iterations"])
+
+
+class BearingLife(Table):
+    """Reference rating life of ISO/TS 16281, which is printed; the table may be empty."""
+
+    edge: Literal["standard", "pressure", "none"] = Field(
+        "standard",
+        description="Edge factors: those of the standard, those of the solved pressure, or none.",
+    )
+    rotating: Literal["inner", "outer"] = Field(
+        "inner", description="Ring that rotates against the load."
+    )
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords of `BearingSolution.life`."""
+        return {"edge": None if self.edge == "none" else self.edge, "rotating": self.rotating}
+
+
+class BearingKind(Table):
+    """Keys that every bearing may have: what is solved, and a life."""
+
+    made: ClassVar[type[Any]]
+
+    solve: BearingSolve = Field(description="What is solved.")
+    life: BearingLife | None = Field(None, description="Life that is printed.")
+
+
+TYPES: dict[str, Any] = {
+    "count": Count,
+    "raceway_diameters": Pair | None,
+    "osculation": Pair,
+    "profile": Annotated[
+        Literal["iso16281", "straight"] | AnyProfile,
+        said('"iso16281", "straight", or a table with the key kind'),
+    ],
+    "raceway_crown": Rings | None,
+    "free_ends": bool,
+    "element": Body | None,
+    "inner": Body | None,
+    "outer": Body | None,
+}
+"""Types of keys that are no numbers."""
+
+
+def _table(kind: str, made: type[Any]) -> type[BearingKind]:
+    """Return the table of a bearing: a key for each argument."""
+    told = described(made)
+    fields: dict[str, Any] = {
+        "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
+    }
+    for one in dataclasses.fields(made):
+        hint, default = TYPES.get(one.name, Number), one.default
+        if hint is None or one.name not in told:
+            continue
+        if default is dataclasses.MISSING:
+            fields[one.name] = (hint, Field(description=told[one.name]))
+            continue
+        if default is None or one.name in ("element", "inner", "outer", "raceway_crown"):
+            hint, default = hint | None, None
+        given = list(default) if isinstance(default, tuple) else default
+        fields[one.name] = (hint, Field(default=given, description=told[one.name]))
+    summary = inspect.cleandoc(made.__doc__ or "").partition("\n")[0]
+    table: type[BearingKind] = create_model(
+        f"{made.__name__}Case", __base__=BearingKind, __doc__=summary, **fields
+    )
+    table.made = made
+    return table
+
+
+TABLES = {kind: _table(kind, made) for kind, made in KINDS.items()}
+"""Tables of bearings, by kind."""
+
+if TYPE_CHECKING:
+    AnyBearing = BearingKind
+else:
+    AnyBearing = Annotated[
+        Union[tuple(TABLES.values())],  # noqa: UP007
+        Field(discriminator="kind"),
+    ]
+
+
+class BearingCase(Keys):
+    """Keys and tables of the case file of a bearing, for ``nacre solve``; its numbers are in SI."""
+
+    solved: ClassVar[tuple[str, ...]] = ("materials", "bearing")
+
+    bearing: AnyBearing = Field(description="Bearing, and what is asked of it.")
+
+    @model_validator(mode="after")
+    def _in_metres(self) -> BearingCase:
+        if self.units not in ("SI", "N-m-Pa"):
+            raise ValueError(
+                f'units must be "SI" for a bearing, whose standards are in N and m; '
+                f"got {self.units!r}"
+            )
+        return self
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the bearing and the keywords of its ``solve``."""
+        given = self.bearing.model_dump(exclude={"kind", "solve", "life"}, exclude_unset=True)
+        for name in given:
+            value = getattr(self.bearing, name)
+            if isinstance(value, Body):
+                given[name] = self._body(f"bearing.{name}", value)
+            elif isinstance(value, Directions):
+                given[name] = value.pair()
+            elif name == "profile":
+                with at("bearing.profile"):
+                    straight = None if value == "straight" else value
+                    given[name] = straight if isinstance(value, str) else value.make()
+            elif isinstance(value, list):
+                given[name] = tuple(value)
+        with at("bearing"):
+            made = self.bearing.made(**given)
+        return {"bearing": made, **self.bearing.solve.keywords()}
+
+    def life(self) -> dict[str, Any] | None:
+        """Return the keywords of the life, or None where none is asked for."""
+        return None if self.bearing.life is None else self.bearing.life.keywords()

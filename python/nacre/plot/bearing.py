@@ -1,0 +1,235 @@
+"""Pictures of bearings: loads around the ring, and pressure along the elements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale, written
+from nacre.plot.style import WIDTH, look, new_axes, styled
+
+with extra("plot"):
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+    from matplotlib.ticker import MaxNLocator
+
+if TYPE_CHECKING:
+    from nacre.bearing.solution import BearingSolution
+
+Array = npt.NDArray[np.float64]
+Ring = Literal["inner", "outer"]
+
+RINGS: tuple[Ring, Ring] = ("inner", "outer")
+MOST = 7
+"""Largest number of curves: there are so many colours."""
+
+
+def bearing(solution: BearingSolution, axes: Any = None) -> dict[str, Any]:
+    """Draw the loads of all elements, and the pressure along the heaviest one.
+
+    Parameters
+    ----------
+    solution
+        Solved bearing.
+    axes
+        Axes "loads", which must be polar, and "pressure"; a new figure by default.
+
+    Returns
+    -------
+    dict of matplotlib.axes.Axes
+        The axes, by name.
+
+    Raises
+    ------
+    ValueError
+        If there is no part of that name.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> ball = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    >>> drawn = plot.bearing(ball.solve(force=(1000.0, 0.0, None), model="iso16281"))
+    >>> sorted(drawn)
+    ['loads', 'pressure']
+    """
+    with styled():
+        if axes is None:
+            figure = plt.figure(figsize=(WIDTH, 0.42 * WIDTH), layout="constrained")
+            made = figure.subplot_mosaic(
+                [["loads", "pressure"]],
+                width_ratios=[1, 1.5],
+                per_subplot_kw={"loads": {"projection": "polar"}},
+            )
+        elif isinstance(axes, Mapping):
+            made = dict(axes)
+        else:
+            made = {"loads": axes}
+        if unknown := [name for name in made if name not in ("loads", "pressure")]:
+            raise ValueError(f"axes must be named loads and pressure, got {unknown[0]!r}")
+        if "loads" in made:
+            load_distribution(solution, axes=made["loads"])
+        if "pressure" in made:
+            element = int(solution.loads[:, 0].argmax())
+            elements_pressure(solution, [element], axes=made["pressure"])
+        return made
+
+
+def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) -> Axes:
+    """Draw the loads of the elements around the bearing, x to the right.
+
+    Parameters
+    ----------
+    solution
+        Solved bearing.
+    axes
+        Polar axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> ball = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    >>> solution = ball.solve(force=(1000.0, 0.0, None), model="iso16281")
+    >>> plot.load_distribution(solution).name
+    'polar'
+    """
+    loads = solution.loads
+    scale = Scale.of(float(loads.max(initial=0.0)), "N")
+    with styled():
+        if axes is None:
+            figure = plt.figure(figsize=(0.5 * WIDTH, 0.5 * WIDTH), layout="constrained")
+            axes = figure.add_subplot(projection="polar")
+        same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * loads.max(initial=0.0))
+        width = 2 * np.pi / solution.bearing.count
+        for number, ring in enumerate(RINGS[:1] if same else RINGS):
+            place = solution.angles + (0 if same else (number - 0.5) * width / 4)
+            style = {"color": look(number)["color"], "label": f"{ring} ring"}
+            share = 0.5 if same else 0.25
+            axes.bar(place, scale.factor * loads[:, number], width=share * width, **style)
+        axes.set_axisbelow(True)
+        highest = scale.factor * float(loads.max(initial=0.0))
+        ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]
+        axes.set_yticks(ticks)
+        axes.set_xticks(solution.angles, [f"{j}" for j in range(solution.bearing.count)])
+        axes.set_title(f"load of each element [{scale.unit}]", loc="center")
+        axes.set_rlabel_position(180.0)  # type: ignore[attr-defined]
+        if not same:
+            axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.08), ncols=2)
+    return axes
+
+
+def _curve(solution: BearingSolution, element: int, ring: Ring) -> tuple[Array, Array]:
+    """Return positions along the axis of an element, and the largest pressures there."""
+    number = RINGS.index(ring)
+    if solution.model == "solved":
+        contact = solution.contact(element, ring)
+        if contact is None:
+            return np.zeros(0), np.zeros(0)
+        return contact.x, contact.pressure.max(axis=1)
+    pressures = solution.lamina_pressures
+    if pressures is None:
+        return np.zeros(0), np.zeros(0)
+    length: float = solution.bearing.length  # type: ignore[attr-defined]
+    count = pressures.shape[-1]
+    return ((np.arange(count) + 0.5) / count - 0.5) * length, pressures[element, number]
+
+
+def elements_pressure(
+    solution: BearingSolution,
+    elements: list[int] | None = None,
+    *,
+    ring: Ring | None = None,
+    axes: Axes | None = None,
+) -> Axes:
+    """Draw the largest pressure across the contact along the axis of elements.
+
+    Of balls whose contacts are those of the standard, the peaks over the angle are drawn.
+
+    Parameters
+    ----------
+    solution
+        Solved bearing.
+    elements
+        Numbers of the elements; by default those that carry most, seven at most.
+    ring
+        Ring, "inner" or "outer"; by default both of one element, and the inner one of several.
+    axes
+        Axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such ring.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> from nacre.bearing import CylindricalRoller
+    >>> bearing = CylindricalRoller(
+    ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+    ... )
+    >>> solution = bearing.solve(force=(4450.0, 0.0, None), model="iso16281")
+    >>> plot.elements_pressure(solution).get_ylabel()
+    'pressure [GPa]'
+    """
+    if ring not in (*RINGS, None):
+        raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
+    if elements is None:
+        order = np.argsort(-solution.loads[:, 0], kind="stable")[:MOST]
+        elements = [int(j) for j in order if solution.loads[j, 0] > 0]
+    rings: list[Ring] = (
+        [ring] if ring is not None else [*RINGS] if len(elements) == 1 else ["inner"]
+    )
+    scale = Scale.of(solution.peak_pressure, "Pa")
+    with styled():
+        axes = axes or new_axes(0.8, 0.45)
+        axes.set_ylabel(f"pressure [{scale.unit}]")
+        if solution.model != "solved" and solution.lamina_pressures is None:
+            for number, one in enumerate(RINGS):
+                peaks = scale.factor * solution.peak_pressures[:, number]
+                mark = {"marker": "o", "linestyle": "none", "color": look(number)["color"]}
+                axes.plot(solution.angles, peaks, label=f"{one} ring", **mark)
+            axes.set(xlabel="angle [rad]", title="peak pressures, Hertz")
+            axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
+            axes.legend()
+            return axes
+        curves = [(j, r, *_curve(solution, j, r)) for j in elements for r in rings]
+        curves = [curve for curve in curves if curve[2].size]
+        longest = max((float(np.abs(x).max()) for _, _, x, _ in curves), default=1e-3)
+        length = Scale.of(longest, "m")
+        drawn: list[tuple[list[int], Ring, Array, Array]] = []
+        for element, name, x, values in curves:  # elements on both sides of the load are alike
+            for others, other, _, known in drawn:
+                if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
+                    others.append(element)
+                    break
+            else:
+                drawn.append(([element], name, x, values))
+        for number, (alike, which, x, values) in enumerate(drawn):
+            told = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
+            label = f"{which} ring" if len(elements) == 1 else told
+            peak = written(float(values.max()), "Pa", 3)
+            style = {**look(number), "label": f"{label} (peak {peak})"}
+            axes.plot(length.factor * x, scale.factor * values, **style)
+        said = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
+        if solution.model == "iso16281":
+            said += ", Hertz's pressure of laminae"
+        axes.set(xlabel=f"x along the element [{length.unit}]", title=said, ylim=(0, None))
+        if curves:
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
+    return axes

@@ -1,0 +1,373 @@
+"""Bearings are in equilibrium, symmetric, and carry what their contacts carry."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import quiet
+from nacre.bearing import (
+    AngularContactBall,
+    BearingSolution,
+    CylindricalRoller,
+    DeepGrooveBall,
+    rating,
+)
+
+STEEL = nacre.Elastic(young=206e9, poisson=0.3)
+DLC = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(300e9, 0.25), 3e-6, name="DLC")])
+ROLLERS: dict[str, Any] = {
+    "count": 14,
+    "diameter": 10e-3,
+    "length": 9.6e-3,
+    "pitch_diameter": 65e-3,
+    "clearance": 41e-6,
+}
+BALLS: dict[str, Any] = {"count": 7, "diameter": 11.5e-3, "pitch_diameter": 43.5e-3}
+COARSE: dict[str, Any] = {"cells": (40, 24)}
+STANDARD: dict[str, Any] = {"model": "iso16281"}
+TILT = math.tan(math.radians(2 / 60))
+
+
+@pytest.fixture(scope="module")
+def coated() -> BearingSolution:
+    """Return a bearing of 14 rollers between coated rings, tilted by 2'."""
+    bearing = CylindricalRoller(**ROLLERS, inner=DLC, outer=DLC)
+    return bearing.solve(force=(4450.0, 0.0, None), tilt=(None, TILT), cells=(80, 32))
+
+
+def test_forces_and_moments_balance(coated: BearingSolution) -> None:
+    report, angles = coated.report, coated.angles
+    assert report.converged
+    assert report.balance <= 1e-9
+    assert report.iterations <= 10  # the bar
+    loads, moments = coated.loads, coated.moments
+    scale = float(loads.sum()) / 2
+    np.testing.assert_allclose(loads[:, 0], loads[:, 1], atol=1e-9 * scale, rtol=0)
+    np.testing.assert_allclose(moments[:, 0], moments[:, 1], atol=1e-9 * scale * 9.6e-3, rtol=0)
+    assert loads[:, 0] @ np.cos(angles) == pytest.approx(4450.0, abs=1e-9 * scale)
+    # The ring is not free to tilt: its moment is that of the rollers.
+    assert moments[:, 0] @ np.cos(angles) == pytest.approx(coated.moment[1], rel=1e-9)
+
+
+def test_contacts_are_those_that_were_solved(coated: BearingSolution) -> None:
+    contact = coated.contact(0, "inner")
+    assert contact is not None
+    assert contact.load == coated.loads[0, 0]
+    assert contact.peak_pressure == coated.peak_pressures[0, 0]
+    assert contact.report.body == DLC
+    assert coated.contact(7, "inner") is None
+    assert coated.lamina_loads is not None
+    np.testing.assert_allclose(coated.lamina_loads.sum(-1), coated.loads, rtol=1e-12)
+    # Gradients of one contact stay available.
+    assert contact.gradient("located_peak", ["approach"])["approach"] > 0
+
+
+def test_pressure_leans_towards_the_tilt(coated: BearingSolution) -> None:
+    # The ring tilts by ψ, the roller takes half of it; at x > 0 the pressure is higher.
+    assert 0 < coated.tilts[0, 0] < TILT
+    assert coated.tilts[0].sum() == pytest.approx(TILT, rel=1e-9)
+    assert coated.lamina_pressures is not None
+    assert coated.lamina_pressures[0, 0, 20:].max() > coated.lamina_pressures[0, 0, :20].max()
+
+
+@pytest.mark.parametrize("options", [COARSE, STANDARD], ids=["solved", "standard"])
+def test_rotation_by_a_pitch_changes_nothing(options: dict[str, Any]) -> None:
+    bearing = CylindricalRoller(**ROLLERS)
+    asked: dict[str, Any] = {"force": (4450.0, 300.0, None), "tilt": (1e-4, 5e-4)} | options
+    one, other = (
+        bearing.solve(**asked, rotation=rotation) for rotation in (0.1, 0.1 + 2 * math.pi / 14)
+    )
+    rolled = np.roll(other.loads, 1, axis=0)
+    np.testing.assert_allclose(rolled, one.loads, atol=1e-9 * one.largest_load)
+
+
+@pytest.mark.parametrize("options", [COARSE, STANDARD], ids=["solved", "standard"])
+def test_mirrored_load_mirrors_the_loads(options: dict[str, Any]) -> None:
+    bearing = CylindricalRoller(**ROLLERS)
+    one = bearing.solve(force=(4450.0, 300.0, None), tilt=(1e-4, 5e-4), **options)
+    other = bearing.solve(force=(4450.0, -300.0, None), tilt=(-1e-4, 5e-4), **options)
+    mirrored = other.loads[-np.arange(14) % 14]
+    np.testing.assert_allclose(mirrored, one.loads, atol=1e-9 * one.largest_load)
+
+
+def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[Any, Any]:
+    x, y, z, about_x, about_y = place.tolist()
+    along = (x, y, None if bearing.rolls else z)
+    asked = {"displacement": along, "tilt": (about_x, about_y), "tolerance": 1e-11} | options
+    found = quiet(bearing.solve, **asked)
+    return np.array([*found.force, *found.moment])
+
+
+@pytest.mark.parametrize(
+    ("bearing", "options", "steps"),
+    [
+        (CylindricalRoller(**ROLLERS), STANDARD, (1e-10, 1e-10, 0, 1e-8, 1e-8)),
+        # A step is so short that no cell joins the contact: derivatives are those of the cells.
+        (CylindricalRoller(**ROLLERS), COARSE, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
+        (DeepGrooveBall(**BALLS), STANDARD | {"speed": 500.0}, (1e-9,) * 3 + (1e-8,) * 2),
+    ],
+    ids=["rollers, standard", "rollers, solved", "balls"],
+)
+def test_stiffness_is_the_derivative(
+    bearing: Any, options: dict[str, Any], steps: tuple[float, ...]
+) -> None:
+    force = (4450.0, 300.0, None) if bearing.rolls else (1000.0, 200.0, 500.0)
+    solution = quiet(bearing.solve, force=force, tilt=(1e-4, 5e-4), tolerance=1e-11, **options)
+    place = np.array([*solution.displacement, *solution.tilt])
+    stiffness = solution.stiffness()
+    scale = np.sqrt(np.diag(stiffness))
+    for k, step in enumerate(steps):
+        if step == 0:
+            assert not stiffness[k].any()
+            continue
+        moved = np.zeros(5)
+        moved[k] = step
+        change = reaction(bearing, place + moved, options)
+        change = (change - reaction(bearing, place - moved, options)) / (2 * step)
+        unit = np.where(scale > 0, scale, 1.0) * scale[k]
+        np.testing.assert_allclose(change / unit, stiffness[:, k] / unit, atol=1e-6)  # the bar
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_bearings_find_their_equilibrium(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    count, diameter = int(draw.integers(5, 30)), 10 ** draw.uniform(-3, -1.5)
+    pitch = diameter * (draw.uniform(1.02, 1.6) / math.sin(math.pi / count) + 0.4)
+    given: dict[str, Any] = {
+        "count": count,
+        "diameter": diameter,
+        "pitch_diameter": pitch,
+        "clearance": diameter * draw.uniform(-5e-4, 4e-3),
+    }
+    bearing: Any = DeepGrooveBall(**given)
+    if seed % 2:
+        bearing = CylindricalRoller(**given, length=diameter * draw.uniform(0.8, 5))
+    load = rating(bearing) * 10 ** draw.uniform(-3, -0.3) * draw.normal(size=3)
+    force = (load[0], load[1], None if seed % 2 else load[2])
+    tilt = draw.normal(size=2) * 1e-3
+    rotation, speed = draw.uniform(0, 1), draw.uniform(0, 2) / diameter
+    solution = bearing.solve(
+        force=force, tilt=tilt, rotation=rotation, speed=speed, model="iso16281"
+    )
+    assert solution.report.balance <= 1e-9
+    scale = solution.loads.sum()
+    for found, asked in zip(solution.force, force, strict=True):
+        assert asked is None or found == pytest.approx(asked, abs=1e-9 * scale)
+    assert np.linalg.eigvalsh(solution.stiffness()).min() > -1e-9 * scale / diameter
+
+
+def test_centrifugal_force_presses_on_the_outer_ring() -> None:
+    bearing = CylindricalRoller(**ROLLERS)
+    solution = bearing.solve(force=(4450.0, 0.0, None), speed=500.0, **STANDARD)
+    mass = 7850 * math.pi / 4 * 10e-3**2 * 9.6e-3
+    force = mass * 32.5e-3 * 500.0**2
+    np.testing.assert_allclose(np.diff(solution.loads, axis=1).ravel(), force, rtol=1e-7)
+    balls = DeepGrooveBall(**BALLS).solve(force=(0.0, 0.0, 1000.0), speed=1000.0, **STANDARD)
+    radial = balls.loads * np.cos(balls.contact_angles)
+    mass = 7850 * math.pi / 6 * 11.5e-3**3
+    np.testing.assert_allclose(np.diff(radial, axis=1), mass * 21.75e-3 * 1e6, rtol=1e-6)
+
+
+def test_unloaded_rollers_at_speed_rest_on_the_outer_ring() -> None:
+    bearing = CylindricalRoller(**ROLLERS)
+    solution = bearing.solve(displacement=(0.0, 0.0, None), speed=300.0, **COARSE)
+    mass = 7850 * math.pi / 4 * 10e-3**2 * 9.6e-3
+    np.testing.assert_allclose(solution.loads[:, 1], mass * 32.5e-3 * 9e4, rtol=1e-8)
+    assert not solution.loads[:, 0].any()
+
+
+def test_preload_loads_all_rollers_alike() -> None:
+    bearing = CylindricalRoller(**ROLLERS | {"clearance": -20e-6})
+    solution = bearing.solve(displacement=(0.0, 0.0, None), **COARSE)
+    assert solution.loaded == 14
+    np.testing.assert_allclose(solution.loads, solution.loads[0, 0], rtol=1e-8)
+    # Both contacts together approach by half of the preload's amount.
+    np.testing.assert_allclose(solution.approaches.sum(1), 10e-6, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("load", "solved", "slices"),
+    # 209-like roller under one load, both races together; the first column was computed by another
+    # program over nacre's contacts, in the half-space model, on its own cells: 3e-3.
+    [(200.0, 3.182e-6, 3.351e-6), (960.0, 9.537e-6, 9.502e-6), (1929.0, 15.880e-6, 15.548e-6)],
+)
+def test_rollers_approach_as_laminae(load: float, solved: float, slices: float) -> None:
+    bearing = CylindricalRoller(**ROLLERS | {"clearance": 0.0}, free_ends=False)
+    ends = CylindricalRoller(**ROLLERS | {"clearance": 0.0})
+    grid = nacre.Grid((160, 64), (9.6e-3, 6e-4))
+    half, free = 0.0, 0.0
+    for ring in ("inner", "outer"):
+        steel = nacre.Elastic(young=210e9, poisson=0.3)
+        roller = nacre.HalfSpace(steel, ends=(-4.8e-3, 4.8e-3))
+        shape = bearing.shape(ring)
+        half += nacre.Contact(steel, grid, steel).solve(shape, load=load).approach
+        free += nacre.Contact(steel, grid, roller).solve(shape, load=load).approach
+    assert bearing.shape("inner") == ends.shape("inner")
+    assert half == pytest.approx(solved, rel=3e-3)
+    assert half == pytest.approx(slices, rel=0.06)  # the bar
+    assert free > half  # ends make rollers softer
+
+
+def test_crowned_raceway_adds_its_drop() -> None:
+    crowned = CylindricalRoller(**ROLLERS, raceway_crown=(10.0, None))
+    plain = CylindricalRoller(**ROLLERS)
+    x = (np.arange(40) + 0.5) / 40 * 9.6e-3 - 4.8e-3
+    np.testing.assert_allclose(crowned.drop("inner") - plain.drop("inner"), x**2 / 20, atol=1e-18)
+    np.testing.assert_array_equal(crowned.drop("outer"), plain.drop("outer"))
+    grid = nacre.Grid((96, 8), (9.0e-3, 1e-5))
+    more = crowned.shape("inner").gaps(grid) - plain.shape("inner").gaps(grid)
+    # Between samples of the logarithm that are 24 µm apart a cubic is off by 1e-5 of the drop.
+    expected = grid.x[:, None] ** 2 / 20 + 0 * grid.y
+    np.testing.assert_allclose(more, expected, atol=1e-9)
+
+
+def test_raceways_stand_for_pitch_and_clearance() -> None:
+    given = {k: v for k, v in ROLLERS.items() if k not in ("pitch_diameter", "clearance")}
+    bearing = CylindricalRoller(**given, raceway_diameters=(55e-3, 75.041e-3))
+    assert bearing.play == pytest.approx(41e-6, rel=1e-9)
+    assert bearing.raceways == (27.5e-3, 37.5205e-3)
+
+
+WRONG: list[tuple[type[Any], dict[str, Any], str]] = [
+    (CylindricalRoller, {"count": 21}, "count must be at most 20"),
+    (CylindricalRoller, {"count": 1}, "count must be at least 2, got 1"),
+    (CylindricalRoller, {"pitch_diameter": 9e-3}, "10 mm, for there is no room"),
+    (CylindricalRoller, {"clearance": -1e-3}, "clearance must be at least -0.2 mm.*got -1 mm"),
+    (CylindricalRoller, {"length": 0.0}, "length must be finite and above 0, got 0"),
+    (CylindricalRoller, {"diameter": math.nan}, "diameter must be finite and above 0, got nan"),
+    (CylindricalRoller, {"raceway_diameters": (55e-3, 75e-3)}, "pitch_diameter must not be given"),
+    (CylindricalRoller, {"pitch_diameter": None}, "pitch_diameter or raceway_diameters must be"),
+    (CylindricalRoller, {"profile": "round"}, "profile must be a profile.*got 'round'"),
+    (CylindricalRoller, {"raceway_crown": (0.0, None)}, "raceway_crown must be two radii"),
+    (CylindricalRoller, {"density": -1.0}, "density must be finite and above 0"),
+    (
+        CylindricalRoller,
+        {"element": nacre.HalfSpace(STEEL, ends=(0.0, 1.0))},
+        "element must have no ends",
+    ),
+    (
+        CylindricalRoller,
+        {"inner": nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, 1e-3)])},
+        "inner must have an elastic substrate",
+    ),
+]
+
+
+@pytest.mark.parametrize(("kind", "given", "message"), WRONG)
+def test_wrong_bearings_are_refused(kind: Any, given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        kind(**ROLLERS | given)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"osculation": (0.5, 0.53)}, "osculation must be finite and above 0.5, got 0.5"),
+        ({"clearance": 2e-3}, "clearance must be below twice the distance.*1.15 mm, got 2 mm"),
+        ({"pitch_diameter": None}, "pitch_diameter must be given"),
+    ],
+)
+def test_wrong_ball_bearings_are_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        DeepGrooveBall(**BALLS | given)
+    if "osculation" in given:
+        with pytest.raises(ValueError, match=r"contact_angle must be below π/2, got 2\.0"):
+            AngularContactBall(**BALLS, contact_angle=2.0)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"force": (1.0, None, 5.0)}, "force along z must be None: cylindrical rollers carry none"),
+        ({"force": (1.0, None)}, "force must be 3 numbers or None"),
+        ({"force": (math.inf, None, None)}, "force must be finite"),
+        (
+            {"force": (1.0, None, None), "displacement": (1e-6, None, None)},
+            "force and displacement must not both be given along x, got 1.0 and 1e-06",
+        ),
+        (
+            {"moment": (None, 1.0), "tilt": (None, 1e-4)},
+            "moment and tilt must not both be given about y",
+        ),
+        ({"model": "hertz"}, 'model must be "solved" or "iso16281"'),
+        ({"cells": (50, 20)}, "the first a multiple of 40, got"),
+        ({"tolerance": 0.0}, "tolerance must be above 0 and below 1, got 0.0"),
+        ({"speed": math.nan}, "speed must be finite, got nan"),
+    ],
+)
+def test_wrong_questions_are_refused(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        CylindricalRoller(**ROLLERS).solve(**asked)
+
+
+def test_iteration_limit_and_stop_leave_the_unfinished_solution() -> None:
+    bearing = CylindricalRoller(**ROLLERS)
+    asked: dict[str, Any] = {"force": (4450.0, 0.0, None)} | COARSE
+    with pytest.raises(nacre.ConvergenceError, match="after 1 steps") as error:
+        bearing.solve(**asked, max_iterations=1)
+    assert error.value.solution.report.termination == "iteration limit"
+    calls: list[int] = []
+
+    def stop(done: int, balance: float) -> bool:
+        calls.append(done)
+        return done < 1
+
+    stopped = bearing.solve(**asked, progress=stop)
+    assert (stopped.report.termination, calls) == ("stopped", [0, 1])
+
+
+def test_standard_says_what_it_leaves_out() -> None:
+    soft = nacre.Elastic(young=100e9, poisson=0.3)
+    for given, words in (({"inner": DLC}, "layers are not counted"), ({"element": soft}, "moduli")):
+        with pytest.warns(nacre.NacreWarning, match=words):
+            CylindricalRoller(**ROLLERS, **given).solve(force=(100.0, None, None), **STANDARD)
+    solution = CylindricalRoller(**ROLLERS).solve(force=(100.0, None, None), **STANDARD)
+    with pytest.raises(ValueError, match='model must be "solved" for a contact'):
+        solution.contact(0, "inner")
+    with pytest.raises(ValueError, match="whose pressure is not known"):
+        solution.life("pressure")
+
+
+def test_coating_makes_contacts_stiffer_or_softer() -> None:
+    # The load shares stay; a soft layer lets the rollers sink more.
+    soft = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(50e9, 0.3), 20e-6)])
+    depths = [
+        CylindricalRoller(**ROLLERS, inner=body)
+        .solve(force=(4450.0, 0.0, None), **COARSE)
+        .displacement[0]
+        for body in (soft, STEEL, DLC)
+    ]
+    assert depths[0] > depths[1] > depths[2]
+
+
+def test_solution_is_saved_loaded_pickled_and_printed(
+    coated: BearingSolution, tmp_path: Path
+) -> None:
+    back = nacre.load(coated.save(tmp_path / "bearing.nc"))
+    assert back == coated
+    assert pickle.loads(pickle.dumps(coated)) == coated
+    assert copy.deepcopy(coated) == coated
+    assert back.bearing == coated.bearing
+    # That of a file is solved again, without a warm start.
+    again, known = back.contact(1, "outer"), coated.contact(1, "outer")
+    assert again is not None
+    assert known is not None
+    assert again.peak_pressure == pytest.approx(known.peak_pressure, rel=1e-7)
+    text = coated.save(tmp_path / "bearing.csv").read_text("utf-8")
+    assert text.count("\n") == 14 + 1 + 6
+    assert "loaded         5 of 14 elements" in str(coated)
+    assert "<table" in coated._repr_html_()
+    assert coated.save(tmp_path / "bearing.png").stat().st_size > 10_000
+    life = coated.life("pressure")
+    assert nacre.load(life.save(tmp_path / "life.nc")) == life
+    damaged = coated.to_dict() | {"loads": [[1.0]]}
+    with pytest.raises(ValueError, match="loads must have the shape"):
+        BearingSolution.from_dict(damaged)

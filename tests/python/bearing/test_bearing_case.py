@@ -1,0 +1,150 @@
+"""A case file describes a bearing: solved, saved, loaded, swept and drawn."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import quiet
+from nacre.bearing import BearingSolution, CylindricalRoller, DeepGrooveBall
+from nacre.case import Case, CaseError
+from support import Capture, command, written
+
+CASE = """
+[materials]
+steel = { young = 210e9, poisson = 0.3 }
+dlc = { young = 300e9, poisson = 0.25 }
+
+[bearing]
+kind = "cylindrical_roller"
+count = 14
+diameter = 10e-3
+length = 9.6e-3
+pitch_diameter = 65e-3
+clearance = 41e-6
+raceway_crown = { inner = 50.0 }
+inner = { substrate = "steel", layers = [{ material = "dlc", thickness = 3e-6 }] }
+
+[bearing.solve]
+force = { x = 4450, y = 0 }
+tilt = { y = 5e-4 }
+cells = [40, 24]
+
+[bearing.life]
+edge = "pressure"
+
+[sweep]
+store = "study.nc"
+parameters."bearing.solve.tilt.y" = [0.0, 5e-4]
+parameters."bearing.clearance" = [20e-6, 41e-6]
+outputs = ["peak_pressure", "edge_pressure", "reference_life", "tilt", "loads"]
+"""
+BALL = """
+[bearing]
+kind = "deep_groove_ball"
+count = 7
+diameter = 11.5e-3
+pitch_diameter = 43.5e-3
+osculation = [0.515, 0.525]
+solve = { force = { z = 1000 }, model = "iso16281" }
+"""
+
+
+def test_arguments_are_those_of_the_bearing() -> None:
+    steel = nacre.Elastic(young=210e9, poisson=0.3)
+    found = Case(tomllib.loads(CASE)).arguments()
+    layer = nacre.Layer(nacre.Elastic(300e9, 0.25), 3e-6)
+    assert found == {
+        "bearing": CylindricalRoller(
+            count=14,
+            diameter=10e-3,
+            length=9.6e-3,
+            pitch_diameter=65e-3,
+            clearance=41e-6,
+            raceway_crown=(50.0, None),
+            inner=nacre.HalfSpace(steel, [layer]),
+        ),
+        "force": (4450, 0, None),
+        "tilt": (None, 5e-4),
+        "cells": (40, 24),
+    }
+    ball = Case(tomllib.loads(BALL)).arguments()
+    made = DeepGrooveBall(
+        count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, osculation=(0.515, 0.525)
+    )
+    assert ball["bearing"] == made
+
+
+def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Capture) -> None:
+    path, saved = written(tmp_path, CASE), tmp_path / "bearing.nc"
+    assert command("solve", path, "--save", saved, "--save", tmp_path / "bearing.png") == 0
+    out = capsys.readouterr().out
+    assert "loaded         5 of 14 elements" in out
+    assert "edge factors from the solved pressure" in out
+    solution = nacre.load(saved)
+    assert isinstance(solution, BearingSolution)
+    assert solution.report.converged
+    assert (tmp_path / "bearing.png").stat().st_size > 10_000
+    assert command("solve", path, "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    np.testing.assert_allclose(told["loads"], solution.loads, rtol=1e-12)
+    assert told["life"]["revolutions"] == pytest.approx(solution.life("pressure").revolutions)
+    assert command("sweep", path) == 0
+    assert "4 cases, 0 failed" in capsys.readouterr().out
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "study.nc") as study:
+        assert study.loads.shape == (2, 2, 14, 2)
+        assert study.tilt.dims[-1] == "axis"
+        assert study.peak_pressure.attrs["units"] == "Pa"
+        pressure = study.edge_pressure.sel({"bearing.clearance": 41e-6}).values
+        assert pressure[1] > pressure[0]
+        assert pressure[1] == pytest.approx(solution.edge_pressure, rel=1e-9)
+
+
+def test_a_function_makes_a_study_of_bearings() -> None:
+    def case(clearance: float) -> dict[str, Any]:
+        bearing = DeepGrooveBall(
+            count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=clearance
+        )
+        return {"bearing": bearing, "force": (1000.0, 0.0, None), "model": "iso16281"}
+
+    study = nacre.sweep(case, {"clearance": [0.0, 20e-6]}, progress=False)
+    assert set(study.data_vars) >= {"displacement", "largest_load", "peak_pressure"}
+    assert float(study.largest_load[1]) > float(study.largest_load[0])
+    wrong = quiet(nacre.sweep, case, {"clearance": [-1.0]}, progress=False)
+    assert "clearance must be at least" in str(wrong.error.values[0])
+    with pytest.raises(TypeError, match="keywords of the solve of a bearing"):
+        nacre.sweep({"bearing": case(0.0)["bearing"], "load": 1.0}, {"speed": [1.0]})
+    with pytest.raises(ValueError, match=r"nacre\.bearing\.BearingSolution"):
+        nacre.sweep({"bearing": case(0.0)["bearing"]}, {"speed": [1.0]}, outputs=["approach"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("count = 14", "count = 30", "bearing: count must be at most 20"),
+        ("diameter = 10e-3", "diametre = 1", "bearing.diametre: there is no such key"),
+        ('kind = "cylindrical_roller"', 'kind = "sleeve"', "bearing.kind: must be one of"),
+        ("[materials]", 'units = "N-mm-MPa"\n[materials]', 'units must be "SI" for a bearing'),
+        ('edge = "pressure"', 'edge = "sharp"', "bearing.life.edge: must be"),
+        ('substrate = "steel"', 'substrate = "bronze"', "bearing.inner.substrate: must be one of"),
+    ],
+)
+def test_wrong_cases_are_refused(old: str, new: str, message: str, tmp_path: Path) -> None:
+    path = written(tmp_path, CASE.replace(old, new, 1))
+    with pytest.raises(CaseError, match=message):
+        Case.read(path).arguments()
+
+
+def test_bearing_has_no_initial_solution_and_no_fields(tmp_path: Path) -> None:
+    path = written(tmp_path, BALL)
+    assert command("solve", path, "--initial", path) == 2
+    assert command("solve", path, "--save", tmp_path / "x.vtr") == 2
+    assert command("indent", path) == 2

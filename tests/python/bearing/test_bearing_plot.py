@@ -1,0 +1,63 @@
+"""Pictures of bearings show what the solutions hold."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from nacre import plot
+from nacre.bearing import CylindricalRoller, DeepGrooveBall
+
+ROLLERS = CylindricalRoller(
+    count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+)
+STANDARD = ROLLERS.solve(force=(4450.0, 0.0, None), tilt=(None, 6e-4), model="iso16281")
+
+
+def test_bars_are_the_loads() -> None:
+    axes = plot.load_distribution(STANDARD)
+    bars: list[Any] = list(axes.patches)
+    heights = [bar.get_height() for bar in bars]
+    np.testing.assert_allclose(heights, STANDARD.loads[:, 0] / 1e3)  # kN
+    fast = ROLLERS.solve(force=(4450.0, 0.0, None), speed=600.0, model="iso16281")
+    both = plot.load_distribution(fast)
+    assert len(both.patches) == 28
+    texts: Any = both.get_legend()
+    assert [text.get_text() for text in texts.get_texts()] == ["inner ring", "outer ring"]
+
+
+def test_curves_are_the_pressures_and_alike_elements_share_one() -> None:
+    axes = plot.elements_pressure(STANDARD)
+    assert STANDARD.lamina_pressures is not None
+    labels = [str(line.get_label()) for line in axes.lines]
+    assert [label.partition(" (")[0] for label in labels] == [
+        "element 0",
+        "elements 1, 13",
+        "elements 2, 12",
+    ]
+    drawn: Any = axes.lines[0].get_ydata()
+    np.testing.assert_allclose(drawn, STANDARD.lamina_pressures[0, 0] / 1e9)
+    solved = ROLLERS.solve(force=(4450.0, 0.0, None), cells=(40, 24))
+    contact = solved.contact(0, "outer")
+    assert contact is not None
+    axes = plot.elements_pressure(solved, [0], ring="outer")
+    drawn = axes.lines[0].get_ydata()
+    np.testing.assert_allclose(drawn, contact.pressure.max(1) / 1e9)
+
+
+def test_parts_can_be_drawn_into_given_axes() -> None:
+    figure = plt.figure()
+    polar = figure.add_subplot(projection="polar")
+    assert plot.bearing(STANDARD, polar) == {"loads": polar}
+    with pytest.raises(ValueError, match="axes must be named loads and pressure, got 'map'"):
+        plot.bearing(STANDARD, {"map": polar})
+    with pytest.raises(ValueError, match='ring must be "inner" or "outer"'):
+        plot.elements_pressure(STANDARD, ring="middle")  # type: ignore[arg-type]
+    ball = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    drawn = plot.bearing(ball.solve(force=(1e3, 0.0, None), model="iso16281"))
+    assert drawn["pressure"].get_title(loc="left") == "peak pressures, Hertz"
+    unloaded = ball.solve(displacement=(0.0, 0.0, 0.0), model="iso16281")
+    assert sorted(plot.bearing(unloaded)) == ["loads", "pressure"]

@@ -1,0 +1,193 @@
+"""Ratings, load distribution and lives are those of ISO 281 and ISO/TS 16281."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from nacre.bearing import (
+    AngularContactBall,
+    CylindricalRoller,
+    DeepGrooveBall,
+    edge_factors,
+    load_integrals,
+    rating,
+)
+from nacre.bearing.iso import pressure_factors, reference_life
+from support import DATA
+
+FOLDER = DATA / "bearing"
+
+
+def rows(name: str) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = json.loads((FOLDER / f"{name}.json").read_text("utf-8"))["rows"]
+    return found
+
+
+@pytest.mark.parametrize("row", rows("sjovall"), ids=lambda row: f"{row['eps']:.3g}")
+def test_load_integrals_are_those_of_adaptive_quadrature(row: dict[str, Any]) -> None:
+    # The bar; the table is right to 1e-12.
+    for name, exponent in (("1.5", 1.5), ("10/9", 10 / 9), ("1", 1.0)):
+        found = load_integrals(row["eps"], exponent)
+        expected = row[f"Jr_n={name}"], row[f"Ja_n={name}"]
+        np.testing.assert_allclose(found, expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize("row", rows("iso281_capacity"), ids=lambda row: row["name"])
+def test_rating_of_rollers(row: dict[str, Any]) -> None:
+    bearing = CylindricalRoller(
+        count=row["Z"],
+        diameter=row["D_mm"] / 1e3,
+        length=row["L_mm"] / 1e3,
+        pitch_diameter=row["dm_mm"] / 1e3,
+    )
+    # The factors are written with 8 digits at least; the arithmetic is right to rounding.
+    assert rating(bearing) == pytest.approx(row["C_r_bm1_1_N"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("gamma", "factor"),
+    # ISO 281, table 2, f_c of deep-groove balls, as recalled; it has three digits, so 0.3 %.
+    [(0.1, 55.5), (0.14, 58.8), (0.2, 59.9), (0.24, 59.0)],
+)
+def test_factor_of_balls_is_that_of_the_table(gamma: float, factor: float) -> None:
+    bearing = DeepGrooveBall(
+        count=8,
+        diameter=10e-3,
+        pitch_diameter=10e-3 / gamma,
+        osculation=(0.52, 0.52),
+        rating_factor=1.0,
+    )
+    assert rating(bearing) / (8 ** (2 / 3) * 10**1.8) == pytest.approx(factor, rel=3e-3)
+
+
+def test_rating_of_a_catalogue() -> None:
+    # 6305 of SKF's catalogue, 23.4 kN with b_m = 1.3; catalogues differ by some 5 %.
+    bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    assert rating(bearing) == pytest.approx(23.4e3, rel=0.06)
+
+
+@pytest.mark.parametrize("row", rows("iso16281_roller"), ids=lambda row: row["name"])
+def test_rollers_of_the_standard(row: dict[str, Any]) -> None:
+    given, expected = row["input"], row["result"]
+    bearing = CylindricalRoller(
+        count=int(given["Z"]),
+        diameter=given["D"] / 1e3,
+        length=given["L"] / 1e3,
+        pitch_diameter=given["dm"] / 1e3,
+        clearance=given["s"] / 1e3,
+        capacity=given["C"],
+        profile="iso16281" if given.get("profile", True) else None,
+    )
+    tilt = math.tan(given.get("tilt", 0.0))
+    solution = bearing.solve(
+        force=(given["Fr"], None, None), tilt=(None, tilt), model="iso16281", tolerance=1e-12
+    )
+    life = solution.life("standard" if given.get("edge", True) else None)
+    near: dict[str, Any] = {"rtol": 1e-9}  # the bar; the table is right to 1e-10
+    np.testing.assert_allclose(solution.displacement[0] * 1e3, expected["delta_r"], **near)
+    np.testing.assert_allclose(
+        solution.loads, np.transpose([expected["Qj"]] * 2), atol=1e-9 * given["Fr"], rtol=0
+    )
+    np.testing.assert_allclose(life.revolutions, expected["L10r"], **near)
+    np.testing.assert_allclose(life.equivalent_load, expected["Pref"], **near)
+    np.testing.assert_allclose(life.ring_capacities, [expected["Qci"], expected["Qce"]], **near)
+    assert solution.lamina_loads is not None
+    np.testing.assert_allclose(solution.lamina_loads.max(), expected["q_max_lamina"], **near)
+    # The standard's tilt is −x tan ψ: its moment has the other sign.
+    np.testing.assert_allclose(
+        solution.moment[1] * 1e3, -expected["moment"], rtol=1e-9, atol=1e-7 * given["Fr"]
+    )
+
+
+@pytest.mark.parametrize("row", rows("iso16281_ball_masta"), ids=lambda row: row["case"])
+@pytest.mark.parametrize("model", ["iso16281", "solved"])
+@pytest.mark.filterwarnings("ignore:.*not small compared")
+def test_ball_bearing_of_masta(row: dict[str, Any], model: Any) -> None:
+    steel = nacre.Elastic(young=210e9, poisson=0.3)
+    bearing = DeepGrooveBall(
+        count=7,
+        diameter=11.5e-3,
+        pitch_diameter=43.5e-3,
+        clearance=row["s_mm"] / 1e3,
+        capacity=23400.0,
+        element=steel,
+        inner=steel,
+        outer=steel,
+    )
+    radial = row["Fr"] > 0
+    force = (row["Fr"], None, None) if radial else (None, None, row["Fa"])
+    solution = bearing.solve(force=force, model=model)
+    found = solution.displacement[0 if radial else 2] * 1e6
+    name = "delta_r_um" if radial else "delta_a_um"
+    # The bar is 1e-4 for both; that of nacre's own contacts is the size of the cells.
+    assert found == pytest.approx(row["exact_hertz"][name], rel=1e-4)
+    assert found == pytest.approx(row["masta"][name], rel=1e-4)
+    assert solution.life().revolutions == pytest.approx(row["masta"]["L10r"], rel=1e-4)
+
+
+def test_sjovalls_integrals_hold_for_many_elements() -> None:
+    # J is the limit of many elements: the error of the sum falls as a power above 2 of 1/Z, the
+    # integrand being smooth but for an end where it vanishes as x^(10/9).
+    bearing = CylindricalRoller(
+        count=120,
+        diameter=2e-3,
+        length=4e-3,
+        pitch_diameter=100e-3,
+        clearance=10e-6,
+        profile=None,
+    )
+    solution = bearing.solve(force=(5000.0, 0.0, None), model="iso16281")
+    epsilon = 0.5 * (1 - 10e-6 / (2 * solution.displacement[0]))
+    radial, _ = load_integrals(epsilon, 10 / 9)
+    assert 5000.0 == pytest.approx(120 * solution.largest_load * radial, rel=1e-3)
+
+
+def test_axial_load_is_shared() -> None:
+    bearing = AngularContactBall(
+        count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=math.radians(25)
+    )
+    solution = bearing.solve(force=(0.0, 0.0, 2000.0), model="iso16281")
+    share = 2000.0 / 12 / np.sin(solution.contact_angles)
+    np.testing.assert_allclose(solution.loads, share, rtol=1e-9)  # the balance
+
+
+def test_life_has_the_exponents_of_the_standard() -> None:
+    bearing = CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
+    loads = np.random.default_rng(3).uniform(0.0, 50.0, (14, 2, 40))
+    once, twice = (reference_life(bearing, k * loads, 1.0) for k in (1.0, 2.0))
+    assert once.revolutions / twice.revolutions == pytest.approx(16.0, rel=1e-12)
+    # P = C L^(−3/10), with L ∝ q^−4: 2^(4·3/10).
+    assert twice.equivalent_load / once.equivalent_load == pytest.approx(2**1.2, rel=1e-12)
+
+
+def test_edge_factor_of_the_pressure_is_1_under_hertz() -> None:
+    # ISO/TS 16281, eqs 58 and 59, in mm, N and MPa; its constant 271 has three digits: 2e-3.
+    bearing = CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
+    loads, gamma = np.full((1, 2, 40), 40.0), np.array([[[bearing.gamma]]])
+    signs = np.array([1, -1])[:, None]
+    hertz = 271 * np.sqrt(loads * 40 / (9.6 * 10 * (1 - signs * gamma))) * 1e6
+    np.testing.assert_allclose(pressure_factors(bearing, loads, hertz), 1.0, rtol=2e-3)
+
+
+def test_edge_factors_are_those_of_equation_60() -> None:
+    factors = edge_factors(40)
+    assert factors[0] == pytest.approx(2.33, abs=0.005)  # as quoted
+    np.testing.assert_array_equal(factors, factors[::-1])
+
+
+def test_unloaded_bearing_has_an_infinite_life_in_words() -> None:
+    bearing = CylindricalRoller(
+        count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+    )
+    solution = bearing.solve(displacement=(1e-6, 0.0, None), model="iso16281")
+    life = solution.life()
+    assert "element" not in str(solution).splitlines()  # no table of none
+    assert life.revolutions == math.inf
+    assert life.equivalent_load == 0.0
+    assert "infinite: no element is loaded" in str(life)
