@@ -333,7 +333,7 @@ mod tests {
     use super::*;
     use crate::compliance::response::interior::{Column, InPlane};
     use crate::error::Result;
-    use crate::model::body::{Interface, Layer, Spring};
+    use crate::model::body::{Interface, Layer};
     use crate::stress::section::place;
     use crate::stress::{Side, Stress, StressOptions, stress};
 
