@@ -58,6 +58,7 @@ from nacre.surfaces import read_map, read_profile
 if TYPE_CHECKING:
     from nacre import case as case
     from nacre import design as design
+    from nacre import fatigue as fatigue
     from nacre import friction as friction
     from nacre import hertz as hertz
     from nacre import indent as indent
@@ -113,7 +114,10 @@ HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
 HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
 SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
-_LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
+_LAZY = (
+    *("case", "design", "fatigue", "friction", "hertz"),
+    *("indent", "jax", "plot", "rough", "torch"),
+)
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

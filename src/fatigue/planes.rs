@@ -23,9 +23,16 @@ const TRIED: usize = 500;
 const STARTS: usize = 10;
 const APART: f64 = 0.2;
 
-/// Steps at the beginning and the end of a search [rad]: the distance of the planes tried, and one whose square is the
-/// rounding of a maximum.
-const STEPS: [f64; 2] = [0.1, 3e-6];
+/// Steps of a search [rad]: the distance of the planes tried; one at which maxima are told apart; and one whose square is
+/// the rounding of a maximum.
+const STEPS: [f64; 3] = [0.1, 1e-2, 3e-6];
+
+/// Angle within which two maxima are one [rad]: some of the steps at which they are told apart.
+const SAME: f64 = 0.05;
+
+/// Part of the largest shear stress by which a maximum may be below the best one to be searched to the end. It is above
+/// the gap that a warning tells.
+const CLOSE: f64 = 0.03;
 
 /// Part by which maxima of τ_a may differ to count as equal, as a plane and its conjugate do.
 const TIE: f64 = 1e-6;
@@ -36,11 +43,14 @@ const ISOLATED: usize = 4;
 /// A history, seen on planes.
 pub(super) struct Planes<'a> {
     history: &'a [State],
+    /// Shear stress that is rounding: 50 ε of the largest component.
+    rounding: f64,
 }
 
 impl<'a> Planes<'a> {
     pub(super) fn new(history: &'a [State]) -> Self {
-        Self { history }
+        let largest = history.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+        Self { history, rounding: 1e-14 * largest }
     }
 
     /// The plane of the largest τ_a + k σ_n.
@@ -59,18 +69,15 @@ impl<'a> Planes<'a> {
         let value = |plane: &Plane| plane.shear;
         let found = self.maxima(&value);
         let highest = found.iter().map(value).fold(0.0, f64::max);
-        let is_equal = |plane: &&Plane| plane.shear >= highest * (1.0 - TIE);
-        let equal: Vec<&Plane> = found.iter().filter(is_equal).collect();
-        let best = equal.iter().copied().copied();
-        let best =
-            best.reduce(|a, b| if b.tension > a.tension { b } else { a }).unwrap_or(self.at(Z));
-        let others = found.iter().filter(|plane| !is_equal(plane)).map(value);
-        let next = others.fold(0.0, f64::max);
-        let gap = if highest > 0.0 { 1.0 - next / highest } else { 1.0 };
-        let best = match equal.len() > ISOLATED {
-            true => self.slid(best, &|plane| plane.shear >= highest * (1.0 - TIE)),
-            false => best,
-        };
+        let least = highest * (1.0 - TIE) - self.rounding;
+        let (equal, others): (Vec<Plane>, Vec<Plane>) =
+            found.into_iter().partition(|plane| plane.shear >= least);
+        let next = others.iter().map(value).fold(0.0, f64::max);
+        let gap = if highest > self.rounding { 1.0 - next / highest } else { 1.0 };
+        let is_curve = equal.len() > ISOLATED && highest > self.rounding;
+        let greater = |a: Plane, b: Plane| if b.tension > a.tension { b } else { a };
+        let best = equal.into_iter().reduce(greater).unwrap_or(self.at(Z));
+        let best = if is_curve { self.slid(best, &|plane| plane.shear >= least) } else { best };
         (best, gap)
     }
 
@@ -106,7 +113,18 @@ impl<'a> Planes<'a> {
                 starts.push(plane);
             }
         }
-        starts.into_iter().map(|plane| self.climbed(plane, STEPS, value)).collect()
+        let [first, second, last] = STEPS;
+        let mut found: Vec<Plane> = Vec::new();
+        for start in starts {
+            let plane = self.climbed(start, [first, second], value);
+            if !found.iter().any(|other| dot(&other.normal, &plane.normal).abs() > SAME.cos()) {
+                found.push(plane);
+            }
+        }
+        let highest = found.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        let shear = found.iter().map(|plane| plane.shear).fold(0.0, f64::max);
+        found.retain(|plane| value(plane) >= highest - CLOSE * shear - self.rounding);
+        found.into_iter().map(|plane| self.climbed(plane, [second, last], value)).collect()
     }
 
     /// The maximum near a plane, by a search in directions that turn, which does not stop at a kink: six in turn, with
@@ -137,10 +155,10 @@ impl<'a> Planes<'a> {
     /// their curve, back to the maximum of τ_a after each step.
     fn slid(&self, mut best: Plane, counts: &impl Fn(&Plane) -> bool) -> Plane {
         let mut step = APART;
-        while step > STEPS[1].sqrt() {
+        while step > STEPS[2].sqrt() {
             let beside = |k: u8| {
                 let plane = self.at(turned(&best.normal, step, f64::from(k) * TAU / 12.0));
-                self.climbed(plane, [0.3 * step, STEPS[1]], &|plane: &Plane| plane.shear)
+                self.climbed(plane, [0.3 * step, STEPS[2]], &|plane: &Plane| plane.shear)
             };
             let better = |plane: &Plane| counts(plane) && plane.tension > best.tension;
             match (0..12).map(beside).find(better) {

@@ -44,37 +44,41 @@ pub(crate) fn smallest_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
 /// The smallest ball of the points `support` and `enters`, which is on its surface.
 fn exchanged<const N: usize>(points: &[[f64; N]], support: &[usize], enters: usize) -> Ball<N> {
     let all = || support.iter().chain([&enters]).map(|&k| points[k]);
-    let mut best = Ball { centre: points[enters], radius: f64::INFINITY, support: Vec::new() };
+    let (mut best, mut chosen) = ((points[enters], f64::INFINITY), 0);
     for subset in 0..1_usize << support.len() {
+        let (mut sides, mut count) = ([[0.0; N]; N], 0);
         if subset.count_ones() as usize > N {
             continue;
         }
-        let others = support.iter().enumerate().filter(|(k, _)| subset >> k & 1 == 1);
-        let others: Vec<usize> = others.map(|(_, &point)| point).collect();
-        let centre = circumcentre(&points[enters], others.iter().map(|&k| &points[k]));
+        for (_, &other) in support.iter().enumerate().filter(|(k, _)| subset >> k & 1 == 1) {
+            sides[count] = std::array::from_fn(|k| points[other][k] - points[enters][k]);
+            count += 1;
+        }
+        let centre = circumcentre(&points[enters], &sides[..count]);
         let (_, radius) = farthest(&centre, all());
-        if radius < best.radius {
-            best = Ball { centre, radius, support: others };
+        if radius < best.1 {
+            (best, chosen) = ((centre, radius), subset);
         }
     }
-    best.support.push(enters);
-    best
+    let kept = support.iter().enumerate().filter(|(k, _)| chosen >> k & 1 == 1);
+    let support = kept.map(|(_, &point)| point).chain([enters]).collect();
+    Ball { centre: best.0, radius: best.1, support }
 }
 
-/// The point that is equally far from `first` and `others`, in their hull: c = a + Σ λ_k v_k with v_k = b_k − a
-/// and Σ_l (v_k · v_l) λ_l = |v_k|²/2.
-fn circumcentre<'a, const N: usize>(
-    first: &[f64; N],
-    others: impl Iterator<Item = &'a [f64; N]>,
-) -> [f64; N] {
-    let sides: Vec<[f64; N]> =
-        others.map(|other| std::array::from_fn(|k| other[k] - first[k])).collect();
-    let row = |a: &[f64; N]| sides.iter().map(|b| dot(a, b)).collect::<Vec<f64>>();
-    let mut matrix: Vec<Vec<f64>> = sides.iter().map(row).collect();
-    let mut weights: Vec<f64> = sides.iter().map(|side| 0.5 * dot(side, side)).collect();
-    eliminate(&mut matrix, &mut weights, |_, pivot| pivot > 0.0);
+/// The point that is equally far from `first` and the ends of `sides` from there, in their hull:
+/// c = a + Σ λ_k v_k with the sides v and Σ_l (v_k · v_l) λ_l = |v_k|²/2.
+fn circumcentre<const N: usize>(first: &[f64; N], sides: &[[f64; N]]) -> [f64; N] {
+    let (mut matrix, mut weights) = ([[0.0; N]; N], [0.0; N]);
+    for (k, side) in sides.iter().enumerate() {
+        for (l, other) in sides.iter().enumerate() {
+            matrix[k][l] = dot(side, other);
+        }
+        weights[k] = 0.5 * matrix[k][k];
+    }
+    let used = sides.len();
+    eliminate(&mut matrix[..used], &mut weights[..used], |_, pivot| pivot > 0.0);
     std::array::from_fn(|k| {
-        first[k] + weights.iter().zip(&sides).map(|(weight, side)| weight * side[k]).sum::<f64>()
+        first[k] + weights.iter().zip(sides).map(|(weight, side)| weight * side[k]).sum::<f64>()
     })
 }
 

@@ -194,6 +194,42 @@ EXTREMES = (
 )
 """Columns of the table of a stress summary."""
 
+PROFILE = (
+    Quantity("depth", "depth; an interface is there twice, for its two sides", "m"),
+    Quantity(
+        "shakedown", "shear yield stress for shakedown", "Pa", label="shear yield for shakedown"
+    ),
+    Quantity(
+        "first_yield", "shear yield stress for no yield", "Pa", label="shear yield for no yield"
+    ),
+    Quantity("orthogonal_shear", "range of the shear stress yz", "Pa", label="range of shear yz"),
+    Quantity("DangVan", "equivalent stress of Dang Van", "Pa", label="Dang Van"),
+    Quantity("Crossland", "equivalent stress of Crossland", "Pa", label="Crossland"),
+    Quantity("Findley", "equivalent stress of Findley", "Pa", label="Findley"),
+    Quantity("Matake", "equivalent stress of Matake", "Pa", label="Matake"),
+)
+"""What a material needs at each depth under a contact that rolls."""
+
+FATIGUE = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the value"),
+    Quantity("value", "value", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or limit over the value"),
+)
+"""Columns of the table of a summary of fatigue."""
+
+SHAKEDOWN = (
+    Quantity("layer", "layer"),
+    Quantity("friction", "coefficient of friction"),
+    Quantity("limits", "peak pressure over shear yield stress, for shakedown"),
+    Quantity("first_yield", "peak pressure over shear yield stress, for no yield"),
+    Quantity("depths", "depth that decides the shakedown", "m"),
+)
+"""Columns of the table of a shakedown map."""
+
 INDENT = (
     Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),
     Quantity("approach", "approach", "m", label="approach"),

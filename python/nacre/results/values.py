@@ -79,6 +79,8 @@ name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
 ELSEWHERE = {"IndentSolution": "nacre.indent", "Fit": "nacre.indent", "Roughness": "nacre.rough"}
+ELSEWHERE |= dict.fromkeys(("FatigueSummary", "LayerFatigue"), "nacre.fatigue")
+ELSEWHERE |= dict.fromkeys(("InterfaceFatigue", "ShakedownMap"), "nacre.fatigue")
 """Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""
