@@ -29,7 +29,7 @@ FAR = 3
 DENSE = 1 / 20
 """Largest distance of states, in half-widths of the contact up to `NEAR` of them, and as a part of the
 distance from it further away."""
-FITTED = 8
+FITTED = 6
 """Number of cells inside the contact whose stresses a parabola continues to the edge."""
 ROWS = 16
 """Smallest number of rows along x that cells beyond are merged to."""
@@ -260,14 +260,18 @@ class Rolling:
         return states
 
     def _edge(self, one: int, way: int) -> float | None:
-        """Return the edge beside a cell, where the square of the pressure goes to 0; or None."""
-        squares = self.row[[one + way, one + 2 * way]] ** 2
-        if squares[1] <= squares[0]:
+        """Return the edge in a cell, where the square of the pressure goes to 0; or None.
+
+        A parabola through the next three cells continues the square.
+        """
+        squares = self.row[one + way * np.arange(1, 4)] ** 2
+        if not np.all(np.diff(squares) > 0):
             return None
         y, step = self.grid.y, self.grid.spacing[1]
-        ahead = squares[0] / (squares[1] - squares[0])
-        # From the second cell: the edge is in the first cell, or near it.
-        return float(y[one + way] - way * step * min(max(ahead, 0.5), 2.0))
+        roots = np.polynomial.Polynomial.fit([1, 2, 3], squares, 2).roots()
+        # In the cell, or as far outside as the cells beside it: they are in contact in part.
+        real = [root.real for root in roots if abs(root.imag) < 1e-9 and abs(root.real) < 0.9]
+        return float(y[one] + way * step * real[0]) if len(real) == 1 else None
 
     def _unloaded(self, states: States) -> States:
         """Return the states with the stress-free one, infinitely far away."""
