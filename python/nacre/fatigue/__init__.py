@@ -16,6 +16,7 @@ Examples
 1.7
 """
 
+from nacre.fatigue.criteria import CRITERIA as CRITERIA
 from nacre.fatigue.criteria import (
     Crossland,
     DangVan,

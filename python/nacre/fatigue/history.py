@@ -92,13 +92,14 @@ class Rolling:
             raise ValueError("solution must be in contact, got one whose pressure is 0 everywhere")
         self.plan: StressPlan = solution.stress_plan(body, threads)
         self.body = self.plan.body
-        self.known = isinstance(solution, FrictionSolution)
+        tractions = solution.traction if isinstance(solution, FrictionSolution) else None
+        self.known = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = threads
         self.direction = direction or normal.report.rolling_direction or (0.0, 1.0)
         self.pressure = np.asarray(normal.pressure)
         self.peak_pressure = normal.peak_pressure
-        self.tractions = np.asarray(solution.traction) if self.known else None
+        self.tractions = None if tractions is None else np.asarray(tractions)
         self.x = None if self.grid.is_line else (self._section() if x is None else float(x))
         row = 0 if self.x is None else int(np.argmin(np.abs(self.grid.x - self.x)))
         self.row = self.pressure[row]
@@ -118,7 +119,7 @@ class Rolling:
         last = best + int(np.argmin(np.r_[equal[best:], False])) - 1
         return float(self.grid.x[first : last + 1].mean())
 
-    def _levels(self) -> list[tuple[core.Grid, list[Array], Array]]:
+    def _levels(self) -> list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]]:
         """Return grids beyond that of the contact, each four times as wide as the one before.
 
         Each has the loads, merged to its cells, and says which of its cells belong to the history.
@@ -134,7 +135,7 @@ class Rolling:
         merged = [np.pad(load, sides) for load in merged]
         covered = np.array([-0.5, 0.5]) * self.grid.size[1] + self.grid.center[1]
         across = 1
-        found = []
+        found: list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]] = []
         for level in range(1 + FAR):
             if level:
                 step *= COARSER
@@ -153,7 +154,9 @@ class Rolling:
                 grid = core.Grid((nx, count), size, place)
             y = grid.y
             used = (y < covered[0] - 1e-9 * step) | (y > covered[1] + 1e-9 * step)
-            inner = self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
+            inner = (
+                self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
+            )
             used &= np.arange(count) % max(1, int(DENSE * inner / step)) == 0
             found.append((grid, merged, np.flatnonzero(used)))
             covered = middle + np.array([-0.5, 0.5]) * count * step
@@ -240,6 +243,7 @@ class Rolling:
         if last - first < 2 * FITTED:
             return states
         top = self.body.layers[0].material if self.body.layers else self.body.substrate
+        poisson = top.poisson if isinstance(top, core.Elastic) else 0.0
         for one, way in ((first, 1), (last, -1)):
             edge = self._edge(one, way)
             if edge is None:
@@ -251,7 +255,7 @@ class Rolling:
             for part in (states.normal, states.tangential):
                 smooth = part[0, places].copy()
                 smooth[:, 1] -= smooth[:, 2]
-                smooth[:, 0] -= 2.0 * top.poisson * smooth[:, 2]
+                smooth[:, 0] -= 2.0 * poisson * smooth[:, 2]
                 curve = np.polynomial.polynomial.polyfit(near - edge, smooth, 2)
                 part[0, at] = curve[0]
                 part[0, at, [2, 4, 5]] = 0.0
@@ -268,7 +272,7 @@ class Rolling:
         if not np.all(np.diff(squares) > 0):
             return None
         y, step = self.grid.y, self.grid.spacing[1]
-        roots = np.polynomial.Polynomial.fit([1, 2, 3], squares, 2).roots()
+        roots: list[complex] = np.polynomial.Polynomial.fit([1, 2, 3], squares, 2).roots().tolist()
         # In the cell, or as far outside as the cells beside it: they are in contact in part.
         real = [root.real for root in roots if abs(root.imag) < 1e-9 and abs(root.real) < 0.9]
         return float(y[one] + way * step * real[0]) if len(real) == 1 else None

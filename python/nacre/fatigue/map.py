@@ -15,7 +15,7 @@ from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import Rule
-from nacre.fatigue.summary import ESTIMATE, PLASTICITY, in_region, checked_depths, prepared
+from nacre.fatigue.summary import ESTIMATE, PLASTICITY, checked_depths, in_region, prepared
 from nacre.results import display, files, values
 from nacre.results.listed import Tabular
 from nacre.results.quantities import SHAKEDOWN
@@ -217,9 +217,7 @@ def shakedown_map(
     asked = prepared(solution, (), rule, residual, body, direction, x, threads)
     given = checked_depths(depths, asked.rolling.body)
     regions = [
-        region
-        for region in asked.regions()
-        if given is None or in_region(region, given).size
+        region for region in asked.regions() if given is None or in_region(region, given).size
     ]
     shape = (len(regions), coefficients.size)
     limits, first, deciding = np.zeros(shape), np.zeros(shape), np.zeros(shape)
@@ -240,7 +238,9 @@ def shakedown_map(
         if tell is not None:
             tell(1.0)
     names = tuple(
-        "the substrate" if region.bottom == np.inf else display.layer_name(region.layer, region.name)
+        "the substrate"
+        if region.bottom == np.inf
+        else display.layer_name(region.layer, region.name)
         for region in regions
     )
     return ShakedownMap(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
@@ -289,8 +289,8 @@ class FatigueSummary(Tabular):
                 rows.append((display.part(layer), name, value, *place, factor))
         for face in self.interfaces:
             for name in ("shear_range", "tension"):
-                place = (np.nan, np.nan, face.depth, np.nan)
-                rows.append((display.part(face), name, getattr(face, name), *place))
+                value = getattr(face, name)
+                rows.append((display.part(face), name, value, np.nan, np.nan, face.depth, np.nan))
         return rows
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
@@ -399,9 +399,9 @@ class Assessment:
         chosen = np.sort(chosen[(chosen > region.top) & (chosen < region.bottom)])
         # Those that are close to the one before tell nothing new.
         gap = min(0.02 * width, 0.3 * (last - region.top) / INSIDE)
-        kept = chosen[np.diff(chosen, prepend=region.top) > gap]
+        kept: Array = chosen[np.diff(chosen, prepend=region.top) > gap]
         bottom = [region.bottom] if region.bottom < np.inf else []
-        return np.r_[region.top, kept, bottom]
+        return np.concatenate([[region.top], kept, bottom])
 
     def history(self, depths: Sequence[float], side: Side, slides: bool) -> tuple[States, Array]:
         """Return histories at some depths."""
@@ -451,7 +451,9 @@ class Assessment:
                     residual=(float(shaken[k, 1]), float(shaken[k, 2])),
                     gap=float(gaps[k]),
                     uncertainty=float(uncertain[k]),
-                    shear_range=_range(states[k, :, 4:]) if z in (region.top, region.bottom) else 0.0,
+                    shear_range=_range(states[k, :, 4:])
+                    if z in (region.top, region.bottom)
+                    else 0.0,
                     tension=float(states[k][:, 2].max()),
                 )
             )
@@ -690,7 +692,9 @@ def _summed(
         sides = [row for rows in found[number : number + 2] for row in rows if row.z == depth]
         if sides:
             # Tractions are continuous.
-            interfaces.append(InterfaceFatigue(number, depth, sides[0].shear_range, sides[0].tension))
+            interfaces.append(
+                InterfaceFatigue(number, depth, sides[0].shear_range, sides[0].tension)
+            )
     all_rows = [row for rows in found for row in rows]
     names = all_rows[0].values
     summary = FatigueSummary(

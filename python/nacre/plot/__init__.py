@@ -5,6 +5,7 @@ carry units with a prefix, SI or those of `nacre.display_units`. `nacre.Solution
 functions as methods.
 """
 
+from nacre.plot.fatigue import fatigue_depth, shakedown_map
 from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
@@ -24,6 +25,7 @@ __all__ = [
     "creep_curve",
     "curve",
     "distribution",
+    "fatigue_depth",
     "friction",
     "heights",
     "interface_map",
@@ -34,6 +36,7 @@ __all__ = [
     "pressure_map",
     "relief",
     "section",
+    "shakedown_map",
     "spectrum",
     "stress_depth",
     "stress_section",

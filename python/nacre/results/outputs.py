@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from nacre.contact.friction import FrictionSolution
     from nacre.contact.solution import Solution
     from nacre.contact.stresses import StressSummary
+    from nacre.fatigue.summary import FatigueSummary
     from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
@@ -51,10 +52,34 @@ STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
 }
 """Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
 
+FATIGUES: dict[str, Callable[[FatigueSummary], list[float]]] = {
+    "shakedown": lambda summary: [layer.shakedown[0] for layer in summary.layers],
+    "substrate_shakedown": lambda summary: [
+        layer.shakedown[0] for layer in summary.layers if layer.is_substrate
+    ],
+    "orthogonal_shear": lambda summary: [layer.orthogonal_shear[0] for layer in summary.layers],
+    "interface_shear_range": lambda summary: [face.shear_range for face in summary.interfaces],
+}
+"""Outputs from `nacre.fatigue.assess`: each is the largest of these values, or NaN."""
+MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
+    "shakedown_safety_factor": lambda summary: _factors(summary, ["shakedown"]),
+    "first_yield_safety_factor": lambda summary: _factors(summary, ["first_yield"]),
+    "fatigue_safety_factor": lambda summary: _factors(
+        summary, [type(one).__name__ for one in summary.criteria]
+    ),
+}
+"""Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
+
 ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
 ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
+
+
+def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
+    """Return the safety factors of all layers that have these names."""
+    found = (layer.safety_factors for layer in summary.layers)
+    return [factors[name] for factors in found for name in names if name in factors]
 
 
 def named(
@@ -69,11 +94,13 @@ def named(
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     told = {
         False: f"attributes of Solution that hold numbers ({', '.join(sorted(NUMBERS))}), or of "
-        f"FrictionSolution ({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
+        f"FrictionSolution ({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
+        f"fatigue ({', '.join((*FATIGUES, *MARGINS))})",
         True: "attributes of nacre.indent.IndentSolution that hold numbers "
         f"({', '.join(OF_INDENT)})",
     }
-    known = {False: {*NUMBERS, *OF_FRICTION, *STRESSES}, True: {*OF_INDENT}}
+    contact = {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS}
+    known = {False: contact, True: {*OF_INDENT}}
     kinds = [True, False] if indents is None else [indents]
     for name, output in items:
         if not (any(output in known[kind] for kind in kinds) or callable(output)):
@@ -113,13 +140,14 @@ def evaluated(
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
     unresolved: list[str],
+    assess: Callable[[], FatigueSummary],
 ) -> dict[str, Any]:
-    """Return the outputs of a solution as plain numbers; the stresses are summed up once.
+    """Return the outputs of a solution as plain numbers; stresses and fatigue are summed up once.
 
     The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
     stresses that the cells do not resolve are added to `unresolved`.
     """
-    summary = None
+    summary = fatigue = None
     found: dict[str, Any] = {}
     for name, output in outputs.items():
         if not isinstance(output, str):
@@ -129,6 +157,14 @@ def evaluated(
                 summary = solution.stress_summary(**stress)
                 unresolved += summary.warnings
             value = max(STRESSES[output](summary), default=np.nan)
+        elif output in FATIGUES or output in MARGINS:
+            if fatigue is None:
+                fatigue = assess()
+                unresolved += fatigue.warnings
+            if output in FATIGUES:
+                value = max(FATIGUES[output](fatigue), default=np.nan)
+            else:
+                value = min(MARGINS[output](fatigue), default=np.nan)
         else:
             value = _number(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()

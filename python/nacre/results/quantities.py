@@ -181,6 +181,16 @@ STRESS = tuple(
     }.items()
 )
 """Extremes of the stress that studies keep."""
+RATED = (
+    Quantity("shakedown", "largest shear yield stress that a layer needs to shake down", "Pa"),
+    Quantity("substrate_shakedown", "shear yield stress that the substrate needs", "Pa"),
+    Quantity("orthogonal_shear", "largest range of the shear stress yz", "Pa"),
+    Quantity("interface_shear_range", "largest range of the shear at an interface", "Pa"),
+    Quantity("shakedown_safety_factor", "smallest safety factor of shakedown"),
+    Quantity("first_yield_safety_factor", "smallest safety factor of first yield"),
+    Quantity("fatigue_safety_factor", "smallest safety factor of the criteria of fatigue"),
+)
+"""Numbers of fatigue that studies keep."""
 
 EXTREMES = (
     Quantity("part", "layer or interface"),
@@ -281,5 +291,5 @@ PARAMETERS = {
 
 def units(*, line: bool = False, rolls: bool = False, indents: bool = False) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    rows = INDENT if indents else (*FRICTION, *CONTACT, *STRESS)
+    rows = INDENT if indents else (*FRICTION, *CONTACT, *STRESS, *RATED)
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}
