@@ -1,7 +1,8 @@
 """Case files: a contact or an indentation, and a study of it, in TOML.
 
 There is a table for each argument of `nacre.solve`, one for `Solution.stress_summary` and one for
-`nacre.fatigue.assess`; a file with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`.
+`nacre.fatigue.assess`; a file with the tables ``tip`` and ``indent`` is an indentation instead,
+for `nacre.indent.solve`.
 Materials have names. ``nacre schema`` prints the reference of all tables and keys::
 
     units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out

@@ -27,8 +27,8 @@ COARSER = 4
 FAR = 3
 """Number of levels beyond: up to 5 · 4³ = 320 half-widths, far behind the tension near 2 z/μ."""
 DENSE = 1 / 20
-"""Largest distance of states, in half-widths of the contact up to `NEAR` of them, and as a part of the
-distance from it further away."""
+"""Largest distance of states, in half-widths of the contact up to `NEAR` of them, and as a part of
+the distance from it further away."""
 FITTED = 6
 """Number of cells inside the contact whose stresses a parabola continues to the edge."""
 ROWS = 16
