@@ -27,8 +27,8 @@ const APART: f64 = 0.2;
 /// the rounding of a maximum.
 const STEPS: [f64; 3] = [0.1, 1e-2, 3e-6];
 
-/// Least gain of a step, over its square and the shear stress. The loss beside a maximum of cos 2θ is 2 θ², so that the
-/// search ends a tenth of its step away from it.
+/// Least gain of a step, over its square and the shear stress. The loss beside a maximum of cos 2θ is 2 θ², so that a search
+/// goes on until the maximum is some half of a step away.
 const GAIN: f64 = 0.1;
 
 /// Angle within which two maxima are one [rad]: some of the steps at which they are told apart.

@@ -45,6 +45,8 @@ CLOSEST = 1e-3
 """Distance of depths in half-widths below which a refined one is no other: maxima are flat."""
 JUMP = 0.01
 """Part by which another maximum of the shear amplitude may be less for Matake's plane to jump."""
+NOISE = 1e-6
+"""Part of the peak pressure below which a traction at an interface is printed as 0."""
 UNRESOLVED = 0.25
 """Estimated error over a value above which a warning says so, as for summaries of stresses."""
 ESTIMATE = (
@@ -310,7 +312,9 @@ class FatigueSummary(Tabular):
         for face in self.interfaces:
             head = f"interfaces[{face.interface}] at {written(face.depth, 'm')}"
             for told, value in (("shear range", face.shear_range), ("tension", face.tension)):
-                rows.append([head, told, written(value, "Pa"), "", "", ""])
+                # Far from the contact, loads are merged to wide cells.
+                shown = value if value > NOISE * self.peak_pressure else 0.0
+                rows.append([head, told, written(shown, "Pa"), "", "", ""])
                 head = ""
         plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
         notes = [PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]

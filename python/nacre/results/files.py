@@ -157,7 +157,8 @@ def load(path: AnyPath) -> Any:
     -------
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
-        `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an `IndentSolution` or a `Fit` of `nacre.indent`.
+        `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
+        `IndentSolution` or a `Fit` of `nacre.indent`.
 
     Raises
     ------
