@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from nacre import fatigue
@@ -23,7 +24,7 @@ def ratio(kind: str, factor: float) -> float:
         return (factor + 3**0.5) / 3
     if kind == "matake":
         return (factor + 1) / 2
-    return (factor / (1 + factor**2) ** 0.5 + 1) / 2
+    return (factor / math.hypot(1.0, factor) + 1) / 2
 
 
 def made(kind: str, factor: float) -> Any:

@@ -111,10 +111,13 @@ class Tried(Listed):
     is_line: bool
 
 
+LINED = nacre.solve(
+    ROD, nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 1e-5)]), grid=nacre.Grid.line(64, 2e-4), load=1e4
+)
 LISTED: dict[str, Callable[[], Any]] = {
     "creep coefficients": lambda: nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
     "fatigue": lambda: fatigue.assess(
-        solved("line"),
+        LINED,
         criteria=[fatigue.DangVan(520e6, 330e6)],
         shear_yield=6e8,
         depths=[0.0, 1e-5, 4e-5],
