@@ -31,6 +31,10 @@ const STEPS: [f64; 3] = [0.1, 1e-2, 3e-6];
 /// goes on until the maximum is some half of a step away.
 const GAIN: f64 = 0.1;
 
+/// Largest number of times that a search looks around: it needs some 50 to a maximum. On a ridge that is flat, as two
+/// principal stresses that are nearly equal make it, it may go on for long and gain nothing.
+const POLLS: usize = 600;
+
 /// Angle within which two maxima are one [rad]: some of the steps at which they are told apart.
 const SAME: f64 = 0.05;
 
@@ -144,7 +148,10 @@ impl<'a> Planes<'a> {
         // The golden angle turns the directions evenly.
         let golden = PI * (3.0 - 5.0_f64.sqrt());
         let (mut best, mut turn) = (start, 0.0);
-        while step > end {
+        for _ in 0..POLLS {
+            if step <= end {
+                break;
+            }
             let beside =
                 |k: u8| self.at(turned(&best.normal, step, turn + f64::from(k) * TAU / 6.0));
             let least = value(&best) + GAIN * step * step * start.shear + self.rounding;
@@ -166,7 +173,8 @@ impl<'a> Planes<'a> {
                 let plane = self.at(turned(&best.normal, step, f64::from(k) * TAU / 12.0));
                 self.climbed(plane, [0.3 * step, STEPS[2]], &|plane: &Plane| plane.shear)
             };
-            let better = |plane: &Plane| counts(plane) && plane.tension > best.tension;
+            let least = best.tension + GAIN * step * step * best.shear;
+            let better = |plane: &Plane| counts(plane) && plane.tension > least;
             match (0..12).map(beside).find(better) {
                 Some(better) => best = better,
                 None => step *= 0.5,
