@@ -12,8 +12,8 @@ Examples
 >>> grid = nacre.Grid.line(96, 3e-4)
 >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
 >>> summary = fatigue.assess(solution, shear_yield=600e6, friction=0.1)
->>> round(summary.layers[0].safety_factors["shakedown"], 1)
-1.7
+>>> round(summary.layers[0].safety_factors["shakedown"], 2)
+1.77
 """
 
 from nacre.fatigue.criteria import CRITERIA as CRITERIA

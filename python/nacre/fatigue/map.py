@@ -46,8 +46,7 @@ class ShakedownMap(Tabular):
     friction: Array
     """Coefficients of friction ``(nf,)``."""
     limits: Array
-    """Largest ratio ``(layers, nf)`` of the peak pressure to the yield stress in shear of a layer
-    with which it shakes down: the peak pressure over the `shear_yield` that it needs."""
+    """Peak pressure over the yield stress in shear for shakedown, of each layer ``(layers, nf)``."""
     first_yield: Array
     """That ratio with which nothing yields ``(layers, nf)``."""
     depths: Array
@@ -92,6 +91,11 @@ class ShakedownMap(Tabular):
         -------
         matplotlib.axes.Axes
             The axes.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are no axes of Matplotlib.
 
         Examples
         --------

@@ -78,8 +78,10 @@ class LayerFatigue(Result):
     depths: tuple[float, float]
     """Depths of the two faces [m]; the lower one is infinite for the substrate."""
     shakedown: Balanced
-    """Smallest yield stress in shear [Pa] with which it shakes down, point, and residual stresses
-    along x and y [Pa] that make it possible there."""
+    """Smallest yield stress in shear [Pa] with which it shakes down, point, and residual stresses.
+
+    The residual stresses along x and y [Pa] make it possible there.
+    """
     first_yield: Peak
     """Smallest yield stress in shear with which nothing yields [Pa], and point."""
     orthogonal_shear: Peak
@@ -193,8 +195,10 @@ class FatigueSummary(Tabular):
     profiles: dict[str, Array]
     """Values at these depths ``(nz,)`` [Pa], by name: "shakedown" …, criteria."""
     is_estimate: bool
-    """Whether shakedown is an estimate, as in point contacts and rollers: residual stresses that
-    depend on the depth alone are not all that are in equilibrium there."""
+    """Whether shakedown is an estimate, as in point contacts and rollers.
+
+    Residual stresses that depend on the depth alone are not all that are in equilibrium there.
+    """
     warnings: list[str] = field(default_factory=list)
     """Warnings, each also issued as `NacreWarning`."""
 
@@ -246,6 +250,11 @@ class FatigueSummary(Tabular):
         -------
         matplotlib.axes.Axes
             The axes.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are no axes of Matplotlib.
 
         Examples
         --------
