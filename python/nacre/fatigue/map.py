@@ -15,8 +15,19 @@ from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import Rule
-from nacre.fatigue.summary import ESTIMATE, PLASTICITY, checked_depths, in_region, prepared
-from nacre.results import display, files, values
+from nacre.fatigue.summary import (
+    ESTIMATE,
+    PLASTICITY,
+    checked_depths,
+    fitted,
+    flag,
+    in_region,
+    numbers,
+    prepared,
+    rule_of,
+    word,
+)
+from nacre.results import display, files
 from nacre.results.listed import Tabular
 from nacre.results.quantities import SHAKEDOWN
 
@@ -46,7 +57,7 @@ class ShakedownMap(Tabular):
     friction: Array
     """Coefficients of friction ``(nf,)``."""
     limits: Array
-    """Peak pressure over the yield stress in shear for shakedown, of each layer ``(layers, nf)``."""
+    """Peak pressure over the yield stress in shear for shakedown ``(layers, nf)``."""
     first_yield: Array
     """That ratio with which nothing yields ``(layers, nf)``."""
     depths: Array
@@ -68,10 +79,23 @@ class ShakedownMap(Tabular):
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        with values.refusing(cls.__name__):
-            arrays = ("friction", "limits", "first_yield", "depths")
-            made = {name: np.asarray(state[name], dtype=np.float64) for name in arrays}
-            return cls(**state | made | {"names": tuple(state["names"])})
+        def plane(rows: Any) -> Array:
+            return np.array([numbers(row) for row in rows])
+
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                friction=numbers,
+                limits=plane,
+                first_yield=plane,
+                depths=plane,
+                names=lambda names: tuple(word(name) for name in names),
+                rule=rule_of,
+                peak_pressure=float,
+                is_estimate=flag,
+            )
+        )
 
     def __eq__(self, other: object) -> bool:
         """Return whether all fields are equal."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -106,19 +106,20 @@ class LayerFatigue(Result):
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        with values.refusing(cls.__name__):
-            top, bottom = state["depths"]
-            (k, at, (x, y)) = state["shakedown"]
-            return cls(
-                layer=int(state["layer"]),
-                name=state["name"],
-                depths=(float(top), np.inf if bottom is None else float(bottom)),
-                shakedown=(float(k), _place(at), (float(x), float(y))),
-                first_yield=_peak(state["first_yield"]),
-                orthogonal_shear=_peak(state["orthogonal_shear"]),
-                criteria={name: _peak(peak) for name, peak in state["criteria"].items()},
-                safety_factors={n: float(v) for n, v in state["safety_factors"].items()},
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                layer=int,
+                name=lambda name: None if name is None else word(name),
+                depths=lambda ends: (float(ends[0]), np.inf if ends[1] is None else float(ends[1])),
+                shakedown=_balanced,
+                first_yield=_peak,
+                orthogonal_shear=_peak,
+                criteria=lambda peaks: {name: _peak(peak) for name, peak in peaks.items()},
+                safety_factors=lambda found: {name: float(one) for name, one in found.items()},
             )
+        )
 
     def __repr__(self) -> str:
         """Return the shakedown in a line."""
@@ -215,22 +216,21 @@ class FatigueSummary(Tabular):
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        with values.refusing(cls.__name__):
-            criteria = tuple(values.decode(one) for one in state["criteria"])
-            if not all(isinstance(one, Criterion) for one in criteria):
-                raise TypeError(f"criteria must hold criteria, got {criteria!r}")
-            made = {
-                "layers": [LayerFatigue._restored(one) for one in state["layers"]],
-                "interfaces": [InterfaceFatigue._restored(one) for one in state["interfaces"]],
-                "criteria": criteria,
-                "depths": np.asarray(state["depths"], dtype=np.float64),
-                "profiles": {
-                    name: np.asarray(found, dtype=np.float64)
-                    for name, found in state["profiles"].items()
-                },
-                "warnings": list(state["warnings"]),
-            }
-            return cls(**state | made)
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                layers=lambda parts: [LayerFatigue._restored(one) for one in parts],
+                interfaces=lambda parts: [InterfaceFatigue._restored(one) for one in parts],
+                criteria=lambda given: checked_criteria(map(values.decode, given)),
+                rule=rule_of,
+                peak_pressure=float,
+                depths=numbers,
+                profiles=lambda found: {name: numbers(one) for name, one in found.items()},
+                is_estimate=flag,
+                warnings=lambda texts: [word(text) for text in texts],
+            )
+        )
 
     def __eq__(self, other: object) -> bool:
         """Return whether all fields are equal."""
@@ -346,6 +346,50 @@ class FatigueSummary(Tabular):
             f"<FatigueSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces, "
             f"criteria {', '.join(type(one).__name__ for one in self.criteria) or 'none'}>"
         )
+
+
+def fitted(kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return the fields of a kind of result from plain data; wrong ones are a `ValueError`."""
+    found = {}
+    for key, read in readers.items():
+        try:
+            found[key] = read(state[key])
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            said = f'{kind}: the value of the key "{key}" does not fit: {state.get(key)!r:.100}'
+            raise ValueError(said) from error
+    return found
+
+
+def word(given: object) -> str:
+    """Return a text, or raise."""
+    if not isinstance(given, str):
+        raise TypeError(f"{given!r} is no text")
+    return given
+
+
+def flag(given: object) -> bool:
+    """Return a truth value, or raise."""
+    if not isinstance(given, bool):
+        raise TypeError(f"{given!r} is no bool")
+    return given
+
+
+def rule_of(given: Any) -> Rule:
+    """Return a condition of yield, or raise."""
+    if given not in get_args(Rule):
+        raise ValueError(f"{given!r} is no condition of yield")
+    found: Rule = given
+    return found
+
+
+def numbers(given: Any) -> Array:
+    """Return an array of numbers, or raise."""
+    return np.array([float(one) for one in given])
+
+
+def _balanced(given: Any) -> Balanced:
+    value, place, (x, y) = given
+    return float(value), _place(place), (float(x), float(y))
 
 
 def _place(given: Any) -> Place:
@@ -562,7 +606,7 @@ def prepared(
     """Return what is evaluated, checked."""
     if not isinstance(solution, Solution | FrictionSolution):
         raise TypeError(f"solution must be a Solution or a FrictionSolution, got {solution!r}")
-    if rule not in ("von_mises", "in_plane_tresca"):
+    if rule not in get_args(Rule):
         raise ValueError(f"rule must be 'von_mises' or 'in_plane_tresca', got {rule!r}")
     asked = checked_criteria(criteria)
     rolling = Rolling(solution, body, direction, x, threads)

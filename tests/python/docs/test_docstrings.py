@@ -22,6 +22,7 @@ import nacre.plot.rough
 import nacre.plot.sections
 import nacre.rough
 
+FATIGUE = ("assess", "shakedown", "shakedown_map")
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -31,7 +32,7 @@ def public_objects() -> dict[str, Any]:
     named = {name: getattr(nacre, name) for name in nacre.__all__ if not name.startswith("__")}
     named |= {f"types.{name}": getattr(nacre.types, name) for name in nacre.types.__all__}
     named |= {f"hertz.{name}": getattr(nacre.hertz, name) for name in nacre.hertz.__all__}
-    named |= {f"fatigue.{name}": getattr(nacre.fatigue, name) for name in ("assess", "shakedown_map")}
+    named |= {f"fatigue.{name}": getattr(nacre.fatigue, name) for name in FATIGUE}
     for name, thing in named.items():
         found[name] = thing
         if isinstance(thing, type) and not issubclass(thing, BaseException):
