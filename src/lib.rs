@@ -34,6 +34,7 @@
 //! | contact | [`contact`]: pressure from shape, load and moments |
 //! | *on the core* | |
 //! | stress | [`mod@stress`]: stress and displacement below the surface |
+//! | fatigue | [`fatigue`]: shakedown and multiaxial fatigue of a history of stresses |
 //! | friction | [`friction`]: partial slip, histories and rolling |
 //! | indent | [`indent`]: indentation by axisymmetric tips, without a grid |
 //! | gradient | [`gradient`]: derivatives of solved contacts |
@@ -58,6 +59,7 @@ pub mod contact;
 #[cfg(feature = "serde")]
 mod data;
 pub mod error;
+pub mod fatigue;
 pub mod friction;
 pub mod gradient;
 pub mod indent;

@@ -1,5 +1,6 @@
 //! Numerical methods that know nothing of contact.
 
+pub(crate) mod ball;
 pub(crate) mod dense;
 pub(crate) mod fft;
 pub(crate) mod linear_cg;

@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, arguments, background, data, value,
-//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent, paths.
+//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, fatigue, gradient, indent, paths.
 
 use pyo3::prelude::*;
 
@@ -12,6 +12,7 @@ mod coefficients;
 mod contact;
 mod data;
 mod errors;
+mod fatigue;
 mod friction;
 mod gradient;
 mod grid;
@@ -42,6 +43,8 @@ mod core {
     #[pymodule_export]
     use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]
+    use super::fatigue::{fatigue_constants, fatigue_stress, shakedown};
+    #[pymodule_export]
     use super::friction::{PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide};
     #[pymodule_export]
     use super::gradient::PyLinear;
@@ -59,8 +62,8 @@ mod core {
     use super::solved::{PySolved, checked_report};
     #[pymodule_export]
     use super::stress::{
-        PyStressPlan, checked_stress, stress, stress_invariants, stress_plan, stress_summary,
-        stress_under,
+        PyStressPlan, checked_stress, layer_values, stress, stress_invariants, stress_plan,
+        stress_summary, stress_under,
     };
     use super::{indent, shapes};
     use pyo3::prelude::*;

@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from nacre import bearing as bearing
     from nacre import case as case
     from nacre import design as design
+    from nacre import fatigue as fatigue
     from nacre import friction as friction
     from nacre import hertz as hertz
     from nacre import indent as indent
@@ -119,8 +120,8 @@ HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
 SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
 _LAZY = (
-    *("bearing", "case", "design", "friction", "hertz", "indent", "jax", "plot", "rough"),
-    "torch",
+    *("bearing", "case", "design", "fatigue", "friction", "hertz"),
+    *("indent", "jax", "plot", "rough", "torch"),
 )
 """Modules that are imported when they are first used, as `nacre.plot`."""
 

@@ -5,18 +5,23 @@ from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
 from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
+from nacre.fatigue import FatigueSummary, InterfaceFatigue, LayerFatigue, ShakedownMap
 from nacre.friction import CreepCoefficients
 
 __all__ = [
     "CreepCoefficients",
     "Direction",
+    "FatigueSummary",
     "FrictionReport",
     "FrictionSolution",
     "Gradient",
     "History",
+    "InterfaceFatigue",
     "InterfaceStress",
+    "LayerFatigue",
     "LayerStress",
     "Report",
+    "ShakedownMap",
     "Shape",
     "Stress",
     "StressPlan",

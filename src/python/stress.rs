@@ -173,6 +173,16 @@ fn options(given: &Given, body: &HalfSpace) -> PyResult<StressOptions> {
     })
 }
 
+/// Values of the layers of a body, as [`by_layer`] reads them from the argument with this name.
+#[pyfunction]
+pub(super) fn layer_values(
+    body: &PyHalfSpace,
+    name: &str,
+    given: Given<'_>,
+) -> PyResult<Vec<Option<f64>>> {
+    by_layer(&given, name, &body.0)
+}
+
 /// Values of some layers, from the surface down and the substrate last. The argument is a sequence of
 /// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
 /// have it.

@@ -11,6 +11,7 @@ import numpy as np
 
 import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
+from nacre import fatigue
 from nacre.indent import Adhesion, Curve, Fit, Indentation, Tip, fit
 from nacre.results.listed import Listed
 from nacre.results.quantities import AXIS, Quantity
@@ -110,8 +111,20 @@ class Tried(Listed):
     is_line: bool
 
 
+LINED = nacre.solve(
+    ROD, nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 1e-5)]), grid=nacre.Grid.line(64, 2e-4), load=1e4
+)
 LISTED: dict[str, Callable[[], Any]] = {
     "creep coefficients": lambda: nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
+    "fatigue": lambda: fatigue.assess(
+        LINED,
+        criteria=[fatigue.DangVan(520e6, 330e6)],
+        shear_yield=6e8,
+        depths=[0.0, 1e-5, 4e-5],
+    ),
+    "shakedown map": lambda: fatigue.shakedown_map(
+        LINE.solve(ROD, load=1e4), friction=[0.0, 0.1], depths=[0.0, 1e-5]
+    ),
     "tried": lambda: Tried((1.0, -2.0), 1e-9 / 3, 3, "x", ("a", "b"), False),
 }
 FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}

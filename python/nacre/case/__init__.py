@@ -1,8 +1,8 @@
 """Case files: a contact, an indentation or a bearing, and a study of it, in TOML.
 
-There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`; a file
-with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`, and one
-with the table ``bearing`` is a bearing of `nacre.bearing`.
+There is a table for each argument of `nacre.solve`, one for `Solution.stress_summary` and one for
+`nacre.fatigue.assess`; a file with the tables ``tip`` and ``indent`` is an indentation instead,
+for `nacre.indent.solve`, and one with the table ``bearing`` is a bearing of `nacre.bearing`.
 Materials have names. ``nacre schema`` prints the reference of all tables and keys::
 
     units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
@@ -27,6 +27,9 @@ Materials have names. ``nacre schema`` prints the reference of all tables and ke
 
     [stress]  # may be left out, or empty
     friction = 0.1
+
+    [fatigue]  # may be left out, or empty; shear_yield of materials is its limit
+    criteria = [{ kind = "dang_van", bending = 520e6, torsion = 330e6 }]
 
     [sweep]  # for nacre sweep
     store = "study.nc"
@@ -168,10 +171,24 @@ class Case:
         table = self._table
         if not isinstance(table, CaseTable) or table.stress is None:
             return None
-        found = table.stress.keywords() | table.limits()
-        if self.friction is not None:
-            found = {name: found[name] for name in found if name not in ("friction", "direction")}
-        return found
+        found = table.stress.keywords() | table.limits(table.stress, "yield_stress", "strength")
+        return self._without_friction(found)
+
+    def fatigue(self) -> dict[str, Any] | None:
+        """Return the arguments of `nacre.fatigue.assess`, or None without a table ``fatigue``."""
+        table = self._table
+        if not isinstance(table, CaseTable) or table.fatigue is None:
+            return None
+        try:
+            found = table.fatigue.keywords() | table.limits(table.fatigue, "shear_yield")
+        except WrongValue as error:
+            raise CaseError(f"{self.name}: {error}") from error
+        return self._without_friction(found)
+
+    def _without_friction(self, found: dict[str, Any]) -> dict[str, Any]:
+        """Return keywords without those of friction where the tractions are known."""
+        left = () if self.friction is None else ("friction", "direction")
+        return {name: value for name, value in found.items() if name not in left}
 
     def life(self) -> dict[str, Any] | None:
         """Return the arguments of `BearingSolution.life`, or None without a table for it."""
@@ -197,7 +214,7 @@ class Case:
         for key in sweep.parameters:
             self._check_key(key)
             if not key.startswith(self._table.solved) or key.endswith(
-                (".yield_stress", ".strength")
+                (".yield_stress", ".strength", ".shear_yield")
             ):
                 message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
                 raise CaseError(message)
@@ -224,10 +241,9 @@ class Case:
         if store is not None:
             found["store"] = store
         if isinstance(self._table, CaseTable) and self._table.stress is not None:
-            asked = self._table.stress.keywords()
-            if self.friction is not None:
-                asked = {"body": asked["body"]}
-            found["stress"] = asked
+            found["stress"] = self._without_friction(self._table.stress.keywords())
+        if (fatigue := self.fatigue()) is not None:
+            found["fatigue"] = fatigue
         return found
 
     def _inside(self, store: str) -> Path:

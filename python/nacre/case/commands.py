@@ -92,7 +92,7 @@ def solve(
             raise CaseError(f"{case}: --initial must not be given for a bearing")
         _solve_bearing(case, described, save or [], as_json)
         return
-    arguments, asked = described.arguments(), described.stress()
+    arguments, asked, rated = described.arguments(), described.stress(), described.fatigue()
     if initial is not None:
         try:
             arguments["initial"] = nacre.load(initial)
@@ -105,7 +105,7 @@ def solve(
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(described.units):
-        _solve(case, described.friction, arguments, asked, save or [], as_json)
+        _solve(case, described.friction, arguments, (asked, rated), save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -145,11 +145,12 @@ def _solve(
     case: Path,
     friction: str | None,
     arguments: dict[str, Any],
-    asked: dict[str, Any] | None,
+    summed: tuple[dict[str, Any] | None, dict[str, Any] | None],
     save: list[Path],
     as_json: bool,
 ) -> None:
     """Solve, save and print in the units that are set."""
+    asked, rated = summed
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
@@ -163,18 +164,23 @@ def _solve(
             stress = None if asked is None else solution.stress_summary(**asked)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: stress: {error}") from error
+        try:
+            fatigue = None if rated is None else nacre.fatigue.assess(solution, **rated)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: fatigue: {error}") from error
     steps = solved if isinstance(solved, nacre.types.History) else None
     for path in save:
         # The fields of ParaView's file are those of the last step.
         (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
     if as_json:
-        extremes = {} if stress is None else {"stress": stress.to_dict()}
+        named = {"stress": stress, "fatigue": fatigue}
+        extremes = {name: one.to_dict() for name, one in named.items() if one is not None}
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
             print(f"{steps}\n\nlast step")
-        print(solution if stress is None else f"{solution}\n\n{stress}")
+        print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
 
 
 @app.command()

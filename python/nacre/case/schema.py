@@ -27,7 +27,18 @@ from nacre._tools.typing import Along
 from nacre._tools.units import System
 from nacre.case.friction import AnyAlong, Roll, Slide
 from nacre.case.shapes import AnyShape
-from nacre.case.tables import TWO, Count, Counts, Flags, Number, Pair, Table, described, said
+from nacre.case.tables import (
+    TWO,
+    Count,
+    Counts,
+    Flags,
+    Number,
+    Pair,
+    Table,
+    described,
+    said,
+    table_of,
+)
 from nacre.results.outputs import OUTPUTS
 
 CONSTANTS = described(nacre.Elastic)
@@ -38,6 +49,7 @@ LINE = described(nacre.Grid.line)
 SOLVE = described(nacre.solve)
 STRESS = described(nacre.Solution.stress)
 SUMMARY = described(nacre.Solution.stress_summary)
+FATIGUE = described(nacre.fatigue.assess)
 
 
 class Material(Table):
@@ -50,6 +62,9 @@ class Material(Table):
     )
     strength: Number | None = Field(
         None, description="Tensile strength [Pa], for safety factors of the tension."
+    )
+    shear_yield: Number | None = Field(
+        None, description="Yield stress in shear [Pa], for safety factors of shakedown."
     )
 
     def make(self) -> nacre.Elastic:
@@ -191,6 +206,40 @@ class Stress(Table):
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""
         return {"body": self.body, "friction": self.friction} | super().keywords()
+
+
+CRITERIA = {
+    kind: table_of(kind, maker, Table, dict.fromkeys(("bending", "torsion"), Number))
+    for kind, maker in nacre.fatigue.CRITERIA.items()
+}
+"""Tables of the criteria of fatigue, by kind."""
+
+if TYPE_CHECKING:
+    AnyCriterion = Table
+else:
+    AnyCriterion = Annotated[Union[tuple(CRITERIA.values())], Field(discriminator="kind")]  # noqa: UP007
+
+
+class Fatigue(Table):
+    """Shakedown and fatigue in steady rolling, as `nacre.fatigue.assess` has them."""
+
+    criteria: list[AnyCriterion] = Field([], description=FATIGUE["criteria"])
+    body: Literal["body", "counterbody"] = Field("body", description=FATIGUE["body"])
+    friction: Number = Field(0.0, description=FATIGUE["friction"])
+    direction: Pair | None = Field(None, description=FATIGUE["direction"])
+    x: Number | None = Field(None, description=FATIGUE["x"])
+    rule: Literal["von_mises", "in_plane_tresca"] = Field("von_mises", description=FATIGUE["rule"])
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords."""
+        found = {"body": self.body, "friction": self.friction} | super().keywords()
+        made = []
+        for number, one in enumerate(self.criteria):
+            with at(f"fatigue.criteria[{number}]"):
+                limits: Any = one
+                make = nacre.fatigue.CRITERIA[limits.kind]
+                made.append(make(bending=limits.bending, torsion=limits.torsion))
+        return found | {"criteria": tuple(made)}
 
 
 MOST_VALUES = 100_000
@@ -337,6 +386,9 @@ class CaseTable(Bodies):
     stress: Stress | None = Field(
         None, description="Stresses below the surface; the table may be empty."
     )
+    fatigue: Fatigue | None = Field(
+        None, description="Shakedown and fatigue in steady rolling; the table may be empty."
+    )
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
@@ -359,24 +411,23 @@ class CaseTable(Bodies):
         known = inspect.signature(getattr(nacre, name)).parameters
         if others := sorted(self.solve.model_fields_set - known.keys()):
             raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
-        if self.stress is not None and self.stress.friction:
-            raise WrongValue(
-                "stress.friction", f"must be 0 beside the table {name}: its tractions are known"
-            )
+        for place, table in (("stress", self.stress), ("fatigue", self.fatigue)):
+            if table is not None and table.friction:
+                raise WrongValue(
+                    f"{place}.friction",
+                    f"must be 0 beside the table {name}: its tractions are known",
+                )
         return asked.keywords()
 
-    def limits(self) -> dict[str, list[float | None]]:
-        """Return yield stresses and strengths of the layers and the substrate."""
-        body = self.body if self.stress is None or self.stress.body == "body" else self.counterbody
+    def limits(self, table: Stress | Fatigue | None, *names: str) -> dict[str, list[float | None]]:
+        """Return limits of the layers and the substrate of the body of a table, by their names."""
+        body = self.body if table is None or table.body == "body" else self.counterbody
         if body is None:
             return {}
         named = [*(layer.material for layer in body.layers)]
         named += [body.substrate] if self._base(body) is None else []
         found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
-        return {
-            name: [getattr(material, name, None) for material in found]
-            for name in ("yield_stress", "strength")
-        }
+        return {name: [getattr(material, name, None) for material in found] for name in names}
 
 
 class WrongValue(ValueError):

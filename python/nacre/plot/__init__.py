@@ -6,6 +6,7 @@ functions as methods.
 """
 
 from nacre.plot.bearing import bearing, elements_pressure, load_distribution
+from nacre.plot.fatigue import fatigue_depth, shakedown_map
 from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
@@ -27,6 +28,7 @@ __all__ = [
     "curve",
     "distribution",
     "elements_pressure",
+    "fatigue_depth",
     "friction",
     "heights",
     "interface_map",
@@ -38,6 +40,7 @@ __all__ = [
     "pressure_map",
     "relief",
     "section",
+    "shakedown_map",
     "spectrum",
     "stress_depth",
     "stress_section",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nacre.contact.friction import FrictionSolution
     from nacre.contact.solution import Report, Solution
     from nacre.contact.stresses import InterfaceStress, LayerStress, StressSummary
+    from nacre.fatigue.summary import InterfaceFatigue, LayerFatigue
 
 Texts = Mapping[str, Callable[[Any], str | None]]
 Peak = tuple[float, tuple[float, float, float]]
@@ -344,20 +345,21 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
     return rows
 
 
-def part(part: LayerStress | InterfaceStress) -> str:
+def part(part: LayerStress | InterfaceStress | LayerFatigue | InterfaceFatigue) -> str:
     """Return number and name of a layer, or number of an interface, in a summary."""
     number: int | None = getattr(part, "interface", None)
     return _layer(part) if number is None else f"interfaces[{number}]"  # type: ignore[arg-type]
 
 
-def _layer(layer: LayerStress) -> str:
+def _layer(layer: LayerStress | LayerFatigue) -> str:
     """Return number and name of a layer in a summary."""
     if layer.depths[1] == np.inf:
         return "the substrate"
-    return _named(layer.layer, layer.name)
+    return layer_name(layer.layer, layer.name)
 
 
-def _named(number: int, name: str | None) -> str:
+def layer_name(number: int, name: str | None) -> str:
+    """Return number and name of a layer."""
     return f"layers[{number}]" if name is None else f"layers[{number}] {name}"
 
 
@@ -476,7 +478,7 @@ def _body(name: str, body: Planned | None) -> list[tuple[str, str]]:
         return [(name, "a response")]
     layers = [
         (
-            f"  {_named(number, layer.name)}",
+            f"  {layer_name(number, layer.name)}",
             f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}"
             f"{_spring(layer.interface)}",
         )

@@ -157,8 +157,9 @@ def load(path: AnyPath) -> Any:
     -------
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
-        `StressSummary`, `CreepCoefficients`, an `IndentSolution` or a `Fit` of `nacre.indent`, a
-        `BearingSolution`, `BearingLife`, `StressVolume` or `LifeRatio` of `nacre.bearing`.
+        `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
+        `IndentSolution` or a `Fit` of `nacre.indent`, a `BearingSolution`, `BearingLife`,
+        `StressVolume` or `LifeRatio` of `nacre.bearing`.
 
     Raises
     ------

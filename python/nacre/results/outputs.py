@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from nacre.contact.friction import FrictionSolution
     from nacre.contact.solution import Solution
     from nacre.contact.stresses import StressSummary
+    from nacre.fatigue.summary import FatigueSummary
     from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
@@ -67,10 +68,34 @@ STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
 }
 """Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
 
+FATIGUES: dict[str, Callable[[FatigueSummary], list[float]]] = {
+    "shakedown": lambda summary: [layer.shakedown[0] for layer in summary.layers],
+    "substrate_shakedown": lambda summary: [
+        layer.shakedown[0] for layer in summary.layers if layer.is_substrate
+    ],
+    "orthogonal_shear": lambda summary: [layer.orthogonal_shear[0] for layer in summary.layers],
+    "interface_shear_range": lambda summary: [face.shear_range for face in summary.interfaces],
+}
+"""Outputs from `nacre.fatigue.assess`: each is the largest of these values, or NaN."""
+MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
+    "shakedown_safety_factor": lambda summary: _factors(summary, ["shakedown"]),
+    "first_yield_safety_factor": lambda summary: _factors(summary, ["first_yield"]),
+    "fatigue_safety_factor": lambda summary: _factors(
+        summary, [type(one).__name__ for one in summary.criteria]
+    ),
+}
+"""Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
+
 ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
 ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
+
+
+def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
+    """Return the safety factors of all layers that have these names."""
+    found = (layer.safety_factors for layer in summary.layers)
+    return [factors[name] for factors in found for name in names if name in factors]
 
 
 def named(
@@ -86,14 +111,15 @@ def named(
     told: dict[Room, str] = {
         "contact": "attributes of Solution that hold numbers "
         f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
-        f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)})",
+        f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
+        f"fatigue ({', '.join((*FATIGUES, *MARGINS))})",
         "indent": "attributes of nacre.indent.IndentSolution that hold numbers "
         f"({', '.join(OF_INDENT)})",
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
         f"({', '.join(OF_BEARING)})",
     }
     known: dict[Room, set[str]] = {
-        "contact": {*NUMBERS, *OF_FRICTION, *STRESSES},
+        "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
         "indent": {*OF_INDENT},
         "bearing": {*OF_BEARING},
     }
@@ -141,13 +167,14 @@ def evaluated(
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
     unresolved: list[str],
+    assess: Callable[[], FatigueSummary],
 ) -> dict[str, Any]:
-    """Return the outputs of a solution as plain numbers; the stresses are summed up once.
+    """Return the outputs of a solution as plain numbers; stresses and fatigue are summed up once.
 
     The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
     stresses that the cells do not resolve are added to `unresolved`.
     """
-    summary = None
+    summary = fatigue = None
     found: dict[str, Any] = {}
     for name, output in outputs.items():
         if not isinstance(output, str):
@@ -157,6 +184,14 @@ def evaluated(
                 summary = solution.stress_summary(**stress)
                 unresolved += summary.warnings
             value = max(STRESSES[output](summary), default=np.nan)
+        elif output in FATIGUES or output in MARGINS:
+            if fatigue is None:
+                fatigue = assess()
+                unresolved += fatigue.warnings
+            if output in FATIGUES:
+                value = max(FATIGUES[output](fatigue), default=np.nan)
+            else:
+                value = min(MARGINS[output](fatigue), default=np.nan)
         else:
             value = _number(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()

@@ -181,6 +181,16 @@ STRESS = tuple(
     }.items()
 )
 """Extremes of the stress that studies keep."""
+RATED = (
+    Quantity("shakedown", "largest shear yield stress that a layer needs to shake down", "Pa"),
+    Quantity("substrate_shakedown", "shear yield stress that the substrate needs", "Pa"),
+    Quantity("orthogonal_shear", "largest range of the shear stress yz", "Pa"),
+    Quantity("interface_shear_range", "largest range of the shear at an interface", "Pa"),
+    Quantity("shakedown_safety_factor", "smallest safety factor of shakedown"),
+    Quantity("first_yield_safety_factor", "smallest safety factor of first yield"),
+    Quantity("fatigue_safety_factor", "smallest safety factor of the criteria of fatigue"),
+)
+"""Numbers of fatigue that studies keep."""
 
 EXTREMES = (
     Quantity("part", "layer or interface"),
@@ -193,6 +203,42 @@ EXTREMES = (
     Quantity("safety_factor", "yield stress or strength over the value"),
 )
 """Columns of the table of a stress summary."""
+
+PROFILE = (
+    Quantity("depth", "depth; an interface is there twice, for its two sides", "m"),
+    Quantity(
+        "shakedown", "shear yield stress for shakedown", "Pa", label="shear yield for shakedown"
+    ),
+    Quantity(
+        "first_yield", "shear yield stress for no yield", "Pa", label="shear yield for no yield"
+    ),
+    Quantity("orthogonal_shear", "range of the shear stress yz", "Pa", label="range of shear yz"),
+    Quantity("DangVan", "equivalent stress of Dang Van", "Pa", label="Dang Van"),
+    Quantity("Crossland", "equivalent stress of Crossland", "Pa", label="Crossland"),
+    Quantity("Findley", "equivalent stress of Findley", "Pa", label="Findley"),
+    Quantity("Matake", "equivalent stress of Matake", "Pa", label="Matake"),
+)
+"""What a material needs at each depth under a contact that rolls."""
+
+FATIGUE = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the value"),
+    Quantity("value", "value", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or limit over the value"),
+)
+"""Columns of the table of a summary of fatigue."""
+
+SHAKEDOWN = (
+    Quantity("layer", "layer"),
+    Quantity("friction", "coefficient of friction"),
+    Quantity("limits", "peak pressure over shear yield stress, for shakedown"),
+    Quantity("first_yield", "peak pressure over shear yield stress, for no yield"),
+    Quantity("depths", "depth that decides the shakedown", "m"),
+)
+"""Columns of the table of a shakedown map."""
 
 INDENT = (
     Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),
@@ -305,5 +351,6 @@ def units(
     *, line: bool = False, rolls: bool = False, indents: bool = False, bears: bool = False
 ) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    rows = INDENT if indents else BEARING if bears else (*FRICTION, *CONTACT, *STRESS)
+    contact = (*FRICTION, *CONTACT, *STRESS, *RATED)
+    rows = INDENT if indents else BEARING if bears else contact
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

@@ -89,6 +89,8 @@ ELSEWHERE = {
     "StressVolume": "nacre.bearing",
     "LifeRatio": "nacre.bearing",
 }
+ELSEWHERE |= dict.fromkeys(("FatigueSummary", "LayerFatigue"), "nacre.fatigue")
+ELSEWHERE |= dict.fromkeys(("InterfaceFatigue", "ShakedownMap"), "nacre.fatigue")
 """Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""

@@ -20,7 +20,10 @@ from nacre._tools.paths import put
 from nacre._tools.progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
+from nacre.fatigue import assess
 from nacre.results.outputs import (
+    FATIGUES,
+    MARGINS,
     STRESSES,
     USUAL,
     Output,
@@ -54,6 +57,9 @@ BEARING = frozenset(
 )
 """Arguments of the solve of a bearing, and the bearing."""
 
+RATED = frozenset("criteria shear_yield friction direction residual body x rule".split())
+"""Arguments of `nacre.fatigue.assess` that studies take."""
+
 
 def sweep(
     case: Case,
@@ -61,6 +67,7 @@ def sweep(
     *,
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
     stress: Mapping[str, Any] | None = None,
+    fatigue: Mapping[str, Any] | None = None,
     store: str | os.PathLike[str] | None = None,
     version: str | int | None = None,
     executor: Executor | None = None,
@@ -93,8 +100,13 @@ def sweep(
         are the largest values anywhere, ``"von_mises"``, ``"tension"`` (principal) and
         ``"max_shear"``; the largest tension in a layer, ``"coating_tension"``; and the largest
         tractions at an interface, ``"interface_shear"`` and ``"interface_tension"``. The last three
-        are NaN without layers. With friction, attributes of `FrictionSolution` are outputs, too:
-        ``"force"``, ``"torque"``, ``"shift"``, ``"twist"``, ``"creepage"``, ``"dissipated"``.
+        are NaN without layers. Outputs of `nacre.fatigue` are the largest yield stresses in shear
+        that the layers or the substrate need, ``"shakedown"`` and ``"substrate_shakedown"``; the
+        largest ranges ``"orthogonal_shear"`` and ``"interface_shear_range"``; and the smallest of
+        the safety factors, ``"shakedown_safety_factor"``, ``"first_yield_safety_factor"`` and
+        ``"fatigue_safety_factor"``, NaN without a yield stress or criteria. With friction,
+        attributes of `FrictionSolution` are outputs, too: ``"force"``, ``"torque"``, ``"shift"``,
+        ``"twist"``, ``"creepage"``, ``"dissipated"``.
         Outputs of an indentation are numbers of `nacre.indent.IndentSolution`, by default load,
         approach, radius, stiffness and central pressure; ``"pull_off_load"`` is NaN without
         adhesion. Outputs of a bearing are numbers of `nacre.bearing.BearingSolution`, by default
@@ -103,6 +115,9 @@ def sweep(
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
         ``direction``, ``residual``, ``refine``.
+    fatigue : mapping, optional
+        Arguments of `nacre.fatigue.assess` for the outputs of fatigue: ``criteria``,
+        ``shear_yield``, ``friction``, ``direction``, ``residual``, ``body``, ``x``, ``rule``.
     store : path, optional
         File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
         replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
@@ -177,9 +192,13 @@ def sweep(
     asked = {**(stress or {})} if stresses else {}
     if unknown := set(asked) - {"body", "friction", "direction", "residual", "refine"}:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
+    rated = any(isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in wanted.values())
+    assessed = {**(fatigue or {})} if rated else {}
+    if unknown := set(assessed) - RATED:
+        raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
     if not isinstance(version, str | int | None):
         raise TypeError(f"version must be a text or an integer, got {version!r}")
-    identity = identified(wanted, asked, version)
+    identity = identified(wanted, asked, assessed, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
         message = (
@@ -213,7 +232,7 @@ def sweep(
         arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
         found = len(set(keys)) - len(tasks) - len(failures)
         with shown(progress, found + len(tasks), found) as advance:
-            for _ in _run(arguments_of, wanted, asked, executor, keep):
+            for _ in _run(arguments_of, wanted, (asked, assessed), executor, keep):
                 advance()
         records = [journal.records[key] for key in keys]
         dataset = assembled(coordinates, records, wanted)
@@ -309,7 +328,7 @@ def _said(point: Mapping[str, Any]) -> dict[str, Any]:
 def _run(
     tasks: Mapping[str, dict[str, Any]],
     outputs: Mapping[str, Output],
-    stress: Mapping[str, Any],
+    asked: tuple[Mapping[str, Any], Mapping[str, Any]],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:
@@ -337,7 +356,7 @@ def _run(
             for key, arguments in tasks.items():
                 if stopped.is_set():
                     return
-                task = arguments, dict(outputs), dict(stress), os.getpid()
+                task = arguments, dict(outputs), dict(asked[0]), dict(asked[1]), os.getpid()
                 futures.append(pool.submit(_solve, *task))
                 futures[-1].add_done_callback(partial(end, key))
         except BaseException as error:  # from the executor: raised below
@@ -371,7 +390,11 @@ def default_threads() -> int:
 
 
 def _solve(
-    arguments: dict[str, Any], outputs: dict[str, Output], stress: dict[str, Any], parent: int
+    arguments: dict[str, Any],
+    outputs: dict[str, Output],
+    stress: dict[str, Any],
+    fatigue: dict[str, Any],
+    parent: int,
 ) -> Record:
     """Solve one case, in any process; return its outputs, or the reason why it failed."""
     if os.getpid() != parent:
@@ -393,7 +416,8 @@ def _solve(
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
         threads = {"threads": arguments["threads"]}
-        values = evaluated(solution, outputs, threads | stress, unresolved)
+        rate = partial(assess, solution, **threads, **fatigue)
+        values = evaluated(solution, outputs, threads | stress, unresolved, rate)
         kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
         record = {
             "values": values,

@@ -31,9 +31,12 @@ class Identity(NamedTuple):
 
 
 def identified(
-    outputs: Mapping[str, Any], stress: Mapping[str, Any], version: str | int | None = None
+    outputs: Mapping[str, Any],
+    stress: Mapping[str, Any],
+    fatigue: Mapping[str, Any],
+    version: str | int | None = None,
 ) -> Identity:
-    """Return the identity of outputs, of the arguments of their stresses, and of their version."""
+    """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
     unknown: list[str] = []
     kept = {
         name: output if isinstance(output, str) else _part(output, name, unknown)
@@ -42,6 +45,8 @@ def identified(
     data: dict[str, Any] = {"outputs": kept}
     if stress:
         data["stress"] = _part(dict(stress), "stress", unknown)
+    if fatigue:
+        data["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
     if version is not None:
         data["version"] = version
     return Identity(data, unknown)

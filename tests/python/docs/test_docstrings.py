@@ -18,10 +18,13 @@ import nacre
 import nacre._tools.units
 import nacre.bearing
 import nacre.design
+import nacre.fatigue.criteria
+import nacre.plot.fatigue
 import nacre.plot.rough
 import nacre.plot.sections
 import nacre.rough
 
+FATIGUE = ("assess", "shakedown", "shakedown_map")
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -31,6 +34,7 @@ def public_objects() -> dict[str, Any]:
     named = {name: getattr(nacre, name) for name in nacre.__all__ if not name.startswith("__")}
     named |= {f"types.{name}": getattr(nacre.types, name) for name in nacre.types.__all__}
     named |= {f"hertz.{name}": getattr(nacre.hertz, name) for name in nacre.hertz.__all__}
+    named |= {f"fatigue.{name}": getattr(nacre.fatigue, name) for name in FATIGUE}
     for name, thing in named.items():
         found[name] = thing
         if isinstance(thing, type) and not issubclass(thing, BaseException):
@@ -145,6 +149,9 @@ def test_its_examples_are_true(name: str) -> None:
         nacre.bearing.solution,
         nacre.indent.curves,
         nacre.indent.checks,
+        nacre.fatigue,
+        nacre.fatigue.criteria,
+        nacre.plot.fatigue,
     ],
 )
 def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:

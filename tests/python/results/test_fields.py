@@ -77,6 +77,10 @@ MADE: dict[str, list[dict[str, Any]]] = {
     "Adhesion.jkr": [{"work": 0.1}],
     "Adhesion.dmt": [{"work": 0.1}],
     "Adhesion.maugis": [{"work": 0.1, "strength": 1e8}],
+    **{
+        name: [{"bending": 520e6, "torsion": 330e6}]
+        for name in ("DangVan", "Crossland", "Findley", "Matake")
+    },
 }
 """Arguments of each call that makes a value: all of them, and none as it is by default."""
 TABLES = {
@@ -85,6 +89,7 @@ TABLES = {
     "Grid.line": "Grid",
     **{name: name for name in ("Layer", "Spring", "Grid", "HeightMap")},
     **{name: name for name in ("LogarithmicProfile", "SampledProfile")},
+    **{name: f"{name}Table" for name in ("DangVan", "Crossland", "Findley", "Matake")},
 }
 """Tables of case files where the name of the class does not say them."""
 FROM_A_FILE = {("HeightMap", "heights"), ("HeightMap", "center")}

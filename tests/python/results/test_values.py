@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import nacre
-from bodies import BALL, STEEL
+from bodies import BALL, STEEL, quiet
+from nacre import fatigue
 from nacre.results import values
 from support import python
 
@@ -27,6 +28,7 @@ SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1
 SOLUTION = nacre.solve(BALL, COATED, load=10.0, grid=GRID)
 SLID = nacre.slide(BALL, COATED, STEEL, load=10.0, grid=GRID, friction=0.1, force=(0.3, None))
 SUMMARY = SOLUTION.stress_summary(strength={0: 1e9}, threads=1)
+ASSESSED = quiet(fatigue.assess, SOLUTION, depths=[1e-5, *COATED.interfaces], threads=1)
 
 MADE_BY_A_CALL: dict[str, Any] = {
     "elastic": STEEL,
@@ -103,6 +105,12 @@ VALUES = MADE_BY_A_CALL | {
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],
     "interface stress": SUMMARY.interfaces[0],
+    "fatigue summary": ASSESSED,
+    "layer fatigue": ASSESSED.layers[-1],
+    "interface fatigue": ASSESSED.interfaces[0],
+    "shakedown map": quiet(
+        fatigue.shakedown_map, SOLUTION, friction=[0.0], depths=[1e-5], threads=1
+    ),
 }
 
 every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())

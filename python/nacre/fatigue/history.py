@@ -1,0 +1,328 @@
+"""Stresses that the points of a body see, one after the other, when a contact rolls over them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.typing import Direction, Member, Side
+from nacre.contact.friction import FrictionSolution
+from nacre.contact.solution import Solution
+from nacre.contact.stresses import Stress, StressPlan, stress
+
+Array = npt.NDArray[np.float64]
+
+NAMES = ("xx", "yy", "zz", "xy", "yz", "xz")
+"""Components of a state, in their order."""
+NEAR = 5.0
+"""Half-widths of the contact up to which a history has the spacing of the grid."""
+COARSER = 4
+"""Factor from one level to the next, of the width and of the cells."""
+FAR = 3
+"""Number of levels beyond: up to 5 · 4³ = 320 half-widths, far behind the tension near 2 z/μ."""
+DENSE = 1 / 20
+"""Largest distance of states, in half-widths of the contact up to `NEAR` of them, and as a part of
+the distance from it further away."""
+FITTED = 6
+"""Number of cells inside the contact whose stresses a parabola continues to the edge."""
+ROWS = 16
+"""Smallest number of rows along x that cells beyond are merged to."""
+PARTS = np.arange(1, 8) / 8
+"""Places at which cubic curves divide intervals, where the centre of a ball counts.
+
+Its error is one of the step, 1/32 half-width at least with 64 cells across; an eighth of it is
+below 3e-3 of the stress.
+"""
+LEVEL = 1e-3
+"""Part of the largest line load by which that of neighbouring rows may be less to count as equal:
+the top of a parabola a thirtieth of its half-width wide."""
+
+
+class Load(NamedTuple):
+    """A pressure whose friction has a direction, and its factor in the sum."""
+
+    pressure: Array
+    friction: float
+    direction: Direction
+    factor: float
+
+
+class States(NamedTuple):
+    """Histories at some depths, all with the same places along y."""
+
+    y: Array
+    """Places ``(times,)``; the last one is infinitely far away."""
+    normal: Array
+    """Stresses ``(depths, times, 6)`` of the contact as it was solved."""
+    tangential: Array
+    """What the traction ``pressure`` along the direction of friction adds."""
+    edges: tuple[float, ...] = ()
+    """Places among them where the stress is not smooth: edges of the contact, at the surface."""
+
+    def at(self, friction: float) -> Array:
+        """Return the states with a coefficient of friction."""
+        return self.normal + friction * self.tangential if friction else self.normal
+
+
+class Rolling:
+    """A body of a solved contact that rolls along y, in the section ``x``."""
+
+    def __init__(
+        self,
+        solution: Solution | FrictionSolution,
+        body: Member,
+        direction: Direction | None,
+        x: float | None,
+        threads: int | None,
+    ) -> None:
+        normal = solution.normal if isinstance(solution, FrictionSolution) else solution
+        self.grid: core.Grid = normal.grid
+        if any(self.grid.periodic):
+            raise ValueError(
+                "solution must not be periodic: its bodies are never free of stress, got a grid "
+                f"with periodic = {self.grid.periodic}"
+            )
+        if not normal.pressure.any():
+            raise ValueError("solution must be in contact, got one whose pressure is 0 everywhere")
+        self.plan: StressPlan = solution.stress_plan(body, threads)
+        self.body = self.plan.body
+        tractions = solution.traction if isinstance(solution, FrictionSolution) else None
+        self.known = tractions is not None
+        self.sign = -1.0 if body == "counterbody" else 1.0
+        self.threads = threads
+        self.direction = direction or normal.report.rolling_direction or (0.0, 1.0)
+        self.pressure = np.asarray(normal.pressure)
+        self.peak_pressure = normal.peak_pressure
+        self.tractions = None if tractions is None else np.asarray(tractions)
+        self.x = None if self.grid.is_line else (self._section() if x is None else float(x))
+        row = 0 if self.x is None else int(np.argmin(np.abs(self.grid.x - self.x)))
+        self.row = self.pressure[row]
+        inside = np.flatnonzero(self.row)
+        if not inside.size:
+            raise ValueError(f"x must be in the contact, whose row there has no pressure, got {x}")
+        self.inside = slice(int(inside[0]), int(inside[-1]) + 1)
+        self.half_width = 0.5 * inside.size * self.grid.spacing[1]
+        self.levels = self._levels()
+
+    def _section(self) -> float:
+        """Return the middle of the rows with the largest line load."""
+        loads = self.pressure.sum(axis=1)
+        best = int(loads.argmax())
+        equal = loads >= (1.0 - LEVEL) * loads[best]
+        first = best - int(np.argmin(np.r_[equal[best::-1], False])) + 1
+        last = best + int(np.argmin(np.r_[equal[best:], False])) - 1
+        return float(self.grid.x[first : last + 1].mean())
+
+    def _levels(self) -> list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]]:
+        """Return grids beyond that of the contact, each four times as wide as the one before.
+
+        Each has the loads, merged to its cells, and says which of its cells belong to the history.
+        """
+        (nx, ny), (_, step) = self.grid.shape, self.grid.spacing
+        merged = [self.pressure, *(() if self.tractions is None else self.tractions)]
+        reach = 2 * NEAR * self.half_width / step
+        # A multiple of 4², of which a quarter is put into the middle of the next one.
+        count = 16 * int(np.ceil(max(reach, ny) / 16))
+        before = (count - ny) // 2
+        middle = self.grid.center[1] + (count / 2 - before - ny / 2) * step
+        sides = ((0, 0), (before, count - ny - before))
+        merged = [np.pad(load, sides) for load in merged]
+        covered = np.array([-0.5, 0.5]) * self.grid.size[1] + self.grid.center[1]
+        across = 1
+        found: list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]] = []
+        for level in range(1 + FAR):
+            if level:
+                step *= COARSER
+                rows = COARSER if nx % COARSER == 0 and nx // COARSER >= ROWS else 1
+                across, nx = across * rows, nx // rows
+                sides = ((0, 0), ((count - count // COARSER) // 2,) * 2)
+                parts = [
+                    load.reshape(nx, rows, count // COARSER, COARSER).mean(axis=(1, 3))
+                    for load in merged
+                ]
+                merged = [np.pad(part, sides) for part in parts]
+            if self.grid.is_line:
+                grid = core.Grid.line(count, count * step, middle)
+            else:
+                size, place = (self.grid.size[0], count * step), (self.grid.center[0], middle)
+                grid = core.Grid((nx, count), size, place)
+            y = grid.y
+            used = (y < covered[0] - 1e-9 * step) | (y > covered[1] + 1e-9 * step)
+            inner = (
+                self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
+            )
+            used &= np.arange(count) % max(1, int(DENSE * inner / step)) == 0
+            found.append((grid, merged, np.flatnonzero(used)))
+            covered = middle + np.array([-0.5, 0.5]) * count * step
+        return found
+
+    def stress(self, depths: Sequence[float], side: Side, friction: bool) -> tuple[States, Array]:
+        """Return the history along y at some depths, and the uncertainty of the stress at each.
+
+        The pressure within cells counts on the grid of the contact; further away it is uniform
+        over cells, which are ever wider.
+
+        With `friction`, the part of the tractions is there.
+        """
+        slides = (0.0, 1.0) if friction and not self.known else (0.0,)
+        own = [self._own(depths, side, slide) for slide in slides]
+        ys, parts = [self.grid.y], [[self._array(field) for field in own]]
+        for grid, loads, used in self.levels:
+            if used.size:
+                ys.append(grid.y[used])
+                parts.append(
+                    [self._beyond(grid, loads, depths, side, slide)[:, used] for slide in slides]
+                )
+        y = np.concatenate(ys)
+        order = np.argsort(y, kind="stable")
+        found = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
+        added = found[1] - found[0] if len(found) == 2 else np.zeros((len(depths), y.size, 6))
+        states = States(y[order], found[0], added)
+        errors = own[0].uncertainty
+        none = np.zeros(len(depths))
+        uncertain = none if errors is None else np.nan_to_num(errors)
+        if list(depths) == [0.0]:
+            states = self._with_edges(states)
+        return self._unloaded(states), uncertain
+
+    def _own(self, depths: Sequence[float], side: Side, slide: float) -> Stress:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", core.NacreWarning)
+            return self.plan.stress(
+                depths, side=side, x=self.x, friction=slide, direction=self.direction
+            )
+
+    @staticmethod
+    def _array(field: Stress) -> Array:
+        """Return the states ``(depths, y, 6)``."""
+        return np.stack([field.components[name][:, 0, :] for name in NAMES], axis=-1)
+
+    def _beyond(
+        self, grid: core.Grid, loads: list[Array], depths: Sequence[float], side: Side, slide: float
+    ) -> Array:
+        """Return the states on a wider grid, whose loads are uniform over cells."""
+        pressure, *tractions = loads
+        along = (self.sign * self.direction[0], self.sign * self.direction[1])
+        terms = [Load(pressure, slide, along, 1.0)]
+        # A traction alone: with the pressure of its size, less that pressure.
+        for traction, axis in zip(tractions, ((1.0, 0.0), (0.0, 1.0)), strict=False):
+            if traction.any():
+                way = (self.sign * axis[0], self.sign * axis[1])
+                terms += [Load(traction, 1.0, way, 1.0), Load(traction, 0.0, way, -1.0)]
+        total = np.zeros((len(depths), grid.shape[1], 6))
+        for term in terms:
+            options: dict[str, Any] = {"friction": term.friction, "direction": term.direction}
+            field = stress(
+                self.body,
+                grid,
+                term.pressure,
+                depths,
+                side=side,
+                x=self.x,
+                threads=self.threads,
+                **options,
+            )
+            total += term.factor * self._array(field)
+        return total
+
+    def _with_edges(self, states: States) -> States:
+        """Return the states at the surface with those at the edges of the contact.
+
+        With friction, yy has a peak there of the square root of the distance, which cells cut off.
+        yy + p and xx + 2 ν p are smooth inside, where p = -zz; at the edge p is 0.
+        """
+        if self.known:  # tractions have edges of their own, between stick and slip
+            return states
+        first, last = self.inside.start, self.inside.stop - 1
+        if last - first < 2 * FITTED:
+            return states
+        top = self.body.layers[0].material if self.body.layers else self.body.substrate
+        poisson = top.poisson if isinstance(top, core.Elastic) else 0.0
+        for one, way in ((first, 1), (last, -1)):
+            edge = self._edge(one, way)
+            if edge is None:
+                continue
+            # The cell at the edge is in contact in part: its stresses are those of no place.
+            near = self.grid.y[one + way * np.arange(1, 1 + FITTED)]
+            places = np.searchsorted(states.y, near)
+            at = int(np.searchsorted(states.y, self.grid.y[one]))
+            for part in (states.normal, states.tangential):
+                smooth = part[0, places].copy()
+                smooth[:, 1] -= smooth[:, 2]
+                smooth[:, 0] -= 2.0 * poisson * smooth[:, 2]
+                curve = np.polynomial.polynomial.polyfit(near - edge, smooth, 2)
+                part[0, at] = curve[0]
+                part[0, at, [2, 4, 5]] = 0.0
+            states.y[at] = edge
+            states = states._replace(edges=(*states.edges, edge))
+        return states
+
+    def _edge(self, one: int, way: int) -> float | None:
+        """Return the edge in a cell, where the square of the pressure goes to 0; or None.
+
+        A parabola through the next three cells continues the square.
+        """
+        squares = self.row[one + way * np.arange(1, 4)] ** 2
+        if not np.all(np.diff(squares) > 0):
+            return None
+        y, step = self.grid.y, self.grid.spacing[1]
+        roots: list[complex] = np.polynomial.Polynomial.fit([1, 2, 3], squares, 2).roots().tolist()
+        # In the cell, or as far outside as the cells beside it: they are in contact in part.
+        real = [root.real for root in roots if abs(root.imag) < 1e-9 and abs(root.real) < 0.9]
+        return float(y[one] + way * step * real[0]) if len(real) == 1 else None
+
+    def _unloaded(self, states: States) -> States:
+        """Return the states with the stress-free one, infinitely far away."""
+        none = np.zeros((len(states.normal), 1, 6))
+        return States(
+            np.append(states.y, np.inf),
+            np.concatenate([states.normal, none], axis=1),
+            np.concatenate([states.tangential, none], axis=1),
+            states.edges,
+        )
+
+
+def _lagrange(nodes: Array, at: Any) -> Array:
+    """Return the weights of the polynomial through nodes, along the last axis."""
+    at = np.asarray(at)
+    weights = [
+        np.prod(
+            [
+                (at - nodes[..., other]) / (nodes[..., one] - nodes[..., other])
+                for other in range(nodes.shape[-1])
+                if other != one
+            ],
+            axis=0,
+        )
+        for one in range(nodes.shape[-1])
+    ]
+    return np.stack(weights, axis=-1)
+
+
+def refined(found: States, states: Array) -> tuple[Array, Array]:
+    """Return places and states with those between them, on cubic curves through four neighbours.
+
+    Curves do not go past the edges of the contact. The last state is kept as it is.
+    """
+    y, inner = found.y[:-1], states[:, :-1]
+    cuts = [0, *sorted(int(np.searchsorted(y, edge)) for edge in found.edges), y.size - 1]
+    places, pieces = [y], [inner]
+    for first, last in pairwise(cuts):
+        count = last - first + 1
+        if count < 4:
+            continue
+        starts = first + np.clip(np.arange(count - 1) - 1, 0, count - 4)
+        taken = starts[:, None] + np.arange(4)
+        at = y[first:last, None] + np.diff(y[first : last + 1])[:, None] * PARTS
+        weights = _lagrange(y[taken][:, None, :], at)
+        between = np.einsum("ipk,dikc->dipc", weights, inner[:, taken])
+        places.append(at.ravel())
+        pieces.append(between.reshape(len(states), -1, 6))
+    y = np.concatenate([*places, found.y[-1:]])
+    return y, np.concatenate([*pieces, states[:, -1:]], axis=1)

@@ -1,0 +1,276 @@
+"""Maps of shakedown: the limit of a contact over friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._tools.progress import lasting
+from nacre._tools.typing import ByLayer, Direction, Member, Real
+from nacre._tools.units import printable, written
+from nacre.contact.friction import FrictionSolution
+from nacre.contact.solution import Solution
+from nacre.fatigue.criteria import Rule
+from nacre.fatigue.summary import (
+    ESTIMATE,
+    PLASTICITY,
+    checked_depths,
+    fitted,
+    flag,
+    in_region,
+    numbers,
+    prepared,
+    rule_of,
+    word,
+)
+from nacre.results import display, files
+from nacre.results.listed import Tabular
+from nacre.results.quantities import SHAKEDOWN
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ShakedownMap(Tabular):
+    """Shakedown limits of the layers of a contact over the coefficient of friction.
+
+    Printing it shows a table, and so does a notebook. `shakedown_map` makes it.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+    >>> found = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
+    >>> found.limits.round(1)
+    array([[4. , 3.2]])
+    """
+
+    friction: Array
+    """Coefficients of friction ``(nf,)``."""
+    limits: Array
+    """Peak pressure over the yield stress in shear for shakedown ``(layers, nf)``."""
+    first_yield: Array
+    """That ratio with which nothing yields ``(layers, nf)``."""
+    depths: Array
+    """Depths ``(layers, nf)`` that decide the limits [m]."""
+    names: tuple[str, ...]
+    """Names of the layers, from the surface down."""
+    rule: Rule
+    """Condition of yield."""
+    peak_pressure: float
+    """Largest pressure of the contact [Pa]."""
+    is_estimate: bool
+    """Whether the limits are estimates, as in point contacts and rollers."""
+
+    def _state(self) -> dict[str, Any]:
+        return {
+            name: value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in super()._state().items()
+        }
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        def plane(rows: Any) -> Array:
+            return np.array([numbers(row) for row in rows])
+
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                friction=numbers,
+                limits=plane,
+                first_yield=plane,
+                depths=plane,
+                names=lambda names: tuple(word(name) for name in names),
+                rule=rule_of,
+                peak_pressure=float,
+                is_estimate=flag,
+            )
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal."""
+        if not isinstance(other, ShakedownMap):
+            return NotImplemented
+        return self._state() == other._state()
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the limits over friction; needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into, such as those of another map; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are no axes of Matplotlib.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid.line(96, 3e-4)
+        >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+        >>> nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2]).plot().get_xlabel()
+        'coefficient of friction'
+        """
+        from nacre.plot import fatigue
+
+        return fatigue.shakedown_map(self, axes=axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the limits over layer and friction; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Limits, first yield and depths; ``to_dataframe()`` is the table for pandas.
+        """
+        table = [(row, row.unit) for row in SHAKEDOWN]
+        named = ("limits", "first_yield", "depths")
+        variables = {name: (("layer", "friction"), getattr(self, name)) for name in named}
+        places = {"layer": list(self.names), "friction": self.friction}
+        return files.dataset("shakedown map", table, variables, places, self.to_dict())
+
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
+        yield [row.name for row in SHAKEDOWN]
+        for layer, name in enumerate(self.names):
+            parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
+            for friction, *found in zip(*(part.tolist() for part in parts), strict=True):
+                yield [name, friction, *found]
+
+    def _printed(self) -> tuple[list[list[str]], list[str]]:
+        """Return the rows of the printed table, the heading first, and notes below it."""
+        rows = [["friction", *(f"{n}: limit, first yield, z" for n in self.names)]]
+        for k, friction in enumerate(self.friction):
+            cells = [
+                f"{self.limits[i, k]:.4g}, {self.first_yield[i, k]:.4g}, "
+                f"{written(float(self.depths[i, k]), 'm', 3)}"
+                for i in range(len(self.names))
+            ]
+            rows.append([f"{friction:g}", *cells])
+        plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
+        units = "limits are peak pressure over yield stress in shear"
+        return rows, [units, PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]
+
+    def __str__(self) -> str:
+        """Return a table."""
+        rows, notes = self._printed()
+        return printable("\n".join([*display.aligned(rows, "<"), *notes]))
+
+    def _repr_html_(self) -> str:
+        (head, *rows), notes = self._printed()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
+
+    def __repr__(self) -> str:
+        """Return how much the map holds."""
+        return f"<ShakedownMap of {len(self.names)} layers at {self.friction.size} frictions>"
+
+
+def shakedown_map(
+    solution: Solution,
+    *,
+    friction: Sequence[float] | Real,
+    direction: Direction | None = None,
+    residual: ByLayer | None = None,
+    body: Member = "body",
+    x: float | None = None,
+    depths: Sequence[float] | Real | None = None,
+    rule: Rule = "von_mises",
+    threads: int | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> ShakedownMap:
+    """Shakedown limits of the layers of a contact over the coefficient of friction.
+
+    Parameters
+    ----------
+    solution : Solution
+        Solved contact without friction, not periodic.
+    friction : array_like
+        Coefficients of friction, at least one.
+    direction, residual, body, x, depths, rule, threads, progress : optional
+        As in `assess`.
+
+    Returns
+    -------
+    ShakedownMap
+        Limits by layers; printing it shows a table.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, the contact is periodic, or nothing touches.
+
+    Notes
+    -----
+    A limit is the peak pressure of this contact over the yield stress in shear that the layer
+    needs. A limit in units of another pressure is that pressure over the same yield stress:
+    ``limits * pressure / peak_pressure``.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+    >>> print(nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2]))
+    friction  the substrate: limit, first yield, z
+    ...
+    """
+    if isinstance(solution, FrictionSolution):
+        raise ValueError(
+            "solution must be one without friction, got a FrictionSolution: nacre.fatigue.assess "
+            "takes it"
+        )
+    coefficients = np.asarray(friction, dtype=np.float64)
+    if coefficients.ndim != 1 or not coefficients.size:
+        raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
+    if not np.isfinite(coefficients).all() or coefficients.min() < 0:
+        raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
+    asked = prepared(solution, (), rule, residual, body, direction, x, threads)
+    given = checked_depths(depths, asked.rolling.body)
+    regions = [
+        region for region in asked.regions() if given is None or in_region(region, given).size
+    ]
+    shape = (len(regions), coefficients.size)
+    limits, first, deciding = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    peak = asked.rolling.peak_pressure
+    with lasting("shakedown", progress) as tell:
+        for i, region in enumerate(regions):
+            chosen = asked.depths(region) if given is None else in_region(region, given)
+            for k, coefficient in enumerate(coefficients.tolist()):
+                if tell is not None:
+                    tell((i + k / coefficients.size) / len(regions))
+                rows = asked.rows(region, chosen, coefficient)
+                if given is None:
+                    rows = asked.refined(region, rows, coefficient)
+                decides = max(rows, key=lambda row: row.values["shakedown"])
+                limits[i, k] = peak / decides.values["shakedown"]
+                first[i, k] = peak / max(row.values["first_yield"] for row in rows)
+                deciding[i, k] = decides.z
+        if tell is not None:
+            tell(1.0)
+    names = tuple(
+        "the substrate"
+        if region.bottom == np.inf
+        else display.layer_name(region.layer, region.name)
+        for region in regions
+    )
+    return ShakedownMap(
+        coefficients, limits, first, deciding, names, rule, peak, asked.rolling.x is not None
+    )

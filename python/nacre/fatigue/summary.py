@@ -1,0 +1,815 @@
+"""Shakedown and fatigue of a solved contact: what each layer and interface needs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.progress import lasting
+from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
+from nacre._tools.units import printable, written
+from nacre.contact.friction import FrictionSolution
+from nacre.contact.solution import Solution
+from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
+from nacre.fatigue.history import Rolling, States, refined
+from nacre.results import display, files, values
+from nacre.results.base import Result
+from nacre.results.listed import Tabular
+from nacre.results.quantities import FATIGUE, PROFILE
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+Place = tuple[float, float, float]
+Peak = tuple[float, Place]
+"""Value, and point (x, y, z) where it occurs."""
+Balanced = tuple[float, Place, tuple[float, float]]
+"""Yield stress in shear, point, and residual stresses along x and y."""
+
+DEPTHS = np.r_[0.03, 0.07, 0.12:1.38:0.09, 1.5, 1.75, 2.1, 2.6]
+"""Depths in a body, in half-widths of the contact: maxima are at .3 to .8 of them as a rule."""
+INSIDE = 10
+"""Number of depths within a layer, besides."""
+ROUNDS = 3
+"""How many times the depths of maxima are refined by parabolas."""
+CLOSEST = 1e-3
+"""Distance of depths in half-widths below which a refined one is no other: maxima are flat."""
+JUMP = 0.01
+"""Part by which another maximum of the shear amplitude may be less for Matake's plane to jump."""
+NOISE = 1e-6
+"""Part of the peak pressure below which a traction at an interface is printed as 0."""
+UNRESOLVED = 0.25
+"""Estimated error over a value above which a warning says so, as for summaries of stresses."""
+ESTIMATE = (
+    "shakedown is an estimate: in a point contact, residual stresses along x and y that depend on "
+    "the depth alone are not all that are in equilibrium"
+)
+PLASTICITY = "shakedown of a perfectly plastic material, without hardening, in steady rolling"
+
+
+@dataclass(frozen=True, repr=False)
+class LayerFatigue(Result):
+    """What one layer needs, or the substrate.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+    >>> (substrate,) = nacre.fatigue.assess(solution, shear_yield=600e6).layers
+    >>> k, (x, y, z), (residual_x, residual_y) = substrate.shakedown
+    >>> round(solution.peak_pressure / k, 2)
+    4.0
+    """
+
+    layer: int
+    """Number of the layer, from 0 at the surface; the substrate comes after the last layer."""
+    name: str | None
+    """Name of the layer; None where it has none."""
+    depths: tuple[float, float]
+    """Depths of the two faces [m]; the lower one is infinite for the substrate."""
+    shakedown: Balanced
+    """Smallest yield stress in shear [Pa] with which it shakes down, point, and residual stresses.
+
+    The residual stresses along x and y [Pa] make it possible there.
+    """
+    first_yield: Peak
+    """Smallest yield stress in shear with which nothing yields [Pa], and point."""
+    orthogonal_shear: Peak
+    """Largest range of the shear stress yz at a depth [Pa], and point of its largest value."""
+    criteria: dict[str, Peak]
+    """Equivalent stress of each criterion [Pa], and point, by the name of the criterion."""
+    safety_factors: dict[str, float]
+    """Yield stress or limit over the value, by name: "shakedown", "first_yield", criteria.
+
+    Those of criteria are of the substrate alone, whose limits the user gives.
+    """
+
+    @property
+    def is_substrate(self) -> bool:
+        """Whether it has no end."""
+        return bool(self.depths[1] == np.inf)
+
+    def _peaks(self) -> dict[str, Peak]:
+        """Return values and points by name."""
+        first = {"shakedown": self.shakedown[:2], "first_yield": self.first_yield}
+        return {**first, "orthogonal_shear": self.orthogonal_shear, **self.criteria}
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                layer=int,
+                name=lambda name: None if name is None else word(name),
+                depths=lambda ends: (float(ends[0]), np.inf if ends[1] is None else float(ends[1])),
+                shakedown=_balanced,
+                first_yield=_peak,
+                orthogonal_shear=_peak,
+                criteria=lambda peaks: {name: _peak(peak) for name, peak in peaks.items()},
+                safety_factors=lambda found: {name: float(one) for name, one in found.items()},
+            )
+        )
+
+    def __repr__(self) -> str:
+        """Return the shakedown in a line."""
+        k, factor = self.shakedown[0], self.safety_factors.get("shakedown")
+        said = "" if factor is None else f", safety factor {factor:.3g}"
+        return printable(
+            f"<LayerFatigue of {display.part(self)}: shakedown with k = {written(k, 'Pa')}{said}>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class InterfaceFatigue(Result):
+    """Ranges of the tractions at one interface.
+
+    Examples
+    --------
+    >>> steel, dlc = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(dlc, 15e-6)])
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), body, load=1e5, grid=grid)
+    >>> (interface,) = nacre.fatigue.assess(solution).interfaces
+    >>> interface.depth, bool(interface.shear_range > 0.0)
+    (1.5e-05, True)
+    """
+
+    interface: int
+    """Number of the interface, from 0 below the first layer."""
+    depth: float
+    """Depth of the interface [m]."""
+    shear_range: float
+    """Range of the shear traction: the largest distance of two of its values [Pa]."""
+    tension: float
+    """Largest normal traction [Pa], tension where it is positive; 0 of the stress-free state."""
+
+    def __repr__(self) -> str:
+        """Return the numbers in a line."""
+        shear, tension = written(self.shear_range, "Pa"), written(self.tension, "Pa")
+        return printable(
+            f"<InterfaceFatigue of interfaces[{self.interface}] at {written(self.depth, 'm')}: "
+            f"shear range {shear}, tension {tension}>"
+        )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FatigueSummary(Tabular):
+    """Shakedown and fatigue of a solved contact in steady rolling, by layers and interfaces.
+
+    Printing it shows a table, and so does a notebook. `assess` makes it.
+
+    Examples
+    --------
+    >>> steel, dlc = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(dlc, 15e-6)])
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), body, load=1e5, grid=grid)
+    >>> summary = nacre.fatigue.assess(solution, shear_yield={"substrate": 600e6})
+    >>> coat, steel = summary.layers
+    >>> bool(steel.safety_factors["shakedown"] > steel.safety_factors["first_yield"])
+    True
+    """
+
+    layers: list[LayerFatigue]
+    """What the layers need, from the surface down, and the substrate."""
+    interfaces: list[InterfaceFatigue]
+    """Ranges at the interfaces from the surface down."""
+    criteria: tuple[Criterion, ...]
+    """Criteria that were asked for."""
+    rule: Rule
+    """Condition of yield."""
+    peak_pressure: float
+    """Largest pressure of the contact [Pa]."""
+    depths: Array
+    """Depths that were evaluated ``(nz,)`` [m]; an interface is there twice, for its two sides."""
+    profiles: dict[str, Array]
+    """Values at these depths ``(nz,)`` [Pa], by name: "shakedown" …, criteria."""
+    is_estimate: bool
+    """Whether shakedown is an estimate, as in point contacts and rollers.
+
+    Residual stresses that depend on the depth alone are not all that are in equilibrium there.
+    """
+    warnings: list[str] = field(default_factory=list)
+    """Warnings, each also issued as `NacreWarning`."""
+
+    @property
+    def shear_yield(self) -> Array:
+        """Smallest yield stress in shear with which each depth shakes down ``(nz,)`` [Pa]."""
+        return self.profiles["shakedown"]
+
+    def _state(self) -> dict[str, Any]:
+        state = super()._state()
+        state["depths"] = self.depths.tolist()
+        state["profiles"] = {name: found.tolist() for name, found in self.profiles.items()}
+        return state
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        return cls(
+            **fitted(
+                cls.__name__,
+                state,
+                layers=lambda parts: [LayerFatigue._restored(one) for one in parts],
+                interfaces=lambda parts: [InterfaceFatigue._restored(one) for one in parts],
+                criteria=lambda given: checked_criteria(map(values.decode, given)),
+                rule=rule_of,
+                peak_pressure=float,
+                depths=numbers,
+                profiles=lambda found: {name: numbers(one) for name, one in found.items()},
+                is_estimate=flag,
+                warnings=lambda texts: [word(text) for text in texts],
+            )
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all fields are equal."""
+        if not isinstance(other, FatigueSummary):
+            return NotImplemented
+        return self._state() == other._state()
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw what each depth needs; needs ``nacre-contact[plot]``.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are no axes of Matplotlib.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> grid = nacre.Grid.line(96, 3e-4)
+        >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+        >>> nacre.fatigue.assess(solution).plot().get_xlabel()
+        'z [µm]'
+        """
+        from nacre.plot import fatigue
+
+        return fatigue.fatigue_depth(self, axes=axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the table and of the values over the depth; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Part and name of each value, place and safety factor over ``row``, NaN where there is
+            none; values over ``depth`` by the names of `profiles`.
+        """
+        heads, *rows = self._file_rows()
+        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
+        profiles = {name: ("depth", found) for name, found in self.profiles.items()}
+        depths = {"depth": self.depths}
+        said = {name: str(value) for name, value in self._comments().items()}
+        title = "shakedown and fatigue"
+        return files.dataset(title, table, variables | profiles, depths, self.to_dict(), **said)
+
+    def _comments(self) -> dict[str, Any]:
+        """Return what stands beside the table."""
+        told = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
+        return {**told, **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}}
+
+    def _file_rows(self) -> list[tuple[Any, ...]]:
+        """Return the rows of the table, the heading first."""
+        rows: list[tuple[Any, ...]] = [tuple(row.name for row in FATIGUE)]
+        for layer in self.layers:
+            for name, (value, place) in layer._peaks().items():
+                factor = layer.safety_factors.get(name, np.nan)
+                rows.append((display.part(layer), name, value, *place, factor))
+        for face in self.interfaces:
+            for name in ("shear_range", "tension"):
+                value = getattr(face, name)
+                rows.append((display.part(face), name, value, np.nan, np.nan, face.depth, np.nan))
+        return rows
+
+    def _printed(self) -> tuple[list[list[str]], list[str]]:
+        """Return the rows of the printed table, the heading first, and notes below it."""
+        rows = [["", "needs", "value", "z", "y", "safety factor"]]
+        words = {row.name: row.label for row in PROFILE}
+        for layer in self.layers:
+            top, bottom = (written(depth, "m") for depth in layer.depths)
+            head = display.part(layer) + ("" if layer.is_substrate else f", {top} to {bottom}")
+            for name, (value, (_, y, z)) in layer._peaks().items():
+                factor = layer.safety_factors.get(name)
+                said = "" if factor is None else f"{factor:.3g}"
+                places = [written(z, "m", 3), written(y, "m", 3)]
+                told = words.get(name, name)
+                rows.append([head, told, written(value, "Pa"), *places, said])
+                head = ""
+        for face in self.interfaces:
+            head = f"interfaces[{face.interface}] at {written(face.depth, 'm')}"
+            for told, value in (("shear range", face.shear_range), ("tension", face.tension)):
+                # Far from the contact, loads are merged to wide cells.
+                shown = value if value > NOISE * self.peak_pressure else 0.0
+                rows.append([head, told, written(shown, "Pa"), "", "", ""])
+                head = ""
+        plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
+        notes = [PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]
+        return rows, notes
+
+    def __str__(self) -> str:
+        """Return a table, in the units that are set."""
+        rows, notes = self._printed()
+        lines = [*display.aligned(rows, "<"), *notes]
+        return printable("\n".join(lines + [f"warning: {text}" for text in self.warnings]))
+
+    def _repr_html_(self) -> str:
+        (head, *rows), notes = self._printed()
+        picture = display.drawn(self.plot)
+        return display.markup(rows, self.warnings, picture, head, notes, widest=display.WIDE)
+
+    def __repr__(self) -> str:
+        """Return how much the summary holds."""
+        return (
+            f"<FatigueSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces, "
+            f"criteria {', '.join(type(one).__name__ for one in self.criteria) or 'none'}>"
+        )
+
+
+def fitted(kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return the fields of a kind of result from plain data; wrong ones are a `ValueError`."""
+    found = {}
+    for key, read in readers.items():
+        try:
+            found[key] = read(state[key])
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            said = f'{kind}: the value of the key "{key}" does not fit: {state.get(key)!r:.100}'
+            raise ValueError(said) from error
+    return found
+
+
+def word(given: object) -> str:
+    """Return a text, or raise."""
+    if not isinstance(given, str):
+        raise TypeError(f"{given!r} is no text")
+    return given
+
+
+def flag(given: object) -> bool:
+    """Return a truth value, or raise."""
+    if not isinstance(given, bool):
+        raise TypeError(f"{given!r} is no bool")
+    return given
+
+
+def rule_of(given: Any) -> Rule:
+    """Return a condition of yield, or raise."""
+    if given not in get_args(Rule):
+        raise ValueError(f"{given!r} is no condition of yield")
+    found: Rule = given
+    return found
+
+
+def numbers(given: Any) -> Array:
+    """Return an array of numbers, or raise."""
+    return np.array([float(one) for one in given])
+
+
+def _balanced(given: Any) -> Balanced:
+    value, place, (x, y) = given
+    return float(value), _place(place), (float(x), float(y))
+
+
+def _place(given: Any) -> Place:
+    x, y, z = (float(value) for value in given)
+    return x, y, z
+
+
+def _peak(given: Any) -> Peak:
+    value, place = given
+    return float(value), _place(place)
+
+
+class Region(NamedTuple):
+    """A layer or the substrate, and its faces."""
+
+    layer: int
+    name: str | None
+    top: float
+    bottom: float
+
+
+class Row(NamedTuple):
+    """What one depth needs."""
+
+    z: float
+    values: dict[str, float]
+    """Values by name."""
+    at: dict[str, float]
+    """Places along y, by the same names."""
+    residual: tuple[float, float]
+    gap: float
+    """Part by which the next maximum of the shear amplitude is less, for Matake."""
+    uncertainty: float
+    shear_range: float
+    tension: float
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """A body that rolls, and what is evaluated in it."""
+
+    rolling: Rolling
+    criteria: tuple[Criterion, ...]
+    rule: Rule
+    residual: list[float]
+
+    def regions(self) -> list[Region]:
+        """Return the layers from the surface down, and the substrate unless it is rigid."""
+        body = self.rolling.body
+        faces = [0.0, *body.interfaces, np.inf]
+        names = [*(layer.name for layer in body.layers), None]
+        found = [Region(k, names[k], *ends) for k, ends in enumerate(pairwise(faces))]
+        return found if isinstance(body.substrate, core.Elastic) else found[:-1]
+
+    def depths(self, region: Region) -> Array:
+        """Return depths in a layer, its faces included."""
+        width = self.rolling.half_width
+        below = DEPTHS * width
+        chosen = np.r_[below, region.top + below]
+        last = min(region.bottom, region.top + below[-1])
+        if region.bottom < np.inf:
+            inside = np.linspace(region.top, last, INSIDE + 2)[1:-1]
+            chosen = np.r_[chosen, inside]
+        chosen = np.sort(chosen[(chosen > region.top) & (chosen < region.bottom)])
+        # Those that are close to the one before tell nothing new.
+        gap = min(0.02 * width, 0.3 * (last - region.top) / INSIDE)
+        kept: Array = chosen[np.diff(chosen, prepend=region.top) > gap]
+        bottom = [region.bottom] if region.bottom < np.inf else []
+        return np.concatenate([[region.top], kept, bottom])
+
+    def history(self, depths: Sequence[float], side: Side, slides: bool) -> tuple[States, Array]:
+        """Return histories at some depths."""
+        return self.rolling.stress(depths, side, slides)
+
+    def rows(self, region: Region, depths: Array, friction: float) -> list[Row]:
+        """Return what some depths of a layer need."""
+        parts: list[tuple[list[float], Side]] = [
+            ([z for z in depths if z == 0.0], "below"),
+            ([z for z in depths if z > 0.0 and z != region.bottom], "below"),
+            ([z for z in depths if z == region.bottom], "above"),
+        ]
+        rows = []
+        for chosen, side in parts:
+            if chosen:
+                found, uncertain = self.history(chosen, side, friction != 0.0)
+                rows += self._evaluated(region, chosen, found, uncertain, friction)
+        return rows
+
+    def _evaluated(
+        self, region: Region, depths: list[float], found: States, uncertain: Array, friction: float
+    ) -> list[Row]:
+        states = found.at(friction).copy()
+        states[..., :2] += self.residual[region.layer]
+        y, dense = refined(found, states)
+        shaken, at = core.shakedown(dense, self.rule)
+        told: dict[str, tuple[Array, Array]] = {
+            "shakedown": (shaken[:, 0], y[at[:, 0]]),
+            "first_yield": (shaken[:, 3], y[at[:, 1]]),
+        }
+        shear = dense[..., 4]
+        told["orthogonal_shear"] = np.ptp(shear, axis=1), y[shear.argmax(axis=1)]
+        gaps = np.full(len(depths), np.nan)
+        for criterion in self.criteria:
+            planes = criterion._KIND in ("findley", "matake")
+            stress, which, gap = criterion._evaluated(states if planes else dense)
+            told[type(criterion).__name__] = stress, (found.y if planes else y)[which]
+            if criterion._KIND == "matake":
+                gaps = gap
+        rows = []
+        for k, z in enumerate(depths):
+            rows.append(
+                Row(
+                    z=float(z),
+                    values={name: float(value[k]) for name, (value, _) in told.items()},
+                    at={name: float(place[k]) for name, (_, place) in told.items()},
+                    residual=(float(shaken[k, 1]), float(shaken[k, 2])),
+                    gap=float(gaps[k]),
+                    uncertainty=float(uncertain[k]),
+                    shear_range=_range(states[k, :, 4:])
+                    if z in (region.top, region.bottom)
+                    else 0.0,
+                    tension=float(states[k][:, 2].max()),
+                )
+            )
+        return rows
+
+    def refined(self, region: Region, rows: list[Row], friction: float) -> list[Row]:
+        """Return the rows with those at the maxima of parabolas through three depths."""
+        for _ in range(ROUNDS):
+            rows.sort(key=lambda row: row.z)
+            depths = np.array([row.z for row in rows])
+            wanted: list[float] = []
+            for name in rows[0].values:
+                found = np.array([row.values[name] for row in rows])
+                vertex = _vertex(depths, found)
+                near = np.r_[depths, wanted]
+                least = CLOSEST * self.rolling.half_width
+                if vertex is not None and np.abs(near - vertex).min() > least:
+                    wanted.append(vertex)
+            if not wanted:
+                break
+            rows = rows + self.rows(region, np.sort(wanted), friction)
+        return sorted(rows, key=lambda row: row.z)
+
+
+def _range(traction: Array) -> float:
+    """Return the largest distance of two values of a shear traction ``(times, 2)``."""
+    if not traction[:, 1].any():
+        return float(np.ptp(traction[:, 0]))
+    return float(max(np.hypot(*(traction - one).T).max() for one in traction))
+
+
+def _vertex(depths: Array, found: Array) -> float | None:
+    """Return the depth of the maximum of a parabola, or None where it is at an end."""
+    k = int(found.argmax())
+    if k in (0, len(found) - 1):
+        return None
+    (a, b, c), (f, g, h) = depths[k - 1 : k + 2], found[k - 1 : k + 2]
+    one, other = (b - a) * (g - h), (b - c) * (g - f)
+    if one == other:
+        return None
+    vertex = b - 0.5 * ((b - a) * one - (b - c) * other) / (one - other)
+    return float(vertex) if a < vertex < c else None
+
+
+def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
+    """Return criteria, each of another kind."""
+    if isinstance(criteria, Criterion) or not isinstance(criteria, Iterable):
+        raise TypeError(f"criteria must be a sequence of criteria, got {criteria!r}")
+    found = tuple(criteria)
+    for one in found:
+        if not isinstance(one, Criterion):
+            kinds = ", ".join(kind.__name__ for kind in CRITERIA.values())
+            raise TypeError(f"criteria must hold {kinds}, got {one!r}")
+    names = [type(one).__name__ for one in found]
+    if len(set(names)) < len(names):
+        raise ValueError(f"criteria must be of different kinds, got {', '.join(names)}")
+    return found
+
+
+def layer_values(name: str, given: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
+    """Return a value for each layer and the substrate, None where it is not known."""
+    count = len(body.layers) + isinstance(body.substrate, core.Elastic)
+    if isinstance(given, int | float | np.integer | np.floating):
+        return [float(given)] * count
+    found: list[Any] = core.layer_values(body, name, {name: given})
+    return found + [None] * (count - len(found))
+
+
+def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
+    """Return depths in their order, checked, or None where they are to be chosen."""
+    if depths is None:
+        return None
+    found = np.sort(np.asarray(depths, dtype=np.float64).ravel())
+    if not found.size or not np.isfinite(found).all() or found[0] < 0:
+        raise ValueError(f"depths must be finite and at least 0, one or more, got {depths!r}")
+    if not isinstance(body.substrate, core.Elastic) and found[-1] > body.interfaces[-1]:
+        raise ValueError(
+            f"depths must not be below the rigid base at {body.interfaces[-1]:g}, got {found[-1]:g}"
+        )
+    return found
+
+
+def prepared(
+    solution: Any,
+    criteria: Iterable[Criterion],
+    rule: Rule,
+    residual: ByLayer | None,
+    body: Member,
+    direction: Direction | None,
+    x: float | None,
+    threads: int | None,
+) -> Assessment:
+    """Return what is evaluated, checked."""
+    if not isinstance(solution, Solution | FrictionSolution):
+        raise TypeError(f"solution must be a Solution or a FrictionSolution, got {solution!r}")
+    if rule not in get_args(Rule):
+        raise ValueError(f"rule must be 'von_mises' or 'in_plane_tresca', got {rule!r}")
+    asked = checked_criteria(criteria)
+    rolling = Rolling(solution, body, direction, x, threads)
+    stresses = [value or 0.0 for value in layer_values("residual", residual, rolling.body)]
+    if not np.isfinite(stresses).all():
+        raise ValueError(f"residual must be finite, got {residual!r}")
+    return Assessment(rolling, asked, rule, stresses)
+
+
+def in_region(region: Region, depths: Array) -> Array:
+    """Return those of the depths that are in a layer, both faces included."""
+    return depths[(depths >= region.top) & (depths <= region.bottom)]
+
+
+def assess(
+    solution: Solution | FrictionSolution,
+    *,
+    criteria: Iterable[Criterion] = (),
+    shear_yield: float | ByLayer | None = None,
+    friction: float = 0.0,
+    direction: Direction | None = None,
+    residual: ByLayer | None = None,
+    body: Member = "body",
+    x: float | None = None,
+    depths: Sequence[float] | Real | None = None,
+    rule: Rule = "von_mises",
+    threads: int | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> FatigueSummary:
+    """Shakedown and fatigue of a solved contact that rolls or slides along y, steadily.
+
+    Parameters
+    ----------
+    solution : Solution or FrictionSolution
+        Solved contact, not periodic.
+    criteria : sequence, optional
+        Fatigue criteria, each of another kind: `DangVan`, `Crossland`, `Findley`, `Matake`.
+    shear_yield : float, dict or sequence, optional
+        Yield stress in shear k [Pa], for safety factors: of all layers, or by layer. A dict maps
+        layers to it, by number (0 at the surface) or name, and ``"substrate"``; a sequence holds it
+        from the surface down, with None where it is not known.
+    friction : float, optional
+        Coefficient of friction: adds the traction ``friction * pressure``. It must be 0 where the
+        tractions are known, of `nacre.slide` and `nacre.roll`.
+    direction : tuple of float, optional
+        Direction ``(x, y)`` of the traction on the body; by default along y.
+    residual : dict or sequence, optional
+        Residual stress [Pa], equal along x and y, that is added to every state of a layer, the
+        unloaded one too; by layer as `shear_yield`.
+    body : {"body", "counterbody"}, optional
+        Body that is assessed.
+    x : float, optional
+        Section [m]; by default the middle of the rows with the largest line load. A line contact
+        has none.
+    depths : array_like, optional
+        Depths [m]; by default chosen, with the surface and both sides of each interface, and
+        refined where values are largest.
+    rule : {"von_mises", "in_plane_tresca"}, optional
+        Condition of yield, as in `shakedown`.
+    threads : int, optional
+        Number of threads of the stresses; by default as for `Contact`.
+    progress : callable, optional
+        Function that is called with the part of the work that is done, from 0 to 1; without it, a
+        terminal or a notebook shows a bar after two seconds.
+
+    Returns
+    -------
+    FatigueSummary
+        Values, points and safety factors by layers and interfaces; printing it shows a table.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, the contact is periodic, or nothing touches.
+
+    Notes
+    -----
+    A point of the body sees the stresses on the line along y through it, and none far away. Beyond
+    the grid of the contact, the history goes on up to some 300 half-widths.
+
+    Shakedown is that of a perfectly plastic material, without hardening: residual stresses along x
+    and y, the same along y, may help each depth. In line contacts they are all that are in
+    equilibrium. In point contacts and rollers shakedown is an estimate, and so is the choice of the
+    section.
+
+    Limits of fatigue are those of one material: safety factors of criteria are given for the
+    substrate, and values for the layers beside them, whose limits are rarely known.
+
+    Examples
+    --------
+    >>> steel, dlc = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(dlc, 15e-6, name="DLC")])
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), body, load=1e5, grid=grid)
+    >>> criterion = nacre.fatigue.DangVan(bending=520e6, torsion=330e6)
+    >>> summary = nacre.fatigue.assess(
+    ...     solution, criteria=[criterion], shear_yield={"substrate": 600e6}, friction=0.1
+    ... )
+    >>> substrate = summary.layers[-1]
+    >>> sorted(substrate.safety_factors)
+    ['DangVan', 'first_yield', 'shakedown']
+    """
+    asked = prepared(solution, criteria, rule, residual, body, direction, x, threads)
+    limits = layer_values("shear_yield", shear_yield, asked.rolling.body)
+    for limit in limits:
+        if limit is not None and not 0.0 < limit < np.inf:
+            raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
+    if asked.rolling.known and friction:
+        raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")
+    if not 0.0 <= friction < np.inf:
+        raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
+    given = checked_depths(depths, asked.rolling.body)
+    regions, found = asked.regions(), []
+    with lasting("fatigue", progress) as tell:
+        for done, region in enumerate(regions):
+            if tell is not None:
+                tell(done / len(regions))
+            chosen = asked.depths(region) if given is None else in_region(region, given)
+            rows = asked.rows(region, chosen, friction) if len(chosen) else []
+            if given is None:
+                rows = asked.refined(region, rows, friction)
+            found.append(sorted(rows, key=lambda row: row.z))
+        if tell is not None:
+            tell(1.0)
+    return _summed(asked, regions, found, limits)
+
+
+def _summed(
+    asked: Assessment, regions: list[Region], found: list[list[Row]], limits: list[float | None]
+) -> FatigueSummary:
+    """Return the summary of the rows of all layers, and issue its warnings."""
+    layers, said = [], []
+    for region, rows in zip(regions, found, strict=True):
+        if rows:
+            layer, warned = _layer(asked, region, rows, limits[region.layer])
+            layers.append(layer)
+            said += warned
+    interfaces = []
+    for number, depth in enumerate(asked.rolling.body.interfaces):
+        sides = [row for rows in found[number : number + 2] for row in rows if row.z == depth]
+        if sides:
+            # Tractions are continuous.
+            interfaces.append(
+                InterfaceFatigue(number, depth, sides[0].shear_range, sides[0].tension)
+            )
+    all_rows = [row for rows in found for row in rows]
+    names = all_rows[0].values
+    summary = FatigueSummary(
+        layers,
+        interfaces,
+        asked.criteria,
+        asked.rule,
+        asked.rolling.peak_pressure,
+        np.array([row.z for row in all_rows]),
+        {name: np.array([row.values[name] for row in all_rows]) for name in names},
+        asked.rolling.x is not None,
+        said,
+    )
+    for text in said:
+        warnings.warn(text, core.NacreWarning, stacklevel=3)
+    return summary
+
+
+def _layer(
+    asked: Assessment, region: Region, rows: list[Row], limit: float | None
+) -> tuple[LayerFatigue, list[str]]:
+    """Return what a layer needs, and warnings."""
+    best = {name: max(rows, key=lambda row: row.values[name]) for name in rows[0].values}
+    x = asked.rolling.x or 0.0
+    peaks: dict[str, Peak] = {
+        name: (row.values[name], (x, row.at[name], row.z)) for name, row in best.items()
+    }
+    criteria = {type(one).__name__: one for one in asked.criteria}
+    factors: dict[str, float] = {}
+    for name in ("shakedown", "first_yield"):
+        if limit is not None and peaks[name][0] > 0:
+            factors[name] = limit / peaks[name][0]
+    if region.bottom == np.inf:
+        for name, one in criteria.items():
+            if peaks[name][0] > 0:
+                factors[name] = one.limit / peaks[name][0]
+    layer = LayerFatigue(
+        region.layer,
+        region.name,
+        (region.top, region.bottom),
+        (*peaks["shakedown"], best["shakedown"].residual),
+        peaks["first_yield"],
+        peaks["orthogonal_shear"],
+        {name: peaks[name] for name in criteria},
+        factors,
+    )
+    place, said = display.part(layer), []
+    unresolved = [
+        name for name, row in best.items() if row.uncertainty > UNRESOLVED * row.values[name]
+    ]
+    if unresolved:
+        said.append(
+            f"in {place}, {', '.join(unresolved)} {'is' if len(unresolved) == 1 else 'are'} "
+            "uncertain due to the size of the cells: take smaller cells"
+        )
+    if "Matake" in best and best["Matake"].gap < JUMP:
+        said.append(
+            f"in {place}, another plane has a shear amplitude within 1 % of that of Matake's "
+            "plane: the choice may jump from one to the other, and its value with it"
+        )
+    return layer, said

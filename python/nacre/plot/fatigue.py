@@ -1,0 +1,127 @@
+"""Shakedown and fatigue: what each depth needs, and limits over friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nacre._tools.extras import extra
+from nacre._tools.units import Scale
+from nacre.plot.style import COLOURS, look, new_axes, styled
+from nacre.results.quantities import PROFILE
+
+with extra("plot"):
+    from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre.fatigue.map import ShakedownMap
+    from nacre.fatigue.summary import FatigueSummary
+
+BARE = 0.03
+"""Part of the height that stays free above curves."""
+
+
+def fatigue_depth(summary: FatigueSummary, *, axes: Axes | None = None) -> Axes:
+    """Draw what a material needs at each depth, with the interfaces.
+
+    Parameters
+    ----------
+    summary
+        Summary of `nacre.fatigue.assess`.
+    axes
+        Axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    TypeError
+        If `axes` are no axes of Matplotlib.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+    >>> plot.fatigue_depth(nacre.fatigue.assess(solution)).get_ylabel()
+    'stress [MPa]'
+    """
+    labels = {row.name: row.label for row in PROFILE}
+    length = Scale.of(float(summary.depths.max()), "m")
+    highest = max(float(np.abs(values).max()) for values in summary.profiles.values())
+    scale = Scale.of(highest, "Pa")
+    z = length.factor * summary.depths
+    with styled():
+        axes = _checked(axes) or new_axes(0.75, 0.45)
+        for number, (name, values) in enumerate(summary.profiles.items()):
+            axes.plot(z, scale.factor * values, **look(number), label=labels.get(name, name))
+        for face in summary.interfaces:
+            axes.axvline(length.factor * face.depth, color="0.5", linewidth=0.8)
+        axes.set(xlabel=f"z [{length.unit}]", ylabel=f"stress [{scale.unit}]")
+        axes.set_xlim(0.0, float(z.max()) or 1.0)
+        axes.set_ylim(min(0.0, axes.get_ylim()[0]), (1.0 + BARE) * scale.factor * highest)
+        axes.legend()
+    return axes
+
+
+def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = None) -> Axes:
+    """Draw the shakedown limits of each layer over the coefficient of friction.
+
+    Below a solid line the layer shakes down; below the thin one of its colour nothing yields.
+
+    Parameters
+    ----------
+    found
+        Map of `nacre.fatigue.shakedown_map`.
+    label
+        Words before the names of the layers in the legend, for several maps in one picture.
+    axes
+        Axes to draw into, such as those of another map; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    TypeError
+        If `axes` are no axes of Matplotlib.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid.line(96, 3e-4)
+    >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
+    >>> found = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
+    >>> plot.shakedown_map(found).get_ylabel()
+    'peak pressure / shear yield stress'
+    """
+    order = np.argsort(found.friction)
+    friction = found.friction[order]
+    with styled():
+        axes = _checked(axes) or new_axes(0.75, 0.5)
+        drawn = sum(not str(line.get_label()).startswith("_") for line in axes.lines)
+        for number, name in enumerate(found.names):
+            colour = COLOURS[(drawn + number) % len(COLOURS)]
+            said = f"{label}, {name}" if label else name
+            axes.plot(friction, found.limits[number][order], color=colour, label=said)
+            axes.plot(friction, found.first_yield[number][order], color=colour, linewidth=0.6)
+        axes.set(xlabel="coefficient of friction", ylabel="peak pressure / shear yield stress")
+        axes.set_ylim(bottom=0.0)
+        axes.set_title("shakedown limits; thin: first yield")
+        axes.legend()
+    return axes
+
+
+def _checked(axes: object) -> Axes | None:
+    """Return axes, or None where there are none yet."""
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
+    return axes

@@ -1,0 +1,92 @@
+//! Shakedown and fatigue of histories, for `nacre.fatigue`.
+
+use ndarray::{Array1, Array2, ArrayD, Axis};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::arguments::{Real, real_array, word};
+use super::background;
+use crate::fatigue::{Criterion, State, shakedown as shaken};
+use crate::numerics::parallel::{Threads, each_chunk};
+
+/// Constants of a criterion: factor and limit.
+#[pyfunction]
+pub(super) fn fatigue_constants(kind: &str, bending: Real, torsion: Real) -> PyResult<(f64, f64)> {
+    let criterion = Criterion::new(word("kind", kind)?, bending.0, torsion.0)?;
+    Ok((criterion.factor(), criterion.limit()))
+}
+
+/// Equivalent stress, deciding state and gap (NaN where there is none) of each history (n, times, 6).
+#[pyfunction]
+pub(super) fn fatigue_stress<'py>(
+    py: Python<'py>,
+    kind: &str,
+    bending: Real,
+    torsion: Real,
+    history: &Bound<'py, PyAny>,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<usize>>, Bound<'py, PyArray1<f64>>)> {
+    let criterion = Criterion::new(word("kind", kind)?, bending.0, torsion.0)?;
+    let found = each(py, history, move |states| criterion.stress(states))?;
+    let numbers = |of: fn(&crate::fatigue::Equivalent) -> f64| {
+        found.iter().map(of).collect::<Array1<f64>>().into_pyarray(py)
+    };
+    let at: Array1<usize> = found.iter().map(|one| one.at).collect();
+    let stresses = numbers(|one| one.stress);
+    Ok((stresses, at.into_pyarray(py), numbers(|one| one.gap.unwrap_or(f64::NAN))))
+}
+
+/// Yield stress in shear and residual stresses (x, y) of the shakedown of each history (n, times, 6), its first yield,
+/// and the states that decide both.
+#[pyfunction]
+pub(super) fn shakedown<'py>(
+    py: Python<'py>,
+    history: &Bound<'py, PyAny>,
+    rule: &str,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<usize>>)> {
+    let rule = word("rule", rule)?;
+    let found = each(py, history, move |states| shaken(states, rule))?;
+    let rows = found.iter().map(|one| {
+        let [x, y] = one.residual;
+        [one.shear_yield, x, y, one.first_yield]
+    });
+    let values = Array2::from(rows.collect::<Vec<_>>());
+    let at = Array2::from(found.iter().map(|one| one.at).collect::<Vec<_>>());
+    Ok((values.into_pyarray(py), at.into_pyarray(py)))
+}
+
+/// What `work` makes of each history, in parallel, on a thread of its own.
+fn each<T: Send + 'static>(
+    py: Python<'_>,
+    history: &Bound<'_, PyAny>,
+    work: impl Fn(&[State]) -> crate::Result<T> + Send + Sync + 'static,
+) -> PyResult<Vec<T>> {
+    let given: ArrayD<f64> = real_array("history", history)?;
+    if given.ndim() != 3 || given.shape()[2] != 6 {
+        return Err(PyValueError::new_err(format!(
+            "history must have the shape (…, times, 6), got {:?}",
+            given.shape()
+        )));
+    }
+    let histories: Vec<Vec<State>> = given
+        .axis_iter(Axis(0))
+        .map(|one| one.axis_iter(Axis(0)).map(|state| std::array::from_fn(|k| state[k])).collect())
+        .collect();
+    let threads = Threads::new(None)?;
+    let found = background::run(py, None, move |caller: &mut background::Caller<(f64,)>| {
+        let mut found: Vec<Option<crate::Result<T>>> = histories.iter().map(|_| None).collect();
+        let several = 4 * threads.count();
+        for (results, histories) in found.chunks_mut(several).zip(histories.chunks(several)) {
+            if caller.go_on().is_break() {
+                break;
+            }
+            threads.run(|| {
+                each_chunk(results, 1, 0, &|number, result| {
+                    result[0] = Some(work(&histories[number]));
+                });
+            });
+        }
+        found.into_iter().flatten().collect::<crate::Result<Vec<T>>>()
+    })?;
+    Ok(found?)
+}
