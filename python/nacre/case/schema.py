@@ -326,8 +326,8 @@ class Keys(Table):
                 with at("material"):
                     material = self._material(layer.material)
                 with at("interface"):
-                    interface = layer.interface
-                    interface = interface.make() if isinstance(interface, Spring) else interface
+                    joint = layer.interface
+                    interface = joint.make() if isinstance(joint, Spring) else joint
                 layers.append(nacre.Layer(material, layer.thickness, interface, layer.name))
         ends = None if body.ends is None else (body.ends[0], body.ends[1])
         with at(name):

@@ -32,7 +32,7 @@ def solved(body: nacre.HalfSpace, **keywords: Any) -> nacre.Solution:
 
 
 def test_responses_equal_the_dense_system() -> None:
-    """Made by tests/data/make_springs.py with 120 digits."""
+    """Made by tests/data/make/springs.py with 120 digits."""
     compared = 0
     for case in json.loads((DATA / "springs.json").read_text(encoding="utf-8"))["cases"]:
         layers = []
@@ -42,7 +42,7 @@ def test_responses_equal_the_dense_system() -> None:
             material = nacre.Elastic(layer["young"], layer["poisson"])
             layers.append(nacre.Layer(material, layer["thickness"], interface))
         base = case["substrate"]
-        bases = {None: nacre.RIGID, "free": nacre.FREE}
+        bases: dict[str | None, Any] = {None: nacre.RIGID, "free": nacre.FREE}
         substrate = nacre.Elastic(**base) if isinstance(base, dict) else bases[base]
         body = nacre.HalfSpace(substrate, layers)
         for row in case["rows"]:

@@ -29,6 +29,7 @@ QUICK: list[tuple[str, dict[str, list[int]]]] = [
     ("stick_stiffness", {"cases": [0, 11]}),
     ("response_stacks", {"cases": [0, 1, 5]}),
     ("response_derivatives", {"stacks": [0]}),
+    ("springs", {"cases": [0, 9]}),
     ("stress_disc", {"cases": [2]}),
     ("stress_patch", {"cases": [0, 10, 27]}),
     ("quarter_space_wave", {"cases": [0, 8, 14]}),

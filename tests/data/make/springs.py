@@ -9,26 +9,19 @@ four powers of alpha h. An interface passes the tractions, and the displacement 
 less that of the lower one is the traction over the stiffness. Derivatives are central differences
 of a relative step of 1e-30, good to some 50 digits.
 
-Convention as in make_response_random.py: u_z = W, u_L = i V, sigma_zz = -P, sigma_Lz = -i TAU,
+Convention as in response_random.py: u_z = W, u_L = i V, sigma_zz = -P, sigma_Lz = -i TAU,
 u_T = U, sigma_Tz = -Q; at the surface (W, V) = [[c11, c12], [c12, c22]] (P, TAU) and U = ct Q.
-
-Needs mpmath. Run: python tests/data/make_springs.py
 """
 
 import copy
-import json
-from pathlib import Path
+import sys
 
 from mpmath import exp, lu_solve, matrix, mp, mpf, zeros
 
+from common import main
+
 mp.dps = 120
-DESCRIPTION = (
-    "Surface compliances at wavenumbers, as in response_random.json, and derivatives of c11 by the "
-    "numbers of the body, of layers joined by springs (stiffnesses 'normal' and 'tangential', null "
-    "where rigid) and of plates (substrate 'free'; null is a rigid base). Made by make_springs.py "
-    "from the full boundary-value system with 120 digits."
-)
-WAVENUMBERS = (1e-6, 1e-3, 0.03, 0.2, 0.7, 2.0, 9.0)
+NAME, SECONDS = "springs.json", 60
 
 
 def columns(nu, g, alpha, depth, sign):
@@ -47,7 +40,7 @@ def twists(g, alpha, depth, sign):
 
 
 def solved(body, alpha, axes):
-    """States on top of the body under each unit traction; axes is 2 in the plane, 1 for the twist."""
+    """States on top of the body under each unit traction; axes: 2 in the plane, 1 for the twist."""
     states, count = [], 0
     parts = body["layers"] + ([body["substrate"]] if isinstance(body["substrate"], dict) else [])
     for part in parts:
@@ -59,7 +52,11 @@ def solved(body, alpha, axes):
             for sign in signs:
                 # Growing ones are 1 at the bottom.
                 depth = z if sign < 0 else z - h
-                made += columns(nu, g, alpha, depth, sign) if axes == 2 else twists(g, alpha, depth, sign)
+                made += (
+                    columns(nu, g, alpha, depth, sign)
+                    if axes == 2
+                    else twists(g, alpha, depth, sign)
+                )
             return made
 
         top = at(mpf(0))
@@ -94,7 +91,11 @@ def solved(body, alpha, axes):
                 if lower:
                     row((lower, t, 1))
                 continue
-            k = interface["normal" if across else "tangential"] if isinstance(interface, dict) else None
+            k = (
+                interface["normal" if across else "tangential"]
+                if isinstance(interface, dict)
+                else None
+            )
             # u_upper = u_lower + t/k: a pressure and TAU, Q > 0 push the upper side into the body.
             jump = [(upper, t, -1 / mpf(k))] if k is not None else []
             row((upper, u, 1), *jump, *([(lower, u, -1)] if lower else []))
@@ -112,7 +113,7 @@ def solved(body, alpha, axes):
 
 
 def exact(value):
-    """The same data with numbers of 120 digits."""
+    """Return the same data with numbers of 120 digits."""
     if isinstance(value, dict):
         return {key: exact(item) for key, item in value.items()}
     if isinstance(value, list):
@@ -121,9 +122,13 @@ def exact(value):
 
 
 def numbers(body):
-    """Paths of the numbers of a body, in the order of nacre, as keys and places."""
+    """Yield paths of the numbers of a body, in the order of nacre, as keys and places."""
     for k, layer in enumerate(body["layers"]):
-        for key, name in (("young", "material.young"), ("poisson", "material.poisson"), ("thickness", "thickness")):
+        for key, name in (
+            ("young", "material.young"),
+            ("poisson", "material.poisson"),
+            ("thickness", "thickness"),
+        ):
             yield f"layers[{k}].{name}", ("layers", k, key)
         if isinstance(layer["interface"], dict):
             for key in ("normal", "tangential"):
@@ -135,7 +140,7 @@ def numbers(body):
 
 
 def moved(body, place, by):
-    """A body with another number, and the change."""
+    """Return a body with another number, and the change."""
     changed = copy.deepcopy(body)
     here = changed
     for key in place[:-1]:
@@ -156,44 +161,16 @@ def row_of(body, alpha):
         change = solved(above, alpha, 2)[0][0] - solved(below, alpha, 2)[0][0]
         slopes[path] = float(change / (2 * step))
     values = {"c11": c11, "c12": c12, "c22": c22, "ct": ct}
-    return {"wavenumber": float(alpha)} | {k: float(v) for k, v in values.items()} | {"slopes": slopes}
+    return (
+        {"wavenumber": float(alpha)} | {k: float(v) for k, v in values.items()} | {"slopes": slopes}
+    )
 
 
-def layer(young, poisson, thickness, interface="bonded"):
-    return {"young": young, "poisson": poisson, "thickness": thickness, "interface": interface}
-
-
-def spring(normal=None, tangential=None):
-    return {"normal": normal, "tangential": tangential}
-
-
-def stacks():
-    base = {"young": 1.0, "poisson": 0.3}
-    yield [layer(4.0, 0.25, 1.0, spring(2.0, 0.5))], base
-    yield [layer(4.0, 0.25, 1.0, spring(None, 0.01))], base
-    yield [layer(0.5, 0.45, 1.0, spring(0.05, 0.0))], base
-    yield [layer(40.0, 0.3, 0.5, spring(3.0)), layer(0.2, 0.5, 2.0, spring(0.4, 0.1))], base
-    yield [layer(2.0, 0.3, 1.0, spring(0.3, 0.2))], None
-    yield [layer(2.0, 0.3, 1.0, spring(1e-3, 0.0))], None
-    yield [layer(2.0, 0.1, 1.0, "frictionless"), layer(1.0, 0.4, 0.7, spring(5.0, 7.0))], None
-    yield [layer(2.0, 0.3, 1.0)], "free"
-    yield [layer(3.0, 0.2, 0.3), layer(1.0, 0.5, 1.0)], "free"
-    yield [layer(3.0, 0.2, 0.3, "frictionless"), layer(1.0, 0.4, 1.0)], "free"
-    yield [layer(2.0, 0.3, 1.0, spring(0.6, 0.05)), layer(5.0, 0.25, 0.5)], "free"
-
-
-def main():
-    cases = []
-    for layers, substrate in stacks():
-        body = exact({"layers": layers, "substrate": substrate})
-        rows = [row_of(body, alpha) for alpha in WAVENUMBERS]
-        cases.append({"layers": layers, "substrate": substrate, "rows": rows})
-    lines = ",\n".join(json.dumps(case) for case in cases)
-    text = f'{{"description": {json.dumps(DESCRIPTION)},\n"cases": [\n{lines}\n]}}\n'
-    target = Path(__file__).with_name("springs.json")
-    target.write_text(text, encoding="utf-8")
-    print(f"{target.name}: {len(cases)} stacks")
+def fill(content):
+    for case in content["cases"]:
+        body = exact({"layers": case["layers"], "substrate": case["substrate"]})
+        case["rows"] = [row_of(body, row["wavenumber"]) for row in case["rows"]]
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.modules[__name__])
