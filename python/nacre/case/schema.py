@@ -189,14 +189,12 @@ class Stress(Table):
 def _criterion(kind: str, maker: Any) -> type[Any]:
     """Return the table of a criterion of fatigue, whose limits must both be given."""
     told = described(maker)
-    limits: dict[str, Any] = {
-        name: (Number, Field(description=told[name])) for name in ("bending", "torsion")
+    fields: dict[str, Any] = {
+        "kind": (Literal[kind], Field(description="Kind of the criterion.")),
+        **{name: (Number, Field(description=told[name])) for name in ("bending", "torsion")},
     }
-    kinds = (Literal[kind], Field(description="Kind of the criterion."))
     title = f"{maker.__name__}Table"
-    made: type[Any] = create_model(
-        title, __base__=Table, __doc__=maker.__doc__, kind=kinds, **limits
-    )
+    made: type[Any] = create_model(title, __base__=Table, __doc__=maker.__doc__, **fields)
     return made
 
 
