@@ -10,6 +10,12 @@ use super::background;
 use crate::fatigue::{Criterion, State, shakedown as shaken};
 use crate::numerics::parallel::{Threads, each_chunk};
 
+/// A value for each history.
+type Row<'py, T> = Bound<'py, PyArray1<T>>;
+
+/// Values of each history.
+type Table<'py, T> = Bound<'py, PyArray2<T>>;
+
 /// Constants of a criterion: factor and limit.
 #[pyfunction]
 pub(super) fn fatigue_constants(kind: &str, bending: Real, torsion: Real) -> PyResult<(f64, f64)> {
@@ -25,7 +31,7 @@ pub(super) fn fatigue_stress<'py>(
     bending: Real,
     torsion: Real,
     history: &Bound<'py, PyAny>,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<usize>>, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<(Row<'py, f64>, Row<'py, usize>, Row<'py, f64>)> {
     let criterion = Criterion::new(word("kind", kind)?, bending.0, torsion.0)?;
     let found = each(py, history, move |states| criterion.stress(states))?;
     let numbers = |of: fn(&crate::fatigue::Equivalent) -> f64| {
@@ -43,7 +49,7 @@ pub(super) fn shakedown<'py>(
     py: Python<'py>,
     history: &Bound<'py, PyAny>,
     rule: &str,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<usize>>)> {
+) -> PyResult<(Table<'py, f64>, Table<'py, usize>)> {
     let rule = word("rule", rule)?;
     let found = each(py, history, move |states| shaken(states, rule))?;
     let rows = found.iter().map(|one| {

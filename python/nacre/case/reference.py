@@ -132,6 +132,9 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[roll]`", known["Roll"]
     yield "`[roll.creepage]` and `[roll.force]`", known["Rolling"]
     yield "`[stress]`", known["Stress"]
+    yield "`[fatigue]`", known["Fatigue"]
+    for one in tables(known["Fatigue"]["properties"]["criteria"]["items"]):
+        yield f'`[[fatigue.criteria]]` with `kind = "{kind_of(one)}"`', one
     yield from kinds("IndentCase", "tip", "tip")
     yield from kinds("IndentCase", "adhesion", "adhesion")
     yield "`[indent]`", known["Indent"]

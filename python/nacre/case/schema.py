@@ -37,7 +37,6 @@ from nacre.case.tables import (
     Table,
     described,
     said,
-    table_of,
 )
 from nacre.results.outputs import OUTPUTS
 
@@ -208,10 +207,19 @@ class Stress(Table):
         return {"body": self.body, "friction": self.friction} | super().keywords()
 
 
-CRITERIA = {
-    kind: table_of(kind, maker, Table, dict.fromkeys(("bending", "torsion"), Number))
-    for kind, maker in nacre.fatigue.CRITERIA.items()
-}
+def _criterion(kind: str, maker: Any) -> type[Any]:
+    """Return the table of a criterion of fatigue, whose limits must both be given."""
+    told = described(maker)
+    fields: dict[str, Any] = {
+        "kind": (Literal[kind], Field(description="Kind of the criterion.")),
+        **{name: (Number, Field(description=told[name])) for name in ("bending", "torsion")},
+    }
+    title = f"{maker.__name__}Table"
+    made: type[Any] = create_model(title, __base__=Table, __doc__=maker.__doc__, **fields)
+    return made
+
+
+CRITERIA = {kind: _criterion(kind, maker) for kind, maker in nacre.fatigue.CRITERIA.items()}
 """Tables of the criteria of fatigue, by kind."""
 
 if TYPE_CHECKING:
