@@ -9,7 +9,7 @@ from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from pathlib import Path
 
-from peers.figures import Figure, all_figures, ratio
+from peers.figures import Figure, all_figures, ratio, times
 from peers.measure import BESIDE, Bench, Row
 from peers.programs import PROGRAMS, release
 
@@ -55,20 +55,7 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         "",
         f"![Time of a solve as a function of the number of cells]({image})",
         "",
-        "## Quantities with a limit",
-        "",
-        *table(
-            ("quantity", "measured", "limit", "goal", ""),
-            [
-                (f.what, measured(f), number(f.limit, f), number(f.goal, f), f.met)
-                for f in all_figures(bench)
-            ],
-        ),
-        "",
-        "The time outside transforms is the share of a solve that is not spent in kernels,",
-        "transforms and products, for the fastest of some hundred solves",
-        "(`benches/convolution.rs`).",
-        *shared(bench),
+        *glance(bench, [name for name in names if name in PROGRAMS and name != "nacre"]),
     ]
     for problem, title in TITLES.items():
         rows = [row for row in bench.rows if row.problem == problem]
@@ -87,7 +74,37 @@ def markdown(bench: Bench, image: str, data: str) -> str:
     rows = [row for row in bench.rows if row.problem == "convolution"]
     if rows:
         lines += ["", f"## {CONVOLUTION}", "", *convolutions(rows)]
+    lines += [
+        "",
+        "## Figures of nacre itself",
+        "",
+        *table(("quantity", "measured"), [(f.what, measured(f)) for f in all_figures(bench)]),
+        "",
+        "The time outside transforms is the share of a solve that is not spent in kernels,",
+        "transforms and products, for the fastest of some hundred solves",
+        "(`benches/convolution.rs`).",
+        *shared(bench),
+    ]
     return "\n".join(lines) + "\n"
+
+
+def glance(bench: Bench, programs: list[str]) -> list[str]:
+    """Return how many times nacre's time every other program takes, by problem."""
+    rows = []
+    for problem in ("hertz", "rough", "periodic"):
+        if bench.find(problem, 1024, "nacre", 1) is None:
+            continue
+        found = [times(bench, problem, name) for name in programs]
+        shown = ["–" if each is None else f"{each:.3g}" for each in found]
+        rows.append((TITLES[problem], *shown))
+    if not rows or not programs:
+        return []
+    return [
+        "Time of a solve over that of nacre, 1024² cells, one thread. A dash: the program does not",
+        "solve the problem, took too long, or did not reach the residual.",
+        "",
+        *table(("problem", *programs), rows),
+    ]
 
 
 def shared(bench: Bench) -> list[str]:
@@ -171,20 +188,12 @@ def convolutions(rows: list[Row]) -> list[str]:
     return table(("cells", "threads", "nacre [ms]", "SciPy [ms]", "nacre / SciPy"), lines)
 
 
-def number(found: float | None, figure: Figure) -> str:
-    """Return a number of a quantity as text, small ratios of times as 1/n."""
-    if found is None:
-        return "–"
-    text = f"{found:.3g}"
-    if "time relative" in figure.what and 0 < found < 1:
-        text = f"1/{1 / found:.3g}"
-    return f"{text} {figure.unit}".strip()
-
-
 def measured(figure: Figure) -> str:
     """Return the measured value, with its standard error where it is known."""
-    text = number(figure.measured, figure)
-    if figure.measured is None or figure.error is None:
+    if figure.measured is None:
+        return "–"
+    text = f"{figure.measured:.3g} {figure.unit}".strip()
+    if figure.error is None:
         return text
     return f"{text} ± {figure.error * figure.measured:.1g}"
 

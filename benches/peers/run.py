@@ -112,8 +112,7 @@ def main() -> None:
     report.write(bench, *files)
     print()
     for figure in all_figures(bench):
-        shown = report.measured(figure), report.number(figure.limit, figure)
-        print(f"{figure.what:60}  measured {shown[0]:>10}  limit {shown[1]:>10}  {figure.met}")
+        print(f"{figure.what:80}  {report.measured(figure)}")
     print(f"written: {', '.join(str(file) for file in files)}")
 
 
