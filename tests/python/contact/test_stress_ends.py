@@ -133,7 +133,8 @@ def test_interface_maps_and_places_beyond_an_end(solution: nacre.Solution) -> No
 
 @pytest.mark.parametrize(
     ("rows", "beside", "error"),
-    # More rows have other nodes of the interpolation below the face; more columns hold more of the excess.
+    # More rows have other nodes of the interpolation below the face; more columns hold more of the
+    # excess.
     [(43, 0, 1e-7), (32, 7, 1e-4)],
 )
 def test_cells_without_pressure_change_little(rows: int, beside: int, error: float) -> None:
@@ -155,7 +156,8 @@ def test_cells_without_pressure_change_little(rows: int, beside: int, error: flo
 
 
 def test_what_is_left_out_far_from_an_end_is_small() -> None:
-    # The excess beside the end is dropped ten widths away, where it is less than 1e-3 of the peak pressure.
+    # The excess beside the end is dropped ten widths away, where it is less than 1e-3 of the peak
+    # pressure.
     body = nacre.HalfSpace(nacre.Elastic(1.0, 0.3), ends=(0.0, 40.0))
     grid = nacre.Grid((320, 24), (40.0, 1.5), center=(20.0, 0.0))
     pressure = np.sqrt(np.clip(1.0 - (grid.y / 0.5) ** 2, 0.0, None)) * np.ones((320, 1))
