@@ -449,10 +449,10 @@ def area_coefficient(solution: Solution) -> float:
     --------
     A wave that is pressed flat touches everywhere: its κ is E* h' / p̄.
 
-    >>> wave = 1e-7 * np.cos(2 * np.pi * np.arange(32) / 32)[:, None] * np.ones(4)
+    >>> wave = 1e-7 * np.cos(2 * np.pi * np.arange(32) / 32)[:, None] * np.ones(8)
     >>> surface = nacre.HeightMap(wave, 1e-6, periodic=(True, True))
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> solution = nacre.solve(surface, steel, load=4e9 * 128e-12)
+    >>> solution = nacre.solve(surface, steel, load=4e9 * 256e-12)
     >>> slope = nacre.rough.spectral_slope(surface)
     >>> round(area_coefficient(solution) / (steel.plane_strain_modulus * slope / 4e9), 6)
     1.0

@@ -67,12 +67,6 @@ pub(super) type ConvolutionWatch<'a> = dyn FnMut(usize, Misfit) -> ControlFlow<(
 /// of 256² cells take up to a quarter more convolutions, with 3 for the second up to half as many again.
 const INNER: [f64; 3] = [0.1, 300.0, 0.2];
 
-/// Share of the tolerance below which the error of a force is left as it is.
-const BALANCED: f64 = 0.1;
-
-/// Corrections of forces after a step; what is left falls with each as the square.
-const CORRECTIONS: usize = 2;
-
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
 
@@ -201,10 +195,8 @@ impl TractionProblem<'_> {
             }
             restrict(&states, &mut residual);
             residual.iter_mut().for_each(|r| *r = -*r);
-            let mut missing = self.missing(&q);
-            if misfit.imbalance <= BALANCED * effort.tolerance {
-                missing.fill(0.0);
-            }
+            let pairs = self.columns.iter().zip(&self.forces);
+            let missing: Vec<f64> = pairs.map(|(column, force)| force - dot(column, &q)).collect();
             let [most, factor, least] = INNER;
             let sticks = !states.iter().any(|state| matches!(state, CellState::Slip { .. }));
             let sought = if sticks && outer > 0 {
@@ -239,19 +231,7 @@ impl TractionProblem<'_> {
             weights = linear.into_weights();
             add(&mut q, 1.0, &d);
             self.law.project(&states, &mut q);
-            // Forces that this changed, as the next step would begin; but without the convolution that it takes there.
-            for _ in 0..CORRECTIONS {
-                let y = small_system(&weights, &self.columns, &self.missing(&q));
-                y.iter().zip(&weights).for_each(|(y, weight)| add(&mut q, *y, weight));
-                self.law.project(&states, &mut q);
-            }
         }
-    }
-
-    /// What the tractions `q` lack to the given forces.
-    fn missing(&self, q: &[f64]) -> Vec<f64> {
-        let pairs = self.columns.iter().zip(&self.forces);
-        pairs.map(|(column, force)| force - dot(column, q)).collect()
     }
 
     /// Takes C δ from residuals.

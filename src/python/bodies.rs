@@ -223,7 +223,10 @@ class! {
     }
     methods {
         #[new]
-        #[pyo3(signature = (material, thickness, interface=PyInterface(Interface::Bonded), name=None))]
+        #[pyo3(
+            signature = (material, thickness, interface=PyInterface(Interface::Bonded), name=None),
+            text_signature = "(material, thickness, interface='bonded', name=None)"
+        )]
         fn new(
             material: PyElastic,
             thickness: Real,

@@ -123,6 +123,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield from kinds("RollerShape", "profile", "shape.profile")
     yield "`[body]` and `[counterbody]`", known["Body"]
     yield "`[[body.layers]]`", known["Layer"]
+    yield "`interface` of a layer: `interface = { normal = ... }`", known["Spring"]
     yield "`[grid]`", known["Grid"]
     yield "`[solve]`", known["Solve"]
     yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", known["Along"]
