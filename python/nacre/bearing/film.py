@@ -27,6 +27,8 @@ SEPARATED = 3.0
 """Ratio λ of film and roughness from which surfaces count as separated; recalled."""
 FITTED = {"U": (1.68e-12, 5.05e-11), "W": (1.1e-7, 1.3e-6), "G": (2310.0, 6790.0), "k": (1.0, 8.0)}
 """Ranges of the cases to which Hamrock and Dowson fitted (1977); k is seen, the others recalled."""
+FLAT = 1e-9
+"""Rise of a shape over the displacement below which it is rounding, of 1e-16 of both."""
 COATED = (
     "the film is that of bare substrates: layers no thicker than half of the half-width b move it "
     "by -10 to +12 %, a figure of nacre's specification that no test here confirms"
@@ -105,16 +107,18 @@ def _point(u: float, g: float, w: float, k: float) -> tuple[float, float]:
 def _isoviscous(elastic: float, k: float) -> float:
     """Return the smallest film of a constant viscosity over that unit in which `elastic` is g_E.
 
-    Lines: ``H W/U`` of rigid bodies is Martin's 4.896 (derived), of elastic ones Herrebrugh's
+    Lines: ``H W/U`` of rigid bodies is Martin's 4.895 (derived), of elastic ones Herrebrugh's
     ``3.10 g_E^0.8`` (recalled). Points: ``H (W/U)²`` of Hamrock and Dowson (1979), whose rigid one
     takes ``R_y/R_x = (k/1.03)^(1/0.64)``; seen but for ``φ = 1/(1 + 2 R_x/(3 R_y))``, recalled.
     """
     if math.isinf(k):
-        return max(4.896, 3.10 * elastic**0.8)
+        soft: float = 3.10 * elastic**0.8
+        return max(4.895, soft)
     ratio = (k / 1.03) ** (1 / 0.64)
     spread = (0.131 * math.atan(ratio / 2) + 1.683) / (1 + 2 / (3 * ratio))
     soft = 8.70 * elastic**0.67 * (1 - 0.85 * math.exp(-0.31 * k))
-    return max(128 * ratio * spread**2, soft)
+    rigid: float = 128 * ratio * spread**2
+    return max(rigid, soft)
 
 
 def _curvature(solution: Solution, section: int) -> float:
@@ -128,7 +132,10 @@ def _curvature(solution: Solution, section: int) -> float:
     shape = (solution.gap - solution.displacement - solution.indentation)[section, inside]
     y = solution.y[inside]
     scale = np.ptp(y)
-    return float(2 * np.polyfit((y - y.mean()) / scale, shape, 2)[0] / scale**2)
+    rise = np.polyfit((y - y.mean()) / scale, shape, 2)[0]
+    if not rise > FLAT * np.abs(solution.displacement).max():
+        raise ValueError("radius must be given: the shape is not convex along y")
+    return float(2 * rise / scale**2)
 
 
 def _modulus(solution: Solution) -> float:
@@ -211,10 +218,7 @@ def film_thickness(
     modulus = _modulus(solution)
     section = int(np.argmax(solution.line_load))
     if radius is None:
-        curvature = _curvature(solution, section)
-        if not curvature > 0:
-            raise ValueError("radius must be given: the shape is not convex along y")
-        radius = 1 / curvature
+        radius = 1 / _curvature(solution, section)
     line = solution.grid.is_line or solution.report.rolling_direction is not None
     across, along = (high - low for low, high in solution.contact_extent)
     k = math.inf if line else across / along

@@ -87,7 +87,8 @@ def nijenbanning(u: float, g: float, w: float) -> float:
     s = 1.5 * (1 + math.exp(-1.2 * soft / rigid))
     iso = (rigid ** (1.5 * s) + (soft**-4 + 1.8**-4) ** (-3 * s / 8)) ** (2 / 3)
     piezo: float = (thick**-8 + (both * big ** (-1 / 12)) ** -8) ** (-s / 8)
-    return (iso + piezo) ** (1 / s) * math.sqrt(2 * u)
+    found: float = (iso + piezo) ** (1 / s) * math.sqrt(2 * u)
+    return found
 
 
 @pytest.mark.parametrize(("body", "load"), [(STEEL, 5.0), (STEEL, 15.0), (GLASS, 20.0)])
@@ -145,7 +146,7 @@ def test_the_parameters_of_regimes_are_those_of_the_contact() -> None:
 
 
 def test_martins_film_of_rigid_cylinders() -> None:
-    """Reynolds' equation on a parabola, with p = p' = 0 at the end, has the load 4.896 η u R/h."""
+    """Reynolds' equation on a parabola, with p = p' = 0 at the end, has the load 4.895 η u R/h."""
     x = np.linspace(-60.0, 3.0, 630_001)
     gap = 1 + x**2 / 2
 
