@@ -118,7 +118,7 @@ fn senseless_quarter_spaces_are_refused() -> Result<()> {
     }
     let base = HalfSpace::new(Substrate::Rigid, [Layer::new(steel, 1.0)?])?;
     let message = QuarterSpace::new(base, 0.0, [1.0, 1.0]).map_err(|error| error.to_string());
-    assert!(message.is_err_and(|message| message.contains("rigid substrate")));
+    assert!(message.is_err_and(|message| message.contains("rigid base")));
     let body = QuarterSpace::new(steel, 0.0, [1.0, 1.0])?;
     for [x, y] in [[-1e-9, 0.0], [f64::NAN, 0.0], [0.0, f64::INFINITY]] {
         assert!(body.displacement([x, y]).is_err(), "{x} {y}");

@@ -58,7 +58,7 @@ fn scale(body: &HalfSpace, cell: [f64; 2], offset: [f64; 2], c: f64) -> f64 {
     };
     c.abs().max(match body.substrate() {
         Substrate::Elastic(material) => bare(material),
-        Substrate::Rigid => RIGID_SHARE * bare(body.surface_material()),
+        Substrate::Rigid | Substrate::Free => RIGID_SHARE * bare(body.surface_material()),
     })
 }
 
@@ -148,7 +148,7 @@ fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
             Substrate::Elastic(s) => {
                 s.plane_strain_modulus().min(body.surface_material().plane_strain_modulus())
             }
-            Substrate::Rigid => body.surface_material().plane_strain_modulus(),
+            Substrate::Rigid | Substrate::Free => body.surface_material().plane_strain_modulus(),
         };
         let asked = 1e-9 / (PI * softest);
         assert!(estimate < asked, "case {number}: {estimate:e} > {asked:e}");

@@ -66,12 +66,14 @@ fn derivatives_equal_those_of_fifty_digits() -> Result<()> {
             let expected = number(row, "alpha_c11");
             near!(value, expected, EXACT);
             for (parameter, slope) in slopes {
-                let (name, place) = match parameter {
-                    BodyParameter::Young(place) => ("young", place),
-                    BodyParameter::Poisson(place) => ("poisson", place),
-                    BodyParameter::Thickness(place) => ("thickness", place),
+                let name = match parameter {
+                    BodyParameter::Young(_) => "young",
+                    BodyParameter::Poisson(_) => "poisson",
+                    BodyParameter::Thickness(_) => "thickness",
+                    BodyParameter::NormalStiffness(_) => "normal",
+                    BodyParameter::TangentialStiffness(_) => "tangential",
                 };
-                let key = match place {
+                let key = match parameter.layer() {
                     place if place == layers => format!("d_{name}_substrate"),
                     place => format!("d_{name}_{place}"),
                 };
@@ -117,6 +119,10 @@ fn moduli_and_lengths_scale_the_response() -> Result<()> {
                     BodyParameter::Young(_) => young += weighted,
                     BodyParameter::Thickness(_) => lengths += weighted,
                     BodyParameter::Poisson(_) => {}
+                    BodyParameter::NormalStiffness(_) | BodyParameter::TangentialStiffness(_) => {
+                        young += weighted;
+                        lengths -= weighted;
+                    }
                 }
             }
             below!((young / value).abs(), IDENTITY, seed, alpha);

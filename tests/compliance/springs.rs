@@ -120,7 +120,7 @@ fn stiff_springs_bond_and_weak_ones_slip() -> Result<()> {
     // Long waves feel α/k_t only if it is above the shear lag, α² h E: 1e-22 / 1e-3³ = 1e-13.
     let weak = with_interface(spring(1e22, 1e-22)?)?;
     let slipping = with_interface(Interface::Frictionless)?;
-    let loose = with_interface(spring(None, 0.0)?)?;
+    let loose = with_interface(spring(None::<f64>, 0.0)?)?;
     for alpha in sweep() {
         for k in 0..2 {
             let at = |body: &HalfSpace| surface_compliance(body, alpha);

@@ -235,8 +235,10 @@ fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
     let grid = Grid::new([128, 128], [4.0, 4.0])?;
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
     let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
-    let algorithms =
-        [(Algorithm::Cascade, Solver::Preconditioned), (Algorithm::PolonskyKeer, Solver::PolonskyKeer)];
+    let algorithms = [
+        (Algorithm::Cascade, Solver::Preconditioned),
+        (Algorithm::PolonskyKeer, Solver::PolonskyKeer),
+    ];
     for (algorithm, expected) in algorithms {
         let options = Options { algorithm, ..Options::default() };
         let mut last = 1;

@@ -333,23 +333,26 @@ mod tests {
     use super::*;
     use crate::compliance::response::interior::{Column, InPlane};
     use crate::error::Result;
-    use crate::model::body::{Interface, Layer};
+    use crate::model::body::{Interface, Spring};
     use crate::stress::section::place;
     use crate::stress::{Side, Stress, StressOptions, stress};
 
     const CELLS: [usize; 2] = [24, 15];
 
-    /// Bare, under a thin hard and a thick soft layer, two layers of which one slips, and a layer on a rigid base;
-    /// thicknesses in cells.
+    /// Bare, under a thin hard and a thick soft layer, two layers of which one slips, a layer on springs, one on a rigid
+    /// base, and a plate; thicknesses in cells.
     fn bodies() -> Result<Vec<HalfSpace>> {
         let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(5.0, 0.2)?);
+        let springs = Interface::Spring(Spring::new(Some(0.5), Some(0.2))?);
         let slipping = Layer::new(soft, 2.0)?.with_interface(Interface::Frictionless);
         Ok(vec![
             soft.into(),
             HalfSpace::new(soft, [Layer::new(hard, 0.4)?])?,
             HalfSpace::new(hard, [Layer::new(soft, 30.0)?])?,
             HalfSpace::new(soft, [Layer::new(hard, 1.0)?, slipping])?,
+            HalfSpace::new(hard, [Layer::new(soft, 2.0)?.with_interface(springs)])?,
             HalfSpace::new(Substrate::Rigid, [Layer::new(soft, 3.0)?])?,
+            HalfSpace::new(Substrate::Free, [Layer::new(soft, 3.0)?])?,
         ])
     }
 

@@ -129,3 +129,39 @@ def test_interface_maps_and_places_beyond_an_end(solution: nacre.Solution) -> No
         plot.stress_depth(solution, at=(LOW - CELL, 0.0))
     plot.stress_section(solution, along="y", at=HIGH, rows=4)
     plot.stress_depth(solution, at=(HIGH, 0.0), points=4)
+
+
+@pytest.mark.parametrize(
+    ("rows", "beside", "error"),
+    # More rows have other nodes of the interpolation below the face; more columns hold more of the
+    # excess.
+    [(43, 0, 1e-7), (32, 7, 1e-4)],
+)
+def test_cells_without_pressure_change_little(rows: int, beside: int, error: float) -> None:
+    # What ends add is computed in the cells that are wanted, from those that are loaded.
+    def bell(t: Any) -> Any:
+        return np.clip(1.0 - t * t, 0.0, None) ** 3
+
+    body = nacre.HalfSpace(nacre.Elastic(1.0, 0.3), ends=(0.0, None))
+    fields = []
+    for rows_here, beside_here in ((32, 0), (rows, beside)):
+        columns = 32 + 2 * beside_here
+        size = (rows_here / 8, columns / 8)
+        grid = nacre.Grid((rows_here, columns), size, center=(rows_here / 16, 0.0))
+        pressure = bell((grid.x[:, None] - 0.7) / 0.6) * bell(grid.y / 0.5)
+        field = nacre.stress(body, grid, pressure, [0.05, 0.5, 2.0])
+        kept = np.s_[:, :32, beside_here : beside_here + 32]
+        fields.append([field.xx[kept], field.yy[kept], field.zz[kept], field.xz[kept]])
+    assert np.allclose(*fields, rtol=0.0, atol=error)
+
+
+def test_what_is_left_out_far_from_an_end_is_small() -> None:
+    # The excess beside the end is dropped ten widths away, where it is less than 1e-3 of the peak
+    # pressure.
+    body = nacre.HalfSpace(nacre.Elastic(1.0, 0.3), ends=(0.0, 40.0))
+    grid = nacre.Grid((320, 24), (40.0, 1.5), center=(20.0, 0.0))
+    pressure = np.sqrt(np.clip(1.0 - (grid.y / 0.5) ** 2, 0.0, None)) * np.ones((320, 1))
+    field = nacre.stress(body, grid, pressure, [0.2, 0.5])
+    for component in (field.xx, field.yy, field.zz, field.xz, field.xy):
+        jumps = np.abs(np.diff(component[:, 40:280], n=2, axis=1))
+        assert jumps.max() < 1e-3
