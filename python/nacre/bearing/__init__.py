@@ -6,6 +6,7 @@ tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 1628
 """
 
 from nacre.bearing.bearings import AngularContactBall, CylindricalRoller, DeepGrooveBall
+from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
     IoannidesHarris,
@@ -25,12 +26,14 @@ __all__ = [
     "BearingSolution",
     "CylindricalRoller",
     "DeepGrooveBall",
+    "Film",
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
     "StressVolume",
     "Zaretsky",
     "edge_factors",
+    "film_thickness",
     "life_ratio",
     "load_integrals",
     "rating",

@@ -159,7 +159,7 @@ def load(path: AnyPath) -> Any:
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
         `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
         `IndentSolution` or a `Fit` of `nacre.indent`, a `BearingSolution`, `BearingLife`,
-        `StressVolume` or `LifeRatio` of `nacre.bearing`.
+        `StressVolume`, `LifeRatio` or `Film` of `nacre.bearing`.
 
     Raises
     ------

@@ -315,6 +315,17 @@ LIFE_RATIO = (
     *COATING,
 )
 """Quantities of a ratio of lives."""
+FILM = (
+    Quantity("central", "central thickness of the film", "m", label="central film"),
+    Quantity("minimum", "smallest thickness of the film", "m", label="smallest film"),
+    Quantity("film_ratio", "smallest thickness over roughness", label="film ratio λ"),
+    Quantity("radius", "radius in the direction of rolling", "m", label="radius"),
+    Quantity("load", "load, per length in line contact", "N", "N/m", label="load"),
+    Quantity("ellipticity", "width across over along rolling", label="ellipticity"),
+    Quantity("viscosity_parameter", "viscosity parameter g_V", label="viscosity g_V"),
+    Quantity("elasticity_parameter", "elasticity parameter g_E", label="elasticity g_E"),
+)
+"""Quantities of an oil film."""
 
 PARAMETERS = {
     "load": "N",

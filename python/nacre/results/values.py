@@ -88,6 +88,7 @@ ELSEWHERE = {
     "BearingReport": "nacre.bearing",
     "StressVolume": "nacre.bearing",
     "LifeRatio": "nacre.bearing",
+    "Film": "nacre.bearing",
 }
 ELSEWHERE |= dict.fromkeys(("FatigueSummary", "LayerFatigue"), "nacre.fatigue")
 ELSEWHERE |= dict.fromkeys(("InterfaceFatigue", "ShakedownMap"), "nacre.fatigue")

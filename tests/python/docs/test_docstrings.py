@@ -144,6 +144,7 @@ def test_its_examples_are_true(name: str) -> None:
         nacre.plot.rough,
         nacre.plot.sections,
         nacre.bearing.bearings,
+        nacre.bearing.film,
         nacre.bearing.iso,
         nacre.bearing.life,
         nacre.bearing.solution,
