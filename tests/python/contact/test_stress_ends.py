@@ -152,7 +152,7 @@ def test_cells_without_pressure_change_little(rows: int, beside: int, error: flo
         field = nacre.stress(body, grid, pressure, [0.05, 0.5, 2.0])
         kept = np.s_[:, :32, beside_here : beside_here + 32]
         fields.append([field.xx[kept], field.yy[kept], field.zz[kept], field.xz[kept]])
-    assert np.abs(np.subtract(*fields)).max() <= error
+    assert np.abs(np.subtract(fields[0], fields[1])).max() <= error
 
 
 def test_what_is_left_out_far_from_an_end_is_small() -> None:
