@@ -309,6 +309,22 @@ impl Freedoms {
         self.solve(&gram, sums.right)
     }
 
+    /// Subtracts from `values`, which are 0 outside the contact, their best fit Bλ over the cells inside.
+    pub(crate) fn project(&self, values: &mut [f64], inside: impl Fn(usize) -> bool) {
+        let mut gram = [[0.0; 3]; 3];
+        for (x, cells) in self.rows() {
+            let members = cells.zip(&self.columns[1]).filter(|(k, _)| inside(*k));
+            let add =
+                |[s, sy, syy]: [f64; 3], (_, y): (usize, &f64)| [s + 1.0, sy + y, syy + y * y];
+            add_gram(&mut gram, x, members.fold([0.0; 3], add));
+        }
+        self.for_each(self.solve(&gram, self.moments(values)), |k, b| {
+            if inside(k) {
+                values[k] -= b;
+            }
+        });
+    }
+
     /// Solves for the loaded degrees of freedom; one that the others determine (a contact of one cell has
     /// no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
