@@ -18,12 +18,12 @@ pub enum CriterionKind {
     /// the difference of the largest and smallest principal value of s − s*. Dang Van, ASTM STP 1191 (1993) 120,
     /// doi:10.1520/STP24799S.
     DangVan,
-    /// R/√2 + a max σ_h ≤ b, with the radius R of that hypersphere. Crossland (1956) [recalled].
+    /// R/√2 + a max σ_h ≤ b, with the radius R of that hypersphere. Crossland (1956) (recalled).
     Crossland,
     /// max over all planes of τ_a + k σ_n ≤ f, with the radius τ_a of the smallest circle around the path of the shear
-    /// stress on a plane, and the largest normal stress σ_n there. Findley (1959) [recalled].
+    /// stress on a plane, and the largest normal stress σ_n there. Findley (1959) (recalled).
     Findley,
-    /// τ_a + k σ_n ≤ f on the plane of the largest τ_a. Matake (1977) [recalled].
+    /// τ_a + k σ_n ≤ f on the plane of the largest τ_a. Matake (1977) (recalled).
     Matake,
 }
 
