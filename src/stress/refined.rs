@@ -182,7 +182,9 @@ impl Refined<'_> {
                 return Ok(summary);
             }
             for (which, (own, finer)) in summary.peaks().into_iter().zip(fine.peaks()).enumerate() {
-                if let (true, Some(own), Some(finer)) = (here.contains(&which), own, finer) {
+                if let (true, Some(own), Some(finer)) = (here.contains(&which), own, finer)
+                    && finer.uncertainty.is_some_and(|error| Some(error) < own.uncertainty)
+                {
                     *own = *finer;
                 }
             }
