@@ -103,15 +103,15 @@ def _table(kind: str, made: type[Any]) -> type[BearingKind]:
     }
     for one in dataclasses.fields(made):
         hint, default = TYPES.get(one.name, Number), one.default
-        if hint is None or one.name not in told:
+        if hint is None or (told and one.name not in told):  # without docstrings none is told
             continue
         if default is dataclasses.MISSING:
-            fields[one.name] = (hint, Field(description=told[one.name]))
+            fields[one.name] = (hint, Field(description=told.get(one.name, "")))
             continue
         if default is None or one.name in ("element", "inner", "outer", "raceway_crown"):
             hint, default = hint | None, None
         given = list(default) if isinstance(default, tuple) else default
-        fields[one.name] = (hint, Field(default=given, description=told[one.name]))
+        fields[one.name] = (hint, Field(default=given, description=told.get(one.name, "")))
     summary = inspect.cleandoc(made.__doc__ or "").partition("\n")[0]
     table: type[BearingKind] = create_model(
         f"{made.__name__}Case", __base__=BearingKind, __doc__=summary, **fields
