@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
@@ -327,9 +328,9 @@ class _Balls(Solvable):
         return (sum(self.osculation) - 1) * self.diameter
 
     @property
+    @abstractmethod
     def free_angle(self) -> float:
         """Contact angle at which the balls touch both rings without load [rad]."""
-        raise NotImplementedError
 
     @property
     def mass(self) -> float:

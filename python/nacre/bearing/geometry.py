@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -55,7 +56,7 @@ KNOWN: dict[str, type[Bearing]] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bearing:
+class Bearing(ABC):
     """What all bearings have: one row of elements between two rings.
 
     The bearing's axis is z. Element j stands at the angle ``rotation + 2 π j / count`` from x.
@@ -179,6 +180,7 @@ class Bearing:
         bodies = (self.element, self.inner, self.outer)
         return any(isinstance(body, core.HalfSpace) and body.layers for body in bodies)
 
+    @abstractmethod
     def shape(self, ring: Ring) -> core.Shape:
         """Return the gap between an element and a raceway.
 
@@ -192,12 +194,11 @@ class Bearing:
         Shape
             Shape for `nacre.solve`: x along the axis of the element, y in the direction of rolling.
         """
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def mass(self) -> float:
         """Mass of an element [kg]."""
-        raise NotImplementedError
 
     def _arguments(self) -> dict[str, Any]:
         """Return what makes the bearing again, for files and journals of studies."""

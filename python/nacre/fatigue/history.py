@@ -29,8 +29,6 @@ FAR = 3
 DENSE = 1 / 20
 """Largest distance of states, in half-widths of the contact up to `NEAR` of them, and as a part of
 the distance from it further away."""
-FITTED = 6
-"""Number of cells inside the contact whose stresses a parabola continues to the edge."""
 ROWS = 16
 """Smallest number of rows along x that cells beyond are merged to."""
 PARTS = np.arange(1, 8) / 8
@@ -102,11 +100,9 @@ class Rolling:
         self.tractions = None if tractions is None else np.asarray(tractions)
         self.x = None if self.grid.is_line else (self._section() if x is None else float(x))
         row = 0 if self.x is None else int(np.argmin(np.abs(self.grid.x - self.x)))
-        self.row = self.pressure[row]
-        inside = np.flatnonzero(self.row)
+        inside = np.flatnonzero(self.pressure[row])
         if not inside.size:
             raise ValueError(f"x must be in the contact, whose row there has no pressure, got {x}")
-        self.inside = slice(int(inside[0]), int(inside[-1]) + 1)
         self.half_width = 0.5 * inside.size * self.grid.spacing[1]
         self.levels = self._levels()
 
@@ -171,7 +167,7 @@ class Rolling:
         With `friction`, the part of the tractions is there.
         """
         slides = (0.0, 1.0) if friction and not self.known else (0.0,)
-        own = [self._own(depths, side, slide) for slide in slides]
+        own = [self._own(depths, side, slide, self.x) for slide in slides]
         ys, parts = [self.grid.y], [[self._array(field) for field in own]]
         for grid, loads, used in self.levels:
             if used.size:
@@ -188,14 +184,21 @@ class Rolling:
         none = np.zeros(len(depths))
         uncertain = none if errors is None else np.nan_to_num(errors)
         if list(depths) == [0.0]:
-            states = self._with_edges(states)
+            states = self._with_edges(states, slides)
         return self._unloaded(states), uncertain
 
-    def _own(self, depths: Sequence[float], side: Side, slide: float) -> Stress:
+    def _own(
+        self,
+        depths: Sequence[float],
+        side: Side,
+        slide: float,
+        x: float | None,
+        y: float | None = None,
+    ) -> Stress:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
             return self.plan.stress(
-                depths, side=side, x=self.x, friction=slide, direction=self.direction
+                depths, side=side, x=x, y=y, friction=slide, direction=self.direction
             )
 
     @staticmethod
@@ -231,51 +234,27 @@ class Rolling:
             total += term.factor * self._array(field)
         return total
 
-    def _with_edges(self, states: States) -> States:
+    def _with_edges(self, states: States, slides: Sequence[float]) -> States:
         """Return the states at the surface with those at the edges of the contact.
 
         With friction, yy has a peak there of the square root of the distance, which cells cut off.
-        yy + p and xx + 2 ν p are smooth inside, where p = -zz; at the edge p is 0.
         """
-        if self.known:  # tractions have edges of their own, between stick and slip
+        points = self.plan.edge
+        if self.x is not None:
+            points = points[np.abs(points[:, 0] - self.x) <= self.grid.spacing[0]]
+        if self.known or not len(points):  # tractions have edges of their own, of stick and slip
             return states
-        first, last = self.inside.start, self.inside.stop - 1
-        if last - first < 2 * FITTED:
-            return states
-        top = self.body.layers[0].material if self.body.layers else self.body.substrate
-        poisson = top.poisson if isinstance(top, core.Elastic) else 0.0
-        for one, way in ((first, 1), (last, -1)):
-            edge = self._edge(one, way)
-            if edge is None:
-                continue
-            # The cell at the edge is in contact in part: its stresses are those of no place.
-            near = self.grid.y[one + way * np.arange(1, 1 + FITTED)]
-            places = np.searchsorted(states.y, near)
-            at = int(np.searchsorted(states.y, self.grid.y[one]))
-            for part in (states.normal, states.tangential):
-                smooth = part[0, places].copy()
-                smooth[:, 1] -= smooth[:, 2]
-                smooth[:, 0] -= 2.0 * poisson * smooth[:, 2]
-                curve = np.polynomial.polynomial.polyfit(near - edge, smooth, 2)
-                part[0, at] = curve[0]
-                part[0, at, [2, 4, 5]] = 0.0
-            states.y[at] = edge
-            states = states._replace(edges=(*states.edges, edge))
+        for x, y in points[[points[:, 1].argmin(), points[:, 1].argmax()]].tolist():
+            own, *slid = (self._array(self._own([0.0], "below", one, x, y)) for one in slides)
+            at = int(np.searchsorted(states.y, y))
+            added = slid[0] - own if slid else np.zeros_like(own)
+            states = States(
+                np.insert(states.y, at, y),
+                np.insert(states.normal, [at], own, axis=1),
+                np.insert(states.tangential, [at], added, axis=1),
+                (*states.edges, y),
+            )
         return states
-
-    def _edge(self, one: int, way: int) -> float | None:
-        """Return the edge in a cell, where the square of the pressure goes to 0; or None.
-
-        A parabola through the next three cells continues the square.
-        """
-        squares = self.row[one + way * np.arange(1, 4)] ** 2
-        if not np.all(np.diff(squares) > 0):
-            return None
-        y, step = self.grid.y, self.grid.spacing[1]
-        roots: list[complex] = np.polynomial.Polynomial.fit([1, 2, 3], squares, 2).roots().tolist()
-        # In the cell, or as far outside as the cells beside it: they are in contact in part.
-        real = [root.real for root in roots if abs(root.imag) < 1e-9 and abs(root.real) < 0.9]
-        return float(y[one] + way * step * real[0]) if len(real) == 1 else None
 
     def _unloaded(self, states: States) -> States:
         """Return the states with the stress-free one, infinitely far away."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
-from nacre.plot.style import COLOURS, look, new_axes, styled
+from nacre.plot.style import COLOURS, checked_axes, look, new_axes, styled
 from nacre.results.quantities import PROFILE
 
 with extra("plot"):
@@ -57,7 +57,7 @@ def fatigue_depth(summary: FatigueSummary, *, axes: Axes | None = None) -> Axes:
     scale = Scale.of(highest, "Pa")
     z = length.factor * summary.depths
     with styled():
-        axes = _checked(axes) or new_axes(0.75, 0.45)
+        axes = checked_axes(axes) or new_axes(0.75, 0.45)
         for number, (name, values) in enumerate(summary.profiles.items()):
             axes.plot(z, scale.factor * values, **look(number), label=labels.get(name, name))
         for face in summary.interfaces:
@@ -106,7 +106,7 @@ def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = N
     order = np.argsort(found.friction)
     friction = found.friction[order]
     with styled():
-        axes = _checked(axes) or new_axes(0.75, 0.5)
+        axes = checked_axes(axes) or new_axes(0.75, 0.5)
         drawn = sum(not str(line.get_label()).startswith("_") for line in axes.lines)
         for number, name in enumerate(found.names):
             colour = COLOURS[(drawn + number) % len(COLOURS)]
@@ -117,11 +117,4 @@ def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = N
         axes.set_ylim(bottom=0.0)
         axes.set_title("shakedown limits; thin: first yield")
         axes.legend()
-    return axes
-
-
-def _checked(axes: object) -> Axes | None:
-    """Return axes, or None where there are none yet."""
-    if axes is not None and not isinstance(axes, Axes):
-        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
     return axes

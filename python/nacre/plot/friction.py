@@ -9,7 +9,7 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import WIDTH, lengths, new_axes, next_look, styled
+from nacre.plot.style import WIDTH, checked_axes, lengths, new_axes, next_look, styled
 from nacre.results.base import checked, has_friction
 
 with extra("plot"):
@@ -54,7 +54,7 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     """
     if not has_friction(solution):
         raise TypeError(f"solution must be a FrictionSolution, got {solution!r}")
-    _check(axes)
+    checked_axes(axes)
     with styled():
         if solution.grid.is_line:
             return _line(solution, axes or new_axes(0.6, 0.4))
@@ -66,12 +66,6 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
             if isinstance(drawn.figure, Figure):
                 drawn.figure.set_size_inches(0.9 * WIDTH, height * WIDTH)
         return drawn
-
-
-def _check(axes: object) -> None:
-    """Raise a `TypeError` unless `axes` are axes or None."""
-    if axes is not None and not isinstance(axes, Axes):
-        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
 
 
 def _map(solution: FrictionSolution, axes: Axes) -> Axes:
@@ -230,7 +224,7 @@ def loop(
     ValueError
         If there is no solution, one is of rolling, or the axis is another.
     """
-    _check(axes)
+    checked_axes(axes)
     solutions = checked(solutions)
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
@@ -286,7 +280,7 @@ def creep_curve(
     ValueError
         If there is no such column.
     """
-    _check(axes)
+    checked_axes(axes)
     if quantity not in dataset:
         names = ", ".join(map(str, dataset.data_vars))
         raise ValueError(f"quantity must be one of {names}, got {quantity!r}")

@@ -129,3 +129,10 @@ def _points_per_cell(axes: Axes, solution: Solution, factors: Sequence[float]) -
             (box.width, box.height), factors, spacing, shown, strict=True
         )
     ]
+
+
+def checked_axes(axes: object) -> Axes | None:
+    """Return axes of Matplotlib, or None where there are none yet; a `TypeError` for all else."""
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
+    return axes
