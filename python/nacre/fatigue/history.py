@@ -244,7 +244,12 @@ class Rolling:
             points = points[np.abs(points[:, 0] - self.x) <= self.grid.spacing[0]]
         if self.known or not len(points):  # tractions have edges of their own, of stick and slip
             return states
-        for x, y in points[[points[:, 1].argmin(), points[:, 1].argmax()]].tolist():
+        ends = points[[points[:, 1].argmin(), points[:, 1].argmax()]]
+        # Beside the edge tractions are means over cells, and the other stresses those of points.
+        apart = np.abs(states.y[:, None] - ends[:, 1]).min(axis=1)
+        kept = apart >= self.grid.spacing[1]
+        states = States(states.y[kept], states.normal[:, kept], states.tangential[:, kept])
+        for x, y in ends.tolist():
             own, *slid = (self._array(self._own([0.0], "below", one, x, y)) for one in slides)
             at = int(np.searchsorted(states.y, y))
             added = slid[0] - own if slid else np.zeros_like(own)

@@ -123,7 +123,10 @@ HALF_WIDTHS = {2.0: 0.9, 0.5: 1.13, None: 1.0}
 )
 def test_criteria_of_contacts(row: dict[str, Any]) -> None:
     ratio, thickness = row.get("E1_over_E2"), row.get("h_over_b0")
-    solution = cylinder(ratio, thickness, HALF_WIDTHS[ratio], 240)
+    # The stress at the edge errs by up to 6e-4 of the peak pressure with 240 cells, as its root. Without friction it is all of
+    # the tension, a third of what Crossland's criterion adds.
+    at_edge = row["mu"] == 0 and row.get("z_over_b0") == 0
+    solution = cylinder(ratio, thickness, HALF_WIDTHS[ratio], 480 if at_edge else 240)
     depths: list[float] | None = None
     if row["kind"] == "contact":
         z = row["z_over_b0"]
@@ -175,6 +178,16 @@ def test_the_limit_is_below_both_bounds() -> None:
         assert np.all(needed["shakedown"] >= 0.5 * needed["orthogonal_shear"] * (1 - 1e-12))
         assert np.all(needed["shakedown"] >= 0.5 * needed["first_yield"] * (1 - 1e-12))
         assert np.all(needed["shakedown"] <= needed["first_yield"])
+
+
+@pytest.mark.parametrize("part", np.linspace(0.05, 0.15, 5))
+def test_the_place_of_the_edge_within_its_cell_does_not_matter(part: float) -> None:
+    """The edge lies 0.05 cells outside a centre to 0.05 inside, where states nearly coincide."""
+    step = 2 * WIDTH / (76.8 + 2 * part)
+    grid = nacre.Grid.line(96, 96 * step)
+    solution = nacre.solve(nacre.Cylinder(RADIUS), STEEL, load=LOAD, grid=grid)
+    (layer,) = fatigue.assess(solution, friction=0.4, depths=[0.0]).layers
+    assert PEAK / layer.shakedown[0] == pytest.approx(2.3162, rel=SURFACE)
 
 
 def test_incompressible_surface_shakes_down_at_one_over_friction() -> None:
