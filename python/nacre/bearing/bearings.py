@@ -19,6 +19,7 @@ from nacre.bearing.geometry import (
     above,
     laminae_of,
     millimetres,
+    pair,
 )
 from nacre.bearing.solution import BearingSolution
 from nacre.bearing.solving import solved
@@ -131,7 +132,7 @@ class CylindricalRoller(Solvable):
     diameter : float
         Diameter D of a roller [m].
     length : float
-        Effective length L_we of a roller [m], at whose ends it ends.
+        Effective length L_we of a roller [m]; the roller ends there.
     pitch_diameter : float, optional
         Diameter d_m of the circle of the rollers' centres [m].
     raceway_diameters : tuple of float, optional
@@ -145,7 +146,8 @@ class CylindricalRoller(Solvable):
         Radii of crowns of inner and outer raceway along the axis [m], below 0 for concave ones;
         None for straight raceways.
     free_ends : bool, optional
-        Whether the rollers end, as they do; False takes them as half-spaces that go on.
+        Whether the ends of the rollers are free surfaces, as they are in reality; False treats the
+        rollers as half-spaces that continue beyond them.
     element, inner, outer : HalfSpace or Elastic, optional
         Bodies of rollers and rings; steel with E = 210 GPa by default.
     capacity : float, optional
@@ -179,7 +181,7 @@ class CylindricalRoller(Solvable):
     raceway_crown: tuple[float | None, float | None] = (None, None)
     """Radii of crowns of both raceways [m]; None for straight ones."""
     free_ends: bool = True
-    """Whether the rollers end."""
+    """Whether the ends of the rollers are free surfaces."""
 
     kind: ClassVar[str] = "cylindrical_roller"
     rolls: ClassVar[bool] = True
@@ -196,22 +198,22 @@ class CylindricalRoller(Solvable):
             given = [n for n in ("pitch_diameter", "clearance") if getattr(self, n) is not None]
             if given:
                 raise ValueError(f"{given[0]} must not be given beside raceway_diameters")
-            object.__setattr__(self, "raceway_diameters", tuple(self.raceway_diameters))
-            for value in self.raceway_diameters:
+            both = pair("raceway_diameters", self.raceway_diameters)
+            object.__setattr__(self, "raceway_diameters", both)
+            for value in both:
                 above("raceway_diameters", value)
         if self.profile not in ("iso16281", None) and not isinstance(
             self.profile, core.LogarithmicProfile | core.SampledProfile
         ):
             raise ValueError(f'profile must be a profile, "iso16281" or None, got {self.profile!r}')
-        object.__setattr__(self, "raceway_crown", tuple(self.raceway_crown))
-        if len(self.raceway_crown) != 2 or any(
-            radius is not None and not (math.isfinite(radius) and radius != 0)
-            for radius in self.raceway_crown
-        ):
-            raise ValueError(
-                "raceway_crown must be two radii, finite and not 0, or None where a raceway is "
-                f"straight, got {self.raceway_crown!r}"
-            )
+        object.__setattr__(self, "raceway_crown", pair("raceway_crown", self.raceway_crown))
+        for radius in self.raceway_crown:
+            if radius is not None:
+                above("raceway_crown", radius, -math.inf)
+            if radius == 0:
+                raise ValueError("raceway_crown must not be 0: None makes a raceway straight")
+        if not isinstance(self.free_ends, bool):
+            raise TypeError(f"free_ends must be True or False, got {self.free_ends!r}")
         self._check_room()
         for ring in RINGS:
             self.drop(ring)
@@ -315,9 +317,7 @@ class _Balls(Solvable):
         if self.pitch_diameter is None:
             raise ValueError("pitch_diameter must be given")
         above("pitch_diameter", self.pitch_diameter)
-        object.__setattr__(self, "osculation", tuple(self.osculation))
-        if len(self.osculation) != 2:
-            raise ValueError(f"osculation must be two numbers, got {self.osculation!r}")
+        object.__setattr__(self, "osculation", pair("osculation", self.osculation))
         for value in self.osculation:
             above("osculation", value, 0.5)
         self._check_room()

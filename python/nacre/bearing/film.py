@@ -30,8 +30,8 @@ FITTED = {"U": (1.68e-12, 5.05e-11), "W": (1.1e-7, 1.3e-6), "G": (2310.0, 6790.0
 FLAT = 1e-9
 """Rise of a shape over the displacement below which it is rounding, of 1e-16 of both."""
 COATED = (
-    "the film is that of bare substrates: layers no thicker than half of the half-width b move it "
-    "by -10 to +12 %, a figure of nacre's specification that no test here confirms"
+    "the film is that of bare substrates: layers no thicker than b/2, half of the half-width, "
+    "change it by some -10 to +12 %, an estimate that nacre's tests do not check"
 )
 
 

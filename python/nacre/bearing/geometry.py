@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -36,7 +37,17 @@ def above(name: str, value: Any, least: float = 0.0) -> None:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise TypeError(f"{name} must be a number, got {value!r}")
     if not (math.isfinite(value) and value > least):
-        raise ValueError(f"{name} must be finite and above {least:g}, got {value!r}")
+        bound = "" if least == -math.inf else f" and above {least:g}"
+        raise ValueError(f"{name} must be finite{bound}, got {value!r}")
+
+
+def pair(name: str, value: Any) -> tuple[Any, Any]:
+    """Return two values, of the inner and the outer ring."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} must be two values, got {value!r}")
+    if len(found := tuple(value)) != 2:
+        raise ValueError(f"{name} must be two values, got {value!r}")
+    return found[0], found[1]
 
 
 def millimetres(length: float) -> str:
@@ -106,6 +117,8 @@ class Bearing(ABC):
             above(name, getattr(self, name))
         if self.capacity is not None:
             above("capacity", self.capacity)
+        if self.clearance is not None:
+            above("clearance", self.clearance, -math.inf)
         for name in ("element", *RINGS):
             body = getattr(self, name)
             if not isinstance(body, core.Elastic | core.HalfSpace):

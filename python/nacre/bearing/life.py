@@ -21,7 +21,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Member
-from nacre.bearing.geometry import RINGS, Bearing
+from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution
 from nacre.results import display
@@ -89,8 +89,8 @@ class LundbergPalmgren:
         """Check the exponents."""
         for name, least in (("c", 0.0), ("e", 0.0), ("weight", 0.0), ("h", -math.inf)):
             value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > least):
-                raise ValueError(f"{name} must be finite and above {least:g}, got {value!r}")
+            if name != "e" or value is not None:
+                above(name, value, least)
 
     @property
     def limit(self) -> float:
@@ -498,6 +498,8 @@ def life_ratio(
             f"solution and reference must have the same slope e, got {one.slope:.5g} and "
             f"{other.slope:.5g}: give the model an e"
         )
+    if not math.isfinite(one.integral + other.integral):
+        raise ValueError("model must have smaller exponents: its integrals overflow")
     if one.integral == 0 and other.integral == 0:
         raise ValueError(
             "solution and reference must not both have infinite lives: the largest stresses, "
@@ -555,7 +557,8 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
                 found[:, j] = volume.integral, volume.integral * (1 + volume.change)
         means = (found ** (1 / slope)).mean(1) ** slope if r == 0 else found.mean(1)
         cycles = bearing.count * (1 + sign * bearing.gamma) / 2
-        means = means * cycles**slope * 2 * math.pi * bearing.raceways[r]
+        track = 2 * math.pi * bearing.raceways[r] * math.cos(bearing.nominal_angle)
+        means = means * cycles**slope * track
         total, changed = total + float(means[0]), changed + float(means[1])
 
     def largest(name: str) -> float:

@@ -283,7 +283,9 @@ class BearingSolution(Tabular):
             raise ValueError('model must be "solved" for a contact, got "iso16281"')
         if ring not in RINGS:
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
-        if isinstance(element, bool) or not 0 <= element < self.bearing.count:
+        if isinstance(element, bool) or not isinstance(element, int | np.integer):
+            raise TypeError(f"element must be an integer, got {element!r}")
+        if not 0 <= element < self.bearing.count:
             raise ValueError(f"element must be from 0 to {self.bearing.count - 1}, got {element!r}")
         number = RINGS.index(ring)
         if not self.loads[element, number] > 0:

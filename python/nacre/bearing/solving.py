@@ -14,7 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre.bearing.equilibrium import Balls, Kinematics, Problem, Rollers, State
-from nacre.bearing.geometry import Bearing
+from nacre.bearing.geometry import Bearing, above, pair
 from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, law
 from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model
 from nacre.contact.solution import Solution
@@ -76,17 +76,26 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     loads, moved, free = _asked(bearing, given)
     model, cells, tolerance = given["model"], given["cells"], given["tolerance"]
     for name in ("rotation", "speed"):
-        if not math.isfinite(given[name]):
-            raise ValueError(f"{name} must be finite, got {given[name]!r}")
+        above(name, given[name], -math.inf)
+    for name in ("max_iterations", "threads"):
+        value = given[name]
+        if name == "threads" and value is None:
+            continue
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise TypeError(f"{name} must be an integer, got {value!r}")
+        if value < 1:
+            raise ValueError(f"{name} must be at least 1, got {value!r}")
     if model not in ("solved", "iso16281"):
         raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
-    if not 0 < tolerance < 1:
+    above("tolerance", tolerance)
+    if tolerance >= 1:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
-    if given["max_iterations"] < 1:
-        raise ValueError(f"max_iterations must be at least 1, got {given['max_iterations']!r}")
     if cells is None:
         cells = CELLS[bearing.rolls]
-    if len(cells) != 2 or min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
+    cells = pair("cells", cells)
+    if any(isinstance(one, bool) or not isinstance(one, int) for one in cells):
+        raise TypeError(f"cells must be two integers, got {cells!r}")
+    if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
         multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
         raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
     angles = given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count

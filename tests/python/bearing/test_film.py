@@ -222,7 +222,7 @@ def test_layers() -> None:
     bare = film_thickness(LINE, **OIL)
     thin = film_thickness(line(1e5, nacre.HalfSpace(STEEL, [nacre.Layer(hard, 0.2 * half)])), **OIL)
     assert thin.central == pytest.approx(bare.central, rel=1e-4)  # moduli of the substrates
-    assert "a figure of nacre's specification" in thin.notes[0]
+    assert "an estimate that nacre's tests do not check" in thin.notes[0]
     thick = nacre.HalfSpace(STEEL, [nacre.Layer(hard, 0.9 * half)])
     with pytest.warns(nacre.NacreWarning, match="layers are thicker than half"):
         assert len(film_thickness(line(1e5, STEEL, thick), **OIL).notes) == 1
@@ -234,8 +234,7 @@ def test_rollers_take_the_heaviest_section(tmp_path: Path) -> None:
     )
     contact = quiet(bearing.solve, force=(4450.0, 0.0, None), tilt=(None, 6e-4)).contact(0, "inner")
     film = film_thickness(contact, **OIL)
-    inner = 65e-3 - 10e-3 - 41e-6 / 2
-    assert film.radius == pytest.approx(1 / (2 / 10e-3 + 2 / inner), rel=1e-3)
+    assert film.radius == pytest.approx(1 / (2 / 10e-3 + 2 / 55e-3), rel=5e-4)
     assert film.load == contact.line_load.max() > 1.05 * contact.load / 9.6e-3
     # The radius follows from the fields: a file has no shape.
     again = nacre.load(contact.save(tmp_path / "contact.nc"))

@@ -123,8 +123,8 @@ HALF_WIDTHS = {2.0: 0.9, 0.5: 1.13, None: 1.0}
 )
 def test_criteria_of_contacts(row: dict[str, Any]) -> None:
     ratio, thickness = row.get("E1_over_E2"), row.get("h_over_b0")
-    # The stress at the edge errs by up to 6e-4 of the peak pressure with 240 cells, as its root. Without friction it is all of
-    # the tension, a third of what Crossland's criterion adds.
+    # The stress at the edge errs by up to 6e-4 of the peak pressure with 240 cells, as its root.
+    # Without friction it is all of the tension, a third of what Crossland's criterion adds.
     at_edge = row["mu"] == 0 and row.get("z_over_b0") == 0
     solution = cylinder(ratio, thickness, HALF_WIDTHS[ratio], 480 if at_edge else 240)
     depths: list[float] | None = None
