@@ -79,7 +79,7 @@ peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--qu
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
 
 # The generators know nothing of nacre. OPTIONS=--write replaces the stored numbers; OPTIONS=jkr runs one generator.
-references: $(BUILD) ## recompute the reference numbers of the tests and compare them with tests/data, in half an hour
+references: $(BUILD) ## recompute the reference numbers of the tests and compare them with tests/data, in forty minutes
 	$(BIN)/python -m pip install --quiet --group references
 	$(BIN)/python tests/data/make $(OPTIONS)
 

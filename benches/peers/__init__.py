@@ -9,7 +9,7 @@
 `judge`        the residual of any pressure, by nacre's coefficients
 `worker`       one measurement, in a separate process
 `measure`      starts workers; finds the tolerance for the required residual
-`figures`      the quantities that have a limit
+`figures`      ratios and other figures of nacre itself
 `report`       CSV, Markdown and plot
 =============  ===================================================================
 """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -65,6 +65,8 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
     >>> round(float(found.first_yield / found.shear_yield), 12)
     2.0
     """
+    if rule not in get_args(Rule):
+        raise ValueError(f'rule must be "von_mises" or "in_plane_tresca", got {rule!r}')
     states, axes = _states(history)
     found, _ = core.shakedown(states, rule)
     residual = found[:, 1:3].reshape(*axes, 2)
@@ -96,10 +98,11 @@ class Criterion:
         """Check the limits."""
         for name in ("bending", "torsion"):
             if (value := getattr(self, name)) is None:
-                raise ValueError(
-                    f"{name} must be given: a criterion needs two fatigue limits, got none"
-                )
-            object.__setattr__(self, name, float(value))
+                raise ValueError(f"{name} must be given: a criterion needs both fatigue limits")
+            try:
+                object.__setattr__(self, name, float(value))
+            except (TypeError, ValueError) as error:
+                raise TypeError(f"{name} must be a real number, got {value!r}") from error
         self._told()
 
     def _told(self) -> tuple[float, float]:

@@ -42,6 +42,14 @@ LEVEL = 1e-3
 the top of a parabola a thirtieth of its half-width wide."""
 
 
+def real_array(name: str, given: Any) -> Array:
+    """Return an array of real numbers; a `TypeError` names the argument."""
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} must be real numbers, got {given!r:.100}") from error
+
+
 class Load(NamedTuple):
     """A pressure whose friction has a direction, and its factor in the sum."""
 
@@ -94,10 +102,16 @@ class Rolling:
         self.known = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = threads
-        self.direction = direction or normal.report.rolling_direction or (0.0, 1.0)
+        rolls = normal.report.rolling_direction or (0.0, 1.0)
+        self.direction = rolls if direction is None else direction
         self.pressure = np.asarray(normal.pressure)
         self.peak_pressure = normal.peak_pressure
         self.tractions = None if tractions is None else np.asarray(tractions)
+        if x is not None and (self.grid.is_line or real_array("x", x).ndim):
+            raise ValueError(
+                "x must be a number in point contacts, and None in line contacts, whose sections "
+                f"are all alike, got {x!r}"
+            )
         self.x = None if self.grid.is_line else (self._section() if x is None else float(x))
         row = 0 if self.x is None else int(np.argmin(np.abs(self.grid.x - self.x)))
         inside = np.flatnonzero(self.pressure[row])

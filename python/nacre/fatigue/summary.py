@@ -18,7 +18,7 @@ from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
-from nacre.fatigue.history import Rolling, States, refined
+from nacre.fatigue.history import Rolling, States, real_array, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result
 from nacre.results.listed import Tabular
@@ -460,10 +460,6 @@ class Assessment:
         bottom = [region.bottom] if region.bottom < np.inf else []
         return np.concatenate([[region.top], kept, bottom])
 
-    def history(self, depths: Sequence[float], side: Side, slides: bool) -> tuple[States, Array]:
-        """Return histories at some depths."""
-        return self.rolling.stress(depths, side, slides)
-
     def rows(self, region: Region, depths: Array, friction: float) -> list[Row]:
         """Return what some depths of a layer need."""
         parts: list[tuple[list[float], Side]] = [
@@ -474,7 +470,7 @@ class Assessment:
         rows = []
         for chosen, side in parts:
             if chosen:
-                found, uncertain = self.history(chosen, side, friction != 0.0)
+                found, uncertain = self.rolling.stress(chosen, side, friction != 0.0)
                 rows += self._evaluated(region, chosen, found, uncertain, friction)
         return rows
 
@@ -583,7 +579,7 @@ def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
     """Return depths in their order, checked, or None where they are to be chosen."""
     if depths is None:
         return None
-    found = np.sort(np.asarray(depths, dtype=np.float64).ravel())
+    found = np.sort(real_array("depths", depths).ravel())
     if not found.size or not np.isfinite(found).all() or found[0] < 0:
         raise ValueError(f"depths must be finite and at least 0, one or more, got {depths!r}")
     if not isinstance(body.substrate, core.Elastic) and found[-1] > body.interfaces[-1]:
@@ -692,7 +688,7 @@ def assess(
     equilibrium. In point contacts and rollers shakedown is an estimate, and so is the choice of the
     section.
 
-    Limits of fatigue are those of one material: safety factors of criteria are given for the
+    Fatigue limits are those of one material: safety factors of criteria are given for the
     substrate, and values for the layers beside them, whose limits are rarely known.
 
     Examples
@@ -714,10 +710,11 @@ def assess(
     for limit in limits:
         if limit is not None and not 0.0 < limit < np.inf:
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
+    slides = real_array("friction", friction)
+    if slides.ndim or not 0.0 <= slides < np.inf:
+        raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
     if asked.rolling.known and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")
-    if not 0.0 <= friction < np.inf:
-        raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
     given = checked_depths(depths, asked.rolling.body)
     regions, found = asked.regions(), []
     with lasting("fatigue", progress) as tell:

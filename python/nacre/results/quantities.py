@@ -210,7 +210,7 @@ PROFILE = (
         "shakedown", "shear yield stress for shakedown", "Pa", label="shear yield for shakedown"
     ),
     Quantity(
-        "first_yield", "shear yield stress for no yield", "Pa", label="shear yield for no yield"
+        "first_yield", "shear yield stress at first yield", "Pa", label="shear yield at first yield"
     ),
     Quantity("orthogonal_shear", "range of the shear stress yz", "Pa", label="range of shear yz"),
     Quantity("DangVan", "equivalent stress of Dang Van", "Pa", label="Dang Van"),
@@ -235,7 +235,7 @@ SHAKEDOWN = (
     Quantity("layer", "layer"),
     Quantity("friction", "coefficient of friction"),
     Quantity("limits", "peak pressure over shear yield stress, for shakedown"),
-    Quantity("first_yield", "peak pressure over shear yield stress, for no yield"),
+    Quantity("first_yield", "peak pressure over shear yield stress, at first yield"),
     Quantity("depths", "depth that decides the shakedown", "m"),
 )
 """Columns of the table of a shakedown map."""

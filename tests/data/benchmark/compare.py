@@ -3,7 +3,8 @@
 RESULTS.csv has the columns set, case, quantity, value, as template.csv beside this file, whose
 values are left empty; rows that are missing or empty are not compared. Each set is printed with the
 largest and the median difference, relative to the scale of each quantity. --tolerance X makes the
-exit status 1 where a difference is above X; --all prints every row. Needs Python alone.
+exit status 1 where a difference is above X plus the error of the reference; --all prints every row.
+Needs Python alone.
 """
 
 import argparse
@@ -18,7 +19,7 @@ HERE = Path(__file__).parent
 
 
 def known():
-    """Return (set, case, quantity) -> value, scale, error of the set."""
+    """Return (set, case, quantity) -> value, scale, error of the number."""
     found = {}
     for path in sorted(HERE.glob("*.json")):
         for case in json.loads(path.read_text(encoding="utf-8"))["cases"]:
@@ -39,7 +40,7 @@ def read(path):
         for row in table:
             if not (row["value"] or "").strip():
                 continue
-            place = (row["set"], row["case"], row["quantity"])
+            place = tuple(row[key] or "" for key in ("set", "case", "quantity"))
             if place in found:
                 raise ValueError(f"{path}, line {table.line_num}: {place} is there twice")
             try:
@@ -51,7 +52,7 @@ def read(path):
 
 
 def differences(results, sets=()):
-    """Return (difference, error of the set, place, value, expected), all sets or those named."""
+    """Return (difference, error of the number, place, value, expected), all sets or those named."""
     truth, rows = known(), []
     for place, value in results.items():
         if place not in truth:
@@ -87,10 +88,14 @@ def main(arguments=None):
     parser.add_argument("--tolerance", type=float, help="largest difference that passes")
     parser.add_argument("--all", action="store_true", help="print every row")
     asked = parser.parse_args(arguments)
+    if asked.tolerance is not None and not asked.tolerance >= 0:
+        parser.error("--tolerance must be 0 or more")
+    if unknown := set(asked.sets) - {place[0] for place in known()}:
+        parser.error(f"no such set: {', '.join(sorted(unknown))}")
     try:
         rows = differences(read(asked.results), asked.sets)
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
+    except (OSError, ValueError, csv.Error) as error:
+        print(f"{asked.results}: {error}", file=sys.stderr)
         return 2
     if not rows:
         print("nothing to compare: no row has a value", file=sys.stderr)

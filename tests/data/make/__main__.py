@@ -21,6 +21,8 @@ def main():
     words = sys.argv[1:]
     options = [word for word in words if word.startswith("-")]
     names = [word for word in words if word not in options] or generators()
+    if unknown := sorted(set(names) - set(generators())):
+        sys.exit(f"no such generator: {', '.join(unknown)}")
     sys.path.insert(0, str(HERE))
     seconds = {name: importlib.import_module(name).SECONDS for name in names}
     total = sum(seconds.values()) / 60
@@ -32,7 +34,7 @@ def main():
         ).returncode:
             failed.append(name)
     if failed:
-        sys.exit(f"off by more than the stated error: {', '.join(failed)}")
+        sys.exit(f"failed, or off by more than the stated error: {', '.join(failed)}")
 
 
 if __name__ == "__main__":

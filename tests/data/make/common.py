@@ -1,18 +1,14 @@
 """What the generators of reference numbers share: files, comparison, command line.
 
-A generator is a module with ``NAME``, the file of reference numbers, ``fill(content)``, which
-computes
-all numbers of the file from the inputs that it lists, and ``SECONDS``, how long that takes. To add
-a
-case, write its inputs into the file and run the generator with ``--write``.
+A generator is a module with ``NAME``, the file of reference numbers; ``fill(content)``, which
+computes all numbers of the file from the inputs that it lists; and ``SECONDS``, how long that
+takes. To add a case, write its inputs into the file and run the generator with ``--write``.
 
 A file says in ``description`` what it holds, in ``source`` and ``method`` where the numbers come
-from,
-in ``error`` how good they are. ``tolerance`` states the error for programs: ``{key: [relative,
-absolute]}``,
-where the key is that of the number or of an object around it (the innermost counts), ``""`` all
-others.
-The allowed difference is absolute + relative * |stored|.
+from, and in ``error`` how good they are. ``tolerance`` states the error for programs:
+``{key: [relative, absolute]}``, where the key is that of the number or of an object around it (the
+innermost counts), and ``""`` stands for all others. The allowed difference is
+absolute + relative * |stored|.
 """
 
 import argparse
