@@ -123,7 +123,8 @@ impl FrictionSolution {
     }
 
     /// Stress at `depths` in one of the bodies, under the pressure and the tractions. The pressure is reconstructed
-    /// within cells, as [`Solution::stress`](crate::Solution::stress) does; tractions are uniform over cells.
+    /// within cells, as [`Solution::stress`](crate::Solution::stress) does; tractions are uniform over cells, and at
+    /// single points follow the pressure within the cells around.
     ///
     /// # Errors
     /// As [`Solution::stress`](crate::Solution::stress); friction among the `options`.

@@ -137,10 +137,13 @@ impl Stress {
             .filter(|(_, ratio)| *ratio > UNRESOLVED)
             .max_by(|a, b| a.1.total_cmp(&b.1));
         let said = |(k, ratio): (usize, f64)| {
+            let place = match self.z[k] {
+                0.0 => "at the surface".to_owned(),
+                depth => format!("at depth {depth:e}"),
+            };
             format!(
-                "at depth {:e} the stress is uncertain by {} of the largest there, due to the size of \
-                 the cells: take {}",
-                self.z[k],
+                "{place} the stress is uncertain by {} of the largest there, due to the size of the cells: \
+                 take {}",
                 Percent(ratio),
                 SmallerCells(ratio / UNRESOLVED)
             )

@@ -12,7 +12,7 @@ use super::half_space::{
 };
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
-use super::subcell::{BodyPair, CellPoint, PointStress, STRESSES, SubcellStress};
+use super::subcell::{BodyPair, CellPoint, PointStress, STRESSES, SubcellStress, Tractions};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
@@ -52,6 +52,8 @@ pub struct StressPlan {
     span: Span,
     /// What adds to the stress of the whole half-space: ends of the body, tractions that are known.
     parts: Vec<Box<dyn Part>>,
+    /// Known tractions along x and y on this body \[Pa\], in C order.
+    known: Option<[Vec<f64>; 2]>,
     /// Present where the body has free ends, and bears pressure.
     ends: Option<EndErrors>,
 }
@@ -125,20 +127,21 @@ impl<'a> PressureSource<'a> {
         else {
             return Ok(None);
         };
-        for (axis, traction) in self.tractions.iter().flatten().enumerate() {
+        let known = self.tractions.map(|both| both.map(|q| q.mapv(|q| self.sliding.sign * q)));
+        for (axis, traction) in known.iter().flatten().enumerate() {
             if traction.iter().any(|q| *q != 0.0) {
-                let traction: Array2<f64> = traction.mapv(|q| self.sliding.sign * q);
                 let plan = HalfSpacePlan::uniform(
                     body,
                     (grid, &full_window(grid.shape())),
-                    &traction,
+                    traction,
                     &whole.threads,
                 )?;
                 let load = SurfaceLoad { factor: 1.0, axis: Some(axis) };
                 parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }
         }
-        Ok(Some(StressPlan { whole, sliding: self.sliding, span, parts, ends: errors }))
+        let known = known.map(|both| both.map(|q| q.into_iter().collect()));
+        Ok(Some(StressPlan { whole, sliding: self.sliding, span, parts, known, ends: errors }))
     }
 
     /// [`PressureSource::plan`], of which a stop is an error.
@@ -253,12 +256,21 @@ impl StressPlan {
         friction: [f64; 2],
         window: &Window,
     ) -> Option<Array1<f64>> {
+        let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
         let cells = self.whole.uncertainties(places, friction, window);
         let Some(ends) = &self.ends else {
             return cells;
         };
         let ends: Array1<f64> = places.iter().map(|place| ends.at(place.depth)).collect();
         Some(cells.map_or(ends.clone(), |cells| cells + &ends))
+    }
+
+    /// Largest ratios of known tractions along x and along y to the pressure: the coefficient of friction where cells slip.
+    fn largest_ratios(&self, known: &[Vec<f64>; 2]) -> [f64; 2] {
+        known.each_ref().map(|tractions| {
+            let loaded = tractions.iter().zip(&self.whole.pressure).filter(|(_, p)| **p > 0.0);
+            loaded.map(|(q, p)| (q / p).abs()).fold(0.0, f64::max)
+        })
     }
 
     /// Points (x, y) of the smooth edge of a solved contact, at most one in a cell, in the order of the grid. There
@@ -370,8 +382,8 @@ impl<'a> Evaluation<'a> {
         ControlFlow::Continue(sums)
     }
 
-    /// Stresses at `place` below a point of a solved contact, of which `at` gives those of the whole half-space. What free ends
-    /// and known tractions add is interpolated between the centres of cells.
+    /// Stresses at `place` below a point of a solved contact, of which `at` gives those of the whole half-space with its
+    /// tractions. What free ends add is interpolated between the centres of cells; a body with known tractions has none.
     pub(super) fn at_point(
         &self,
         place: &Place,
@@ -382,6 +394,9 @@ impl<'a> Evaluation<'a> {
         progress(0.0)?;
         let plan = self.plan;
         let mut sum = plan.whole.threads.run(|| at.at(point));
+        if plan.known.is_some() {
+            return ControlFlow::Continue(sum);
+        }
         let around = plan.span.around(point, plan.whole.grid.shape());
         for part in &plan.parts {
             for (cell, weight) in &around {
@@ -395,7 +410,9 @@ impl<'a> Evaluation<'a> {
 
     /// What gives stresses at `place` of the whole half-space below any point of a solved contact.
     pub(super) fn point_stress(&self, place: &Place) -> Option<PointStress<'a>> {
-        self.plan.whole.point_stress(place, self.loading.friction())
+        let sliding = Tractions::Sliding(self.loading.friction());
+        let tractions = self.plan.known.as_ref().map_or(sliding, Tractions::Known);
+        self.plan.whole.point_stress(place, tractions)
     }
 
     /// The components at `place` on the face of an end that lies between the rows `row` − 1 and `row`, for each of them

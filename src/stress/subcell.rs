@@ -151,7 +151,8 @@ impl SubcellStress {
         if !self.near.reaches(place.depth) {
             return NearTable::default();
         }
-        self.near.table(place.depth, rectangle_stress(&self.kernels, place, friction))
+        let stresses = rectangle_stresses(&self.kernels, place, friction.map(|f| f != 0.0));
+        self.near.table(place.depth, |at, half| under(sliding(friction), stresses(at, half)))
     }
 
     /// Points of the edge of the contact, at most one in a cell; none where the grid repeats.
@@ -182,20 +183,20 @@ impl SubcellStress {
         self.margin.is_empty() && self.uncertainty.is_known_around(point.cell)
     }
 
-    /// What gives stresses at `place` below any point of a grid that does not repeat.
+    /// What gives stresses at `place` below any point of a grid that does not repeat, under the pressure and `tractions`.
     pub(super) fn point_stress<'a>(
         &'a self,
         (body, grid): (&HalfSpace, &'a Grid),
         place: &Place,
-        friction: [f64; 2],
+        tractions: Tractions<'a>,
         threads: &Threads,
     ) -> PointStress<'a> {
         let [lx, ly] = grid.size();
         // Not on the threads: one that waits for the kernels cannot be asked to make them.
         let kernels = || threads.run(|| Kernels::new(body, grid, SMALLEST_AT_POINT, lx.hypot(ly)));
         let kernels = self.point_kernels.get_or_init(kernels);
-        let stress = threads.run(|| rectangle_stress(kernels, place, friction));
-        PointStress { subcell: self, grid, depth: place.depth, friction, stress }
+        let stresses = threads.run(|| rectangle_stresses(kernels, place, tractions.act()));
+        PointStress { subcell: self, grid, depth: place.depth, tractions, stresses }
     }
 
     /// Adds the stresses of a table to those of the uniform part, one plane of each component; at the
@@ -231,39 +232,72 @@ impl SubcellStress {
     }
 }
 
-/// Stresses at (x, y) from the centre of a rectangle of half sides (a, b).
-type RectangleStress<'a> = Box<dyn Fn([f64; 2], [f64; 2]) -> Components + Send + Sync + 'a>;
+/// Tractions on the surface of a solved contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Tractions<'a> {
+    /// This times the pressure, along x and along y.
+    Sliding([f64; 2]),
+    /// Means over cells, along x and along y.
+    Known(&'a [Vec<f64>; 2]),
+}
+
+impl Tractions<'_> {
+    /// Whether there are any along x and along y.
+    fn act(self) -> [bool; 2] {
+        match self {
+            Self::Sliding(friction) => friction.map(|f| f != 0.0),
+            Self::Known(tractions) => tractions.each_ref().map(|q| q.iter().any(|q| *q != 0.0)),
+        }
+    }
+}
+
+/// Stresses at (x, y) from the centre of a rectangle of half sides (a, b), under unit pressure and under unit tractions
+/// along x and along y.
+type RectangleStresses<'a> = Box<dyn Fn([f64; 2], [f64; 2]) -> [Components; 3] + Send + Sync + 'a>;
 
 /// Stresses at one depth below any point.
 pub(super) struct PointStress<'a> {
     subcell: &'a SubcellStress,
     grid: &'a Grid,
     depth: f64,
-    friction: [f64; 2],
-    stress: RectangleStress<'a>,
+    tractions: Tractions<'a>,
+    stresses: RectangleStresses<'a>,
 }
 
 impl PointStress<'_> {
     /// Stresses below a point: a sum over all loaded cells, and over the pieces of those nearby, ever finer towards the
     /// point. On the threads of the caller.
+    ///
+    /// Known tractions follow the pressure within the cells around the point, with their ratio to it in the point's cell.
     pub(super) fn at(&self, point: &CellPoint) -> Components {
-        let Self { subcell, stress, .. } = self;
+        let Self { subcell, stresses, .. } = self;
         // No piece may end at the point itself.
         let farthest = 0.5 - SMALLEST_AT_POINT;
         let within = point.within.map(|u| u.clamp(-farthest, farthest));
         let point = &CellPoint { within, ..*point };
         let ([nx, ny], spacing) = (self.grid.shape(), self.grid.spacing());
         let half = spacing.map(|d| 0.5 * d);
+        let friction = self.friction_at(point.cell);
+        let load = |cell: usize| {
+            let p = subcell.uniform[cell];
+            match self.tractions {
+                Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
+                // What is moved between cells goes with the pressure.
+                Tractions::Known([qx, qy]) => {
+                    let moved = p - subcell.given[cell];
+                    [p, qx[cell] + friction[0] * moved, qy[cell] + friction[1] * moved]
+                }
+            }
+        };
         let row = |i: usize| {
             let mut sum = [0.0; STRESSES];
-            let pressures = subcell.uniform[i * ny..(i + 1) * ny].iter().enumerate();
-            for (j, p) in pressures.filter(|(_, p)| **p != 0.0) {
+            let loads = (0..ny).map(|j| (j, load(i * ny + j)));
+            for (j, load) in loads.filter(|(_, load)| load.iter().any(|part| *part != 0.0)) {
                 let from = [0, 1].map(|axis| {
                     let cells = point.cell[axis] as f64 - [i, j][axis] as f64;
                     (cells + point.within[axis]) * spacing[axis]
                 });
-                let values = stress(from, half);
-                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += p * value);
+                sum = added(sum, under(load, stresses(from, half)));
             }
             sum
         };
@@ -271,16 +305,34 @@ impl PointStress<'_> {
         // In the order of the rows, whatever the number of threads.
         let mut sum = rows.into_iter().fold([0.0; STRESSES], added);
         if subcell.near.reaches(self.depth) {
+            let stress = |at, half| under(sliding(friction), stresses(at, half));
             sum = added(sum, subcell.near.sum_at_point(point, self.depth, stress));
         }
         if self.depth == 0.0 {
             let mean = subcell.given[subcell.near.number(point.cell)];
             let p = subcell.near.pressure_at(point, mean);
-            for (k, factor) in tractions(self.friction) {
+            for (k, factor) in tractions(friction) {
                 sum[k] = -factor * p;
             }
         }
         sum
+    }
+
+    /// Ratios of the tractions to the pressure in a cell, or, where it bears none, in the neighbour that bears most.
+    fn friction_at(&self, cell @ [i, j]: [usize; 2]) -> [f64; 2] {
+        let known = match self.tractions {
+            Tractions::Sliding(friction) => return friction,
+            Tractions::Known(known) => known,
+        };
+        let (given, [nx, ny]) = (&self.subcell.given, self.grid.shape());
+        let number = |[i, j]: [usize; 2]| i * ny + j;
+        let around = (i.saturating_sub(1)..nx.min(i + 2))
+            .flat_map(|i| (j.saturating_sub(1)..ny.min(j + 2)).map(move |j| number([i, j])));
+        let cell = match given[number(cell)] > 0.0 {
+            true => number(cell),
+            false => around.max_by(|a, b| given[*a].total_cmp(&given[*b])).unwrap_or_default(),
+        };
+        known.each_ref().map(|q| if given[cell] > 0.0 { q[cell] / given[cell] } else { 0.0 })
     }
 }
 
@@ -288,43 +340,51 @@ fn added(a: Components, b: Components) -> Components {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
-/// Stresses at `place`, at (x, y) from the centre of a rectangle of half sides (a, b) under unit pressure and `friction`
-/// times it. On the threads of the caller.
-fn rectangle_stress<'a>(
+/// Unit pressure, and tractions of `friction` times it.
+fn sliding([fx, fy]: [f64; 2]) -> [f64; 3] {
+    [1.0, fx, fy]
+}
+
+/// The stresses under a pressure and tractions, from those under units of each.
+fn under(load: [f64; 3], stresses: [Components; 3]) -> Components {
+    std::array::from_fn(|k| {
+        load[0] * stresses[0][k] + load[1] * stresses[1][k] + load[2] * stresses[2][k]
+    })
+}
+
+/// Stresses at `place` below rectangles, of tractions along x and y where they are `wanted`. On the threads of the caller.
+fn rectangle_stresses<'a>(
     kernels: &'a Kernels,
     place: &Place,
-    [fx, fy]: [f64; 2],
-) -> RectangleStress<'a> {
-    let none = [0.0; COMPONENTS];
-    let sum = move |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
-        std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
-    };
+    wanted: [bool; 2],
+) -> RectangleStresses<'a> {
+    let stresses = |values: [f64; COMPONENTS]| std::array::from_fn(|k| values[k]);
+    let none = [0.0; STRESSES];
     match kernels {
         Kernels::Line(plan) => {
             let normal = plan.strips::<6, strip::StripPressure>(place);
-            let along = (fx != 0.0).then(|| plan.strips::<3, strip::StripAlong>(place));
-            let across = (fy != 0.0).then(|| plan.strips::<6, strip::StripAcross>(place));
+            let along = wanted[0].then(|| plan.strips::<3, strip::StripAlong>(place));
+            let across = wanted[1].then(|| plan.strips::<6, strip::StripAcross>(place));
             Box::new(move |[_, y], [_, half]| {
-                let along = along.as_ref().map_or(none, |strips| strips.at(y, half));
-                let across = across.as_ref().map_or(none, |strips| strips.at(y, half));
-                sum(normal.at(y, half), along, across)
+                let along = along.as_ref().map_or(none, |strips| stresses(strips.at(y, half)));
+                let across = across.as_ref().map_or(none, |strips| stresses(strips.at(y, half)));
+                [stresses(normal.at(y, half)), along, across]
             })
         }
         Kernels::Plane(plan) => {
-            let slides = fx != 0.0 || fy != 0.0;
             let normal = Kernel::new::<PressureStress>(plan, place);
-            let lateral = slides.then(|| Kernel::new::<TractionStress>(plan, place));
+            let lateral =
+                wanted.contains(&true).then(|| Kernel::new::<TractionStress>(plan, place));
             Box::new(move |[x, y], [a, b]| {
-                let pressed = normal.at::<PressureStress>([x, y], [a, b]);
-                let Some(lateral) = &lateral else {
-                    return sum(pressed, none, none);
+                let traction = |axis: usize, at, half| {
+                    let lateral = lateral.as_ref().filter(|_| wanted[axis])?;
+                    Some(lateral.at::<TractionStress>(at, half))
                 };
-                let stresses = |at, half| lateral.at::<TractionStress>(at, half);
-                let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
+                let along = traction(0, [x, y], [a, b]).map_or(none, stresses);
                 // Traction along y is traction along x with both exchanged.
-                let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
-                let across = across.map(|values| EXCHANGED.map(|k| values[k]));
-                sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
+                let across = traction(1, [y, x], [b, a]);
+                let across = across.map_or(none, |values| stresses(EXCHANGED.map(|k| values[k])));
+                [stresses(normal.at::<PressureStress>([x, y], [a, b])), along, across]
             })
         }
     }

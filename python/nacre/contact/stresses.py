@@ -692,7 +692,8 @@ class Stressed:
         The pressure varies within cells: inside the contact with the slopes and curvatures that
         neighbouring cells give, near a smooth edge as a square root. `nacre.stress` takes the
         pressure as uniform over a cell; within some cells of the surface the two differ. The
-        tractions of `nacre.slide` and `nacre.roll` are uniform over cells.
+        tractions of `nacre.slide` and `nacre.roll` are uniform over cells; at single points they
+        follow the pressure within the cells around.
 
         Friction does not change the pressure. That is exact where the bodies are alike or
         incompressible, and a good approximation where the friction is small: the neglected coupling

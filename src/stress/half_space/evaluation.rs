@@ -13,7 +13,7 @@ use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::numerics::fft::{KernelRows, TransformMemory, Transformed};
 use crate::stress::options::StressProgress;
-use crate::stress::subcell::{PointStress, STRESSES};
+use crate::stress::subcell::{PointStress, STRESSES, Tractions};
 
 /// Components that are convolved together. More of them read the load's transform less often; fewer
 /// write and read less memory in between.
@@ -271,15 +271,15 @@ impl HalfSpacePlan {
         ControlFlow::Continue(sums)
     }
 
-    /// What gives stresses at `place` below any point, under pressure and `friction` times it; none where the pressure is
-    /// given as uniform over cells.
-    pub(in crate::stress) fn point_stress(
-        &self,
+    /// What gives stresses at `place` below any point, under the pressure and `tractions`; none where the pressure is given
+    /// as uniform over cells.
+    pub(in crate::stress) fn point_stress<'a>(
+        &'a self,
         place: &Place,
-        friction: [f64; 2],
-    ) -> Option<PointStress<'_>> {
+        tractions: Tractions<'a>,
+    ) -> Option<PointStress<'a>> {
         let solved = self.solved.as_ref()?;
-        Some(solved.subcell.point_stress((&self.body, &self.grid), place, friction, &self.threads))
+        Some(solved.subcell.point_stress((&self.body, &self.grid), place, tractions, &self.threads))
     }
 
     /// Sums over the loaded cells at some offsets along x, before and behind each cell.

@@ -158,8 +158,8 @@ def test_friction_without_a_direction_is_refused_before_a_solve() -> None:
         load=1e4,
     )
     solution = nacre.solve(ROD, coated(420e9, 2e-5), grid=grid, load=1e4)
-    field = solution.stress([0.0, 2e-5], side="above", friction=0.2, direction=(0, 1))
-    assert chart.coating_tension.item() == field.peak("tension")[0]
+    summary = solution.stress_summary(friction=0.2, direction=(0, 1))
+    assert chart.coating_tension.item() == summary.layers[0].tension[0]
 
 
 def test_a_bare_body_has_no_stress_in_a_coating() -> None:
@@ -769,14 +769,15 @@ def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
 
 
 def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> None:
-    chart = design.coating_chart(
-        BALL,
-        STEEL,
-        thickness=[1e-6, 1e-4],
-        young=[105e9, 210e9, 420e9],
-        load=10.0,
-        grid=GRID,
-    )
+    with pytest.warns(nacre.NacreWarning, match="2 of 6 cases have warnings: unresolved stress"):
+        chart = design.coating_chart(
+            BALL,
+            STEEL,
+            thickness=[1e-6, 1e-4],
+            young=[105e9, 210e9, 420e9],
+            load=10.0,
+            grid=GRID,
+        )
     bare = nacre.solve(BALL, STEEL, load=10.0, grid=GRID)
     same = chart.peak_pressure.sel(young=210e9)
     np.testing.assert_allclose(same, bare.peak_pressure, rtol=1e-6)  # tolerance of the solver, 1e-8
@@ -785,10 +786,11 @@ def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> N
     assert chart["thickness"].attrs["units"] == "m"
 
 
+@pytest.mark.filterwarnings("ignore:.*(uncertain|unresolved)")
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_the_stresses_of_the_chart_are_those_of_the_summary(friction: float) -> None:
     # Compliant and stiff, thin and thick: the largest tension is at the edge of the contact, or
-    # below its middle at the interface. In all of them it is on a face, where the chart looks.
+    # below its middle at the interface.
     thickness, young = [2e-6, 2e-5, 1e-4], [52.5e9, 840e9]
     options: dict[str, Any] = {"grid": GRID, "load": 10.0}
     chart = design.coating_chart(
