@@ -160,7 +160,7 @@ impl<'a> Cascade<'a> {
 }
 
 /// Cells of the coarsest grid along each direction, at least. A direction with fewer than twice as many is
-/// not halved; chosen by trial.
+/// not halved. Chosen by trial: 16 saves nothing, and 64 takes 19 % more convolutions on automatic grids.
 const COARSEST_CELLS: usize = 32;
 
 /// Directions of a grid that are halved for the next coarser one; none at the coarsest. A period of an odd number of

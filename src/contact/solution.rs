@@ -310,7 +310,7 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
     const OUTER_CELL: f64 = 0.5;
     // The outer two cells carry the discretisation of the edge.
     const FIRST: usize = 2;
-    // Cells that the parabola is fitted to; chosen by trial.
+    // Cells that the parabola is fitted to: two more than determine it.
     const POINTS: usize = 5;
     if width < 2 * (FIRST + POINTS) {
         return OUTER_CELL;

@@ -5,10 +5,11 @@ use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 use crate::model::grid::{Window, full_window};
 use crate::numerics::parallel::each_row;
 
-/// Cells around the contact that a window holds; chosen by trial.
+/// Cells around the contact that a window holds. Chosen by trial: 2, 3 and 12 take the same time on 52 contacts.
 const WINDOW_MARGIN: usize = 6;
 
-/// Part of the grid above which a window saves less than its planning costs; chosen by trial.
+/// Part of the grid above which a window saves less than its planning costs. Chosen by trial: with 0.3 automatic grids take 29 %
+/// more convolutions, with 0.9 rough contacts take up to 36 % more.
 const LARGEST_PART: f64 = 0.6;
 
 /// A pressure that is zero outside a window.
