@@ -99,6 +99,8 @@ class Bearing(ABC):
     """Name in case files."""
     rolls: ClassVar[bool]
     """Whether the elements are rollers, in line contact."""
+    leans: ClassVar[bool]
+    """Whether the elements tilt against the raceways and carry moments."""
 
     def __init_subclass__(cls) -> None:
         """Make a kind of bearing known to files."""
@@ -128,6 +130,12 @@ class Bearing(ABC):
                     raise ValueError(f"{name} must have an elastic substrate, got {body!r}")
                 if body.ends != (None, None):
                     raise ValueError(f"{name} must have no ends: those of rollers are free_ends")
+
+    def _check_given_pitch(self) -> None:
+        """Raise an error unless the pitch diameter is given, and in range."""
+        if self.pitch_diameter is None:
+            raise ValueError("pitch_diameter must be given")
+        above("pitch_diameter", self.pitch_diameter)
 
     def _check_room(self) -> None:
         """Raise a `ValueError` unless the rings hold the elements."""
@@ -160,6 +168,16 @@ class Bearing(ABC):
         return self.pitch_diameter
 
     @property
+    def rows(self) -> int:
+        """Number of rows of elements."""
+        return 1
+
+    @property
+    def elements(self) -> int:
+        """Number of elements of all rows."""
+        return self.rows * self.count
+
+    @property
     def play(self) -> float:
         """Diametral clearance [m], below 0 with preload."""
         return self.clearance or 0.0
@@ -175,10 +193,46 @@ class Bearing(ABC):
         return 0.0
 
     @property
+    def radius(self) -> float:
+        """Radius of an element in the direction of rolling [m]."""
+        return self.diameter / 2
+
+    @property
+    def tracks(self) -> tuple[float, float]:
+        """Radii of the tracks of both rings about the bearing's axis [m]."""
+        inner, outer = self.raceways
+        cos = math.cos(self.nominal_angle)
+        return inner * cos, outer * cos
+
+    @property
+    def outward(self) -> tuple[tuple[float, float], float]:
+        """Parts of the centrifugal force: on an element's coordinates, and on the ring along z."""
+        return (1.0, 0.0), 0.0
+
+    @property
     def raceways(self) -> tuple[float, float]:
         """Radii of inner and outer raceway in the direction of rolling [m]."""
         wide = self.pitch / math.cos(self.nominal_angle)
         return (wide - self.diameter) / 2, (wide + self.diameter) / 2
+
+    def curvature(self, ring: Ring, x: Array | float = 0.0) -> Array:
+        """Return the curvature of the gap in the direction of rolling [1/m].
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the raceway.
+        x : array_like, optional
+            Places along the element from its middle [m].
+
+        Returns
+        -------
+        numpy.ndarray
+            Curvatures.
+        """
+        number = RINGS.index(ring)
+        found = 1 / self.radius + (1, -1)[number] / self.raceways[number]
+        return np.full(np.shape(x), found)
 
     @cached_property
     def modulus(self) -> tuple[float, float]:

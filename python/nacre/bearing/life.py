@@ -533,9 +533,9 @@ def life_ratio(
 def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of the inner one.
 
-    The inner ring sees ``Z (1 + γ)/2`` cycles in a revolution, the outer one ``Z (1 − γ)/2``;
-    cycles of different loads add up as Miner's (derived here: it gives the exponents of
-    ISO/TS 16281).
+    A ring sees ``Z r/(r_i + r_e)`` cycles in a revolution, r the radius of the other one's track:
+    the inner one ``Z (1 + γ)/2``, the outer one ``Z (1 − γ)/2``. Cycles of different loads add up
+    as Miner's (derived here: it gives the exponents of ISO/TS 16281).
     """
     bearing: Bearing = solution.bearing
     loaded = np.argwhere(solution.loads > 0)
@@ -550,15 +550,14 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
             tell(done + (number + 1) / len(loaded) / 2)
     slope = next(iter(volumes.values())).slope
     total = changed = 0.0
-    for r, sign in enumerate((1, -1)):
+    for r in range(2):
         found = np.zeros((2, bearing.count))
         for (j, ring), volume in volumes.items():
             if ring == r:
                 found[:, j] = volume.integral, volume.integral * (1 + volume.change)
         means = (found ** (1 / slope)).mean(1) ** slope if r == 0 else found.mean(1)
-        cycles = bearing.count * (1 + sign * bearing.gamma) / 2
-        track = 2 * math.pi * bearing.raceways[r] * math.cos(bearing.nominal_angle)
-        means = means * cycles**slope * track
+        cycles = bearing.count * bearing.tracks[1 - r] / sum(bearing.tracks)
+        means = means * cycles**slope * 2 * math.pi * bearing.tracks[r]
         total, changed = total + float(means[0]), changed + float(means[1])
 
     def largest(name: str) -> float:
