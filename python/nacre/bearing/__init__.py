@@ -17,7 +17,7 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
-from nacre.bearing.rollers import CylindricalRoller, TaperedRoller
+from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
 from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
+    "SphericalRoller",
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",

@@ -164,7 +164,44 @@ class Balls:
         return np.arctan2(arms[..., 1], arms[..., 0])
 
 
+class Barrels(Balls):
+    """Barrels in a groove of the inner ring, and in a sphere about the bearing's centre.
+
+    Both raceways are circles in the plane of the axis. A barrel between them turns freely until it
+    touches both in its middle, so that its forces are those of a ball: along the lines to the
+    centres of both circles. In the axes of the inner ring a tilt moves nothing, for the outer
+    circle is a sphere. Ribs hold the barrels along their axes at speed.
+    """
+
+    def __init__(self, bearing: Any, angles: Array) -> None:
+        """Take the centres of both circles, and on which side of the middle a row is."""
+        cos, sin = np.cos(angles), np.sin(angles)
+        zero = np.zeros_like(angles)
+        self.motion = np.stack(
+            [
+                np.stack([cos, sin, zero, zero, zero], axis=-1),
+                np.stack([zero, zero, zero + 1, zero, zero], axis=-1),
+            ],
+            axis=1,
+        )
+        side = np.repeat([1.0, -1.0][: bearing.rows], bearing.count)
+        sides = np.stack([np.ones_like(side), side], axis=-1)
+        normal = np.array([math.cos(bearing.nominal_angle), math.sin(bearing.nominal_angle)])
+        self.groove = np.array(bearing.grooves) - bearing.diameter / 2
+        self.start = (self.groove.sum() - bearing.play * normal[0] / 2) * normal * sides
+        self.size, self.arm = bearing.pitch, bearing.pitch / 2
+        own, along = bearing.outward
+        self.outward = np.array(own) * sides, along
+        self.lengths = np.array([1.0, 1.0])
+
+
 Kinematics = Rollers | Balls
+
+
+def kinematics_of(bearing: Any, angles: Array) -> Kinematics:
+    """Return the motion of the elements of a bearing at their angles."""
+    made = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
+    return made(bearing, angles)
 
 
 @dataclass
@@ -232,7 +269,7 @@ class Problem:
         step = -np.einsum("zab,zb->za", inverse, gradient[:, 2:])
         follow = -inverse @ hessian[:, 2:, :2] @ motion
         energy = float(reaction.energy.sum() - self.loads @ ring) - self.thrust * float(ring[2])
-        energy -= self.centrifugal * float((own @ self.outward).sum())
+        energy -= self.centrifugal * float((own * self.outward).sum())
         state = State(
             ring, own, found.places, reaction, energy, wanting, gradient[:, 2:],
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),

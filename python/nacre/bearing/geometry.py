@@ -41,6 +41,12 @@ def above(name: str, value: Any, least: float = 0.0) -> None:
         raise ValueError(f"{name} must be finite{bound}, got {value!r}")
 
 
+def check_flag(name: str, value: Any) -> None:
+    """Raise a `TypeError` unless a value is True or False."""
+    if not isinstance(value, bool):
+        raise TypeError(f"{name} must be True or False, got {value!r}")
+
+
 def pair(name: str, value: Any) -> tuple[Any, Any]:
     """Return two values, of the inner and the outer ring."""
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -68,14 +74,14 @@ KNOWN: dict[str, type[Bearing]] = {}
 
 @dataclass(frozen=True, kw_only=True)
 class Bearing(ABC):
-    """What all bearings have: one row of elements between two rings.
+    """What all bearings have: rows of elements between two rings.
 
     The bearing's axis is z. Element j stands at the angle ``rotation + 2 π j / count`` from x.
     Rings are rigid in the large, so that only contacts are elastic.
     """
 
     count: int
-    """Number of rolling elements."""
+    """Number of rolling elements in a row."""
     diameter: float
     """Diameter of an element [m]."""
     pitch_diameter: float | None = None
@@ -101,6 +107,8 @@ class Bearing(ABC):
     """Whether the elements are rollers, in line contact."""
     leans: ClassVar[bool]
     """Whether the elements tilt against the raceways and carry moments."""
+    aligns: ClassVar[bool] = False
+    """Whether the bearing aligns itself, so that a tilt of the ring changes nothing."""
 
     def __init_subclass__(cls) -> None:
         """Make a kind of bearing known to files."""

@@ -110,7 +110,7 @@ def rating(bearing: Any) -> float:
         shape = 551.13373 * 0.377 * REDUCTION * gamma ** (2 / 9)
         shape *= (1 - gamma) ** (29 / 27) * (1 + gamma) ** -0.25
         shape *= (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
-        size = (bearing.length * 1e3 * cos) ** (7 / 9) * diameter ** (29 / 27)
+        size = (bearing.rows * bearing.length * 1e3 * cos) ** (7 / 9) * diameter ** (29 / 27)
         return float(bearing.rating_factor * shape * size * bearing.count**0.75)
     inner, outer = bearing.osculation
     if inner <= 0.52 and outer <= 0.53:  # one table of f_c holds for all of these: that of 0.52
@@ -148,7 +148,7 @@ def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
     if bearing.rolls:
         share = (1.038 * ratio ** (143 / 108)) ** 4.5
-        base = capacity / (REDUCTION * count * cos)
+        base = capacity / (REDUCTION * count * cos * bearing.rows ** (7 / 9))
         factors = ((0.378, share), (0.364, 1 / share))
         power = 2 / 9
     else:
@@ -225,7 +225,7 @@ def reference_life(
 
     ISO/TS 16281, equations 61 to 65 for the laminae of rollers ``(Z, 2, laminae)``, with factors
     for the stress at edges; equations 12 to 16 for balls ``(Z, 2)``. The ring that rotates sees the
-    loads of all elements.
+    loads of all elements of a row; rows survive independently.
     """
     capacity = capacity_of(bearing)
     found = capacities(bearing, capacity)
@@ -237,9 +237,10 @@ def reference_life(
         limits = np.array(found)
     if rotating == "outer":
         powers = powers[::-1]
-    weighted = loads * factors
+    rows = (loads * factors).reshape(bearing.rows, bearing.count, *loads.shape[1:])
     sums = sum(
-        float(((_mean(weighted[:, ring], powers[ring]) / limits[ring]) ** exponent).sum())
+        float(((_mean(row[:, ring], powers[ring]) / limits[ring]) ** exponent).sum())
+        for row in rows
         for ring in range(2)
     )
     revolutions = sums**life if sums > 0 else math.inf

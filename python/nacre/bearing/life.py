@@ -551,13 +551,14 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
     slope = next(iter(volumes.values())).slope
     total = changed = 0.0
     for r in range(2):
-        found = np.zeros((2, bearing.count))
+        found = np.zeros((2, bearing.elements))
         for (j, ring), volume in volumes.items():
             if ring == r:
                 found[:, j] = volume.integral, volume.integral * (1 + volume.change)
-        means = (found ** (1 / slope)).mean(1) ** slope if r == 0 else found.mean(1)
+        rows = found.reshape(2, bearing.rows, bearing.count)
+        means = (rows ** (1 / slope)).mean(2) ** slope if r == 0 else rows.mean(2)
         cycles = bearing.count * bearing.tracks[1 - r] / sum(bearing.tracks)
-        means = means * cycles**slope * 2 * math.pi * bearing.tracks[r]
+        means = means.sum(1) * cycles**slope * 2 * math.pi * bearing.tracks[r]
         total, changed = total + float(means[0]), changed + float(means[1])
 
     def largest(name: str) -> float:

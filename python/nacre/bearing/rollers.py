@@ -13,13 +13,22 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import RINGS, Ring, above, laminae_of, millimetres, pair
+from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres, pair
 
 Array = npt.NDArray[np.float64]
 Profile = core.LogarithmicProfile | core.SampledProfile | Literal["iso16281"] | None
 
 SAMPLES = 401
 """Points of a profile to which the crown of a raceway is added; some 3 for each cell."""
+PLANE = 1e6
+"""Radius of a surface that is plane across its profile [m]: it drops by 1e-14 m in 0.1 mm."""
+
+
+def _check_angle(angle: float) -> None:
+    """Raise an error unless a contact angle is one of a radial bearing."""
+    above("contact_angle", angle)
+    if angle > math.pi / 4:
+        raise ValueError(f"contact_angle must be at most π/4, got {angle!r}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,8 +62,7 @@ class _Rollers(Solvable):
                 above("raceway_crown", radius, -math.inf)
             if radius == 0:
                 raise ValueError("raceway_crown must not be 0: None makes a raceway straight")
-        if not isinstance(self.free_ends, bool):
-            raise TypeError(f"free_ends must be True or False, got {self.free_ends!r}")
+        check_flag("free_ends", self.free_ends)
         self._check_room()
         for ring in RINGS:
             self.drop(ring)
@@ -308,9 +316,7 @@ class TaperedRoller(_Rollers):
 
     def _check_pitch(self) -> None:
         self._check_given_pitch()
-        above("contact_angle", self.contact_angle)
-        if self.contact_angle > math.pi / 4:
-            raise ValueError(f"contact_angle must be at most π/4, got {self.contact_angle!r}")
+        _check_angle(self.contact_angle)
         if self.length >= 2 * self.apex:
             raise ValueError(
                 f"length must be below {millimetres(2 * self.apex)}, where the roller ends at its "
@@ -402,3 +408,208 @@ class TaperedRoller(_Rollers):
         long = self.length * math.cos(self.roller_angle)
         share = 1 + (self.length / self.apex) ** 2 / 12
         return self.density * math.pi / 4 * self.diameter**2 * long * share
+
+
+def _rise(radius: float, x: Array) -> Array:
+    """Return the height of a circle at x above its lowest place [m]."""
+    return x**2 / (radius + np.sqrt(radius**2 - x**2))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SphericalRoller(Solvable):
+    """Bearing with barrels on an outer raceway that is a sphere, which aligns itself.
+
+    The outer raceway is a sphere about the bearing's centre, of the radius ``d_m/(2 cos α) + D/2``.
+    Without friction its forces pass through the centre, and the rollers follow the inner ring: a
+    tilt changes no load, and takes no moment. Forces and displacements are along the axes of the
+    inner ring, which turn with it.
+
+    Parameters
+    ----------
+    count : int
+        Number of rollers in a row.
+    diameter : float
+        Largest diameter D of a roller [m].
+    length : float
+        Effective length L_we of a roller [m]; the roller ends there.
+    pitch_diameter : float
+        Diameter d_m of the circles of the middles of the rollers [m].
+    contact_angle : float
+        Contact angle α of both rows [rad], at most π/4; 0 of one row alone.
+    profile_radius : float
+        Radius of the profile of the rollers [m], below those of both raceways.
+    groove_radius : float, optional
+        Radius of the inner raceway along the roller [m]; by default that of the outer one.
+    rows : int, optional
+        Number of rows, 1 or 2. Positive z presses the inner ring into the first one. Elements are
+        numbered row by row, and those of both rows stand at the same angles.
+    clearance : float, optional
+        Diametral clearance [m], below 0 with preload; 0 by default.
+    free_ends : bool, optional
+        Whether the ends of the rollers are free surfaces, as they are in reality; False treats the
+        rollers as half-spaces that continue beyond them.
+    element, inner, outer : HalfSpace or Elastic, optional
+        Bodies of rollers and rings; steel with E = 210 GPa by default.
+    capacity : float, optional
+        Dynamic load rating C_r [N]; by default that of ISO 281.
+    rating_factor : float, optional
+        Factor b_m of ISO 281.
+    density : float, optional
+        Density of the rollers [kg/m³].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the rings do not hold the rollers.
+
+    Examples
+    --------
+    >>> from nacre.bearing import SphericalRoller
+    >>> bearing = SphericalRoller(
+    ...     count=19,
+    ...     diameter=12e-3,
+    ...     length=11e-3,
+    ...     pitch_diameter=82e-3,
+    ...     contact_angle=0.17,
+    ...     profile_radius=46.5e-3,
+    ... )
+    >>> round(bearing.raceways[1] * 1e3, 3)
+    47.6
+    >>> solution = bearing.solve(force=(20e3, 0.0, 2e3), tilt=(None, 0.02), model="iso16281")
+    >>> solution.loads.shape, solution.moment
+    ((38, 2), (0.0, 0.0))
+    """
+
+    length: float
+    """Effective length of a roller [m]."""
+    contact_angle: float
+    """Contact angle of both rows [rad]."""
+    profile_radius: float
+    """Radius of the profile of the rollers [m]."""
+    groove_radius: float | None = None
+    """Radius of the inner raceway along the roller [m]; None: that of the outer one."""
+    rows: int = 2
+    """Number of rows."""
+    free_ends: bool = True
+    """Whether the ends of the rollers are free surfaces."""
+    rating_factor: float = 1.15
+    """Factor b_m of ISO 281 for the rating."""
+
+    kind: ClassVar[str] = "spherical_roller"
+    rolls: ClassVar[bool] = True
+    leans: ClassVar[bool] = False
+    aligns: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        super().__post_init__()
+        above("length", self.length)
+        self._check_given_pitch()
+        if isinstance(self.rows, bool) or self.rows not in (1, 2):
+            raise ValueError(f"rows must be 1 or 2, got {self.rows!r}")
+        if self.contact_angle != 0 or isinstance(self.contact_angle, bool):
+            _check_angle(self.contact_angle)
+        check_flag("free_ends", self.free_ends)
+        above("profile_radius", self.profile_radius)
+        if self.groove_radius is not None:
+            above("groove_radius", self.groove_radius)
+        least = min(self.grooves)
+        if self.profile_radius >= least:
+            raise ValueError(
+                f"profile_radius must be below those of the raceways, {millimetres(least)}, "
+                f"got {millimetres(self.profile_radius)}"
+            )
+        half = self.length / 2
+        if half >= self.profile_radius or self._own_radius(np.array(half)) <= 0:
+            raise ValueError(
+                f"length must be below that at which the barrel is pointed, "
+                f"got {millimetres(self.length)}"
+            )
+        self._check_room()
+        if self.rows == 2:
+            sin, cos = math.sin(self.contact_angle), math.cos(self.contact_angle)
+            end = float(self._own_radius(np.array(half)))
+            between = self.pitch * sin / cos - self.length * cos - 2 * end * sin
+            if between < 0:
+                raise ValueError(
+                    f"contact_angle must be larger for two rows, whose rollers overlap by "
+                    f"{millimetres(-between)}; got {self.contact_angle!r}"
+                )
+
+    @property
+    def nominal_angle(self) -> float:
+        """Nominal contact angle α [rad]."""
+        return self.contact_angle
+
+    @property
+    def grooves(self) -> tuple[float, float]:
+        """Radii of the raceways along the roller [m]."""
+        outer = self.raceways[1]
+        return self.groove_radius or outer, outer
+
+    @property
+    def outward(self) -> tuple[tuple[float, float], float]:
+        """Parts of the centrifugal force: on an element's coordinates, and on the ring along z."""
+        sin, cos = math.sin(self.contact_angle), math.cos(self.contact_angle)
+        return (cos**2, cos * sin), -cos * sin if self.rows == 1 else 0.0
+
+    @property
+    def mass(self) -> float:
+        """Mass of a roller [kg]."""
+        half, radius = self.length / 2, self.profile_radius
+        away = radius - self.diameter / 2
+        under = half * math.sqrt(radius**2 - half**2) + radius**2 * math.asin(half / radius)
+        squares = 2 * half * (away**2 + radius**2 - half**2 / 3) - 2 * away * under
+        return self.density * math.pi * squares
+
+    def _own_radius(self, x: Array) -> Array:
+        """Return the radius of a roller at x along it [m]."""
+        return self.diameter / 2 - _rise(self.profile_radius, x)
+
+    def curvature(self, ring: Ring, x: Array | float = 0.0) -> Array:
+        """Return the curvature of the gap in the direction of rolling at x along the roller [1/m].
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the raceway.
+        x : array_like, optional
+            Places along the element from its middle [m].
+
+        Returns
+        -------
+        numpy.ndarray
+            Curvatures, with the radius of the raceway in its middle.
+        """
+        raceway = super().curvature(ring) - 1 / self.radius
+        return 1 / self._own_radius(np.asarray(x)) + raceway
+
+    def drop(self, ring: Ring, laminae: int = 40) -> Array:
+        """Drop of a roller from the raceway at the middles of laminae [m]."""
+        x = laminae_of(self.length, laminae)
+        return _rise(self.profile_radius, x) - _rise(self.grooves[RINGS.index(ring)], x)
+
+    def shape(self, ring: Ring) -> core.Shape:
+        """Return the gap between a roller and a raceway.
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the raceway.
+
+        Returns
+        -------
+        Shape
+            Shape for `nacre.solve`: x along the roller, y in the direction of rolling.
+        """
+        inner, outer = self.raceways
+        x = np.linspace(-0.5, 0.5, SAMPLES) * self.length
+        barrel = core.SampledProfile(x, _rise(self.profile_radius, x))
+        groove = core.SampledProfile(x, -_rise(self.grooves[RINGS.index(ring)], x))
+        roller = core.Roller(
+            radius=self.radius,
+            length=self.length,
+            profile=barrel,
+            counter_radius=inner if ring == "inner" else -outer,
+        )
+        return roller + core.Roller(radius=PLANE, length=self.length, profile=groove)

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
-from nacre.bearing import AngularContactBall, CylindricalRoller, DeepGrooveBall, TaperedRoller
+from nacre.bearing import (
+    AngularContactBall,
+    CylindricalRoller,
+    DeepGrooveBall,
+    SphericalRoller,
+    TaperedRoller,
+)
 from nacre.bearing.bearings import Solvable
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
@@ -16,7 +22,13 @@ from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, de
 
 KINDS: dict[str, type[Solvable]] = {
     made.kind: made
-    for made in (CylindricalRoller, TaperedRoller, DeepGrooveBall, AngularContactBall)
+    for made in (
+        CylindricalRoller,
+        TaperedRoller,
+        SphericalRoller,
+        DeepGrooveBall,
+        AngularContactBall,
+    )
 }
 """Bearings by their names in case files."""
 SOLVE = described(Solvable.solve)
@@ -86,6 +98,7 @@ class BearingKind(Table):
 
 TYPES: dict[str, Any] = {
     "count": Count,
+    "rows": Count,
     "raceway_diameters": Pair | None,
     "osculation": Pair,
     "profile": Annotated[

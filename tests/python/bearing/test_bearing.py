@@ -18,6 +18,7 @@ from nacre.bearing import (
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
+    SphericalRoller,
     TaperedRoller,
     rating,
 )
@@ -38,6 +39,14 @@ TAPERED: dict[str, Any] = {
     "length": 11e-3,
     "pitch_diameter": 48e-3,
     "contact_angle": 0.25,
+}
+BARRELS: dict[str, Any] = {
+    "count": 9,
+    "diameter": 12e-3,
+    "length": 11e-3,
+    "pitch_diameter": 62e-3,
+    "contact_angle": 0.23,
+    "profile_radius": 35e-3,
 }
 BALLS: dict[str, Any] = {"count": 7, "diameter": 11.5e-3, "pitch_diameter": 43.5e-3}
 COARSE: dict[str, Any] = {"cells": (40, 24)}
@@ -123,9 +132,19 @@ def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[An
         (CylindricalRoller(**ROLLERS), COARSE, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
         (TaperedRoller(**TAPERED), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (1e-8,) * 2),
         (TaperedRoller(**TAPERED), COARSE, (2e-11,) * 3 + (1e-9,) * 2),
+        (SphericalRoller(**BARRELS), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (0, 0)),
+        (SphericalRoller(**BARRELS), COARSE, (2e-11,) * 3 + (0, 0)),
         (DeepGrooveBall(**BALLS), STANDARD | {"speed": 500.0}, (1e-9,) * 3 + (1e-8,) * 2),
     ],
-    ids=["rollers, standard", "rollers, solved", "tapered, standard", "tapered, solved", "balls"],
+    ids=[
+        "rollers, standard",
+        "rollers, solved",
+        "tapered, standard",
+        "tapered, solved",
+        "barrels, standard",
+        "barrels, solved",
+        "balls",
+    ],
 )
 def test_stiffness_is_the_derivative(
     bearing: Any, options: dict[str, Any], steps: tuple[float, ...]
