@@ -303,7 +303,7 @@ class TaperedRoller(_Rollers):
     ...     count=17, diameter=8e-3, length=11e-3, pitch_diameter=48e-3, contact_angle=0.25
     ... )
     >>> round(math.degrees(2 * bearing.roller_angle), 2)
-    3.99
+    4.06
     >>> solution = bearing.solve(force=(0.0, 0.0, 5000.0), model="iso16281")
     >>> round(float(solution.loads[0, 0] * 17 * math.sin(0.25)))
     5000
