@@ -8,8 +8,8 @@ use nacre::hertz::{Ellipse, Line, Point, contact_modulus, equivalent_radius, rel
 use nacre::surface::Extent;
 use nacre::{
     Contact, Cylinder, Elastic, Error, Grid, HeightMap, LogarithmicProfile, Motion, Options,
-    Paraboloid, Result, Roller, SampledProfile, Section, Sphere, StressOptions, Superposition, Surface, solve,
-    stress,
+    Paraboloid, Result, Roller, SampledProfile, Section, Sphere, StressOptions, Superposition,
+    Surface, solve, stress,
 };
 use ndarray::Array2;
 
@@ -86,9 +86,12 @@ fn a_tapered_roller_has_the_gap_of_two_cones() -> Result<()> {
             // Circles in place of the cones' sections err by tan²β (y/2R)²: that of the raceway by 1e-6 of its own
             // height. The profile reduces the radius R of the roller by d/R, 1e-3.
             near!(shape.gap(x, y) - drop, exact, 1e-3);
-            let bare = Roller::with_profile(apex * roller, SampledProfile::new(&[-6e-3, 6e-3], &[0.0; 2])?)?
-                .with_counter_radius(side * apex * race)?
-                .with_apex(apex)?;
+            let bare = Roller::with_profile(
+                apex * roller,
+                SampledProfile::new(&[-6e-3, 6e-3], &[0.0; 2])?,
+            )?
+            .with_counter_radius(side * apex * race)?
+            .with_apex(apex)?;
             near!(bare.gap(x, y), exact, 5e-6);
         }
         assert_eq!(shape.apex(), Some(apex));

@@ -21,6 +21,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Member
+from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution
@@ -374,7 +375,7 @@ def stress_volume(
         raise TypeError(f"model must be a model of a life, or models by layer, got {model!r}")
     plan = solution.stress_plan(body, threads)
     half, line = _half_width(solution), solution.grid.is_line
-    slopes = {one.slope(line=_is_line(solution)) for one in models.values()}
+    slopes = {one.slope(line=is_line(solution)) for one in models.values()}
     if len(slopes) > 1:
         raise ValueError(f"models must have the same slope e, got {sorted(slopes)}")
     (slope,) = slopes
@@ -423,11 +424,6 @@ def stress_volume(
         extremes = max(coats), max(shears), max(tensions)
     share = change / total if total > 0 else 0.0
     return StressVolume(total, share, largest, slope, *extremes, notes)
-
-
-def _is_line(solution: Solution) -> bool:
-    """Return whether a contact is one of a roller, or of strips."""
-    return solution.grid.is_line or solution.report.rolling_direction is not None
 
 
 def life_ratio(

@@ -244,8 +244,8 @@ impl Surface for Roller {
     }
 
     fn extent(&self) -> [Extent; 2] {
-        let ends = self.span();
-        let cut = self.profile.has_sharp_ends() || ends != self.natural_span();
+        let (ends, natural) = (self.span(), self.natural_span());
+        let cut = self.profile.has_sharp_ends() || natural[0] < ends[0] || ends[1] < natural[1];
         let x = if cut { Extent::CutOff(ends) } else { Extent::Within(ends) };
         let [_, half] = self.counterpart.reach([self.smallest_scale() * self.radius; 2]);
         [x, Extent::Within([-half, half])]
