@@ -247,14 +247,19 @@ value! {
         profile: Profile = of.profile().clone();
         length: Option<f64> = of.length();
         counter_radius: Option<f64> = of.counter_radius();
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        apex: Option<f64> = of.apex();
     }
     of, given => {
         let mut roller = Self::with_profile(given.radius, given.profile)?;
         if let Some(length) = given.length {
             roller = roller.with_length(length)?;
         }
-        match given.counter_radius {
-            Some(radius) => roller.with_counter_radius(radius),
+        if let Some(radius) = given.counter_radius {
+            roller = roller.with_counter_radius(radius)?;
+        }
+        match given.apex {
+            Some(apex) => roller.with_apex(apex),
             None => Ok(roller),
         }
     }
@@ -388,6 +393,7 @@ mod tests {
         kept(Roller::new(5e-3, 1e-2, 1.0)?.with_length(2e-2)?)?;
         let logarithmic = LogarithmicProfile::iso16281(1e-2, 3e-2)?;
         kept(Roller::with_profile(5e-3, logarithmic)?.with_counter_radius(0.1)?)?;
+        kept(Roller::new(5e-3, 1e-2, 1.0)?.with_apex(-0.1)?)?;
         kept(Roller::with_profile(5e-3, SampledProfile::new(&[0.0, 0.1], &[0.0, 1e-6])?)?)?;
         let heights = Array2::from_shape_fn((2, 3), |(i, j)| (i + j) as f64 / 3.0);
         kept(HeightMap::new(heights, [0.1, 0.2])?)?;

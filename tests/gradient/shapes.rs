@@ -21,7 +21,7 @@ fn log(v: &[f64]) -> Result<LogarithmicProfile> {
 fn derivatives_of_gaps_equal_differences() -> Result<()> {
     let grid = Grid::new([32, 20], [2.0, 1.0])?;
     #[rustfmt::skip]
-    let shapes: [(&[&str], &[f64], Maker); 9] = [
+    let shapes: [(&[&str], &[f64], Maker); 10] = [
         (&["radius"], &[5.0], |v| Ok(Box::new(Sphere::new(v[0])?))),
         (&["radius", "counter_radius_x", "counter_radius_y"], &[5.0, -9.0, 7.0],
             |v| Ok(Box::new(Sphere::new(v[0])?.with_counter_radii([Some(v[1]), Some(v[2])])?))),
@@ -34,6 +34,13 @@ fn derivatives_of_gaps_equal_differences() -> Result<()> {
         (&["radius", "profile.amplitude", "profile.flat_length", "profile.end_factor", "counter_radius"],
             &[5.0, 0.01, 0.61, 0.95, -8.0],
             |v| Ok(Box::new(Roller::with_profile(v[0], log(v)?)?.with_counter_radius(v[4])?))),
+        (&["radius", "profile.amplitude", "profile.flat_length", "counter_radius", "apex"],
+            &[5.0, 0.01, 0.61, -8.0, 4.0],
+            |v| {
+                let profile = LogarithmicProfile::new(v[1], 2.0, v[2], 0.95)?;
+                let roller = Roller::with_profile(v[0], profile)?.with_counter_radius(v[3])?;
+                Ok(Box::new(roller.with_apex(v[4])?))
+            }),
         (&["radius", "profile.drop[0]", "profile.drop[1]"], &[5.0, 0.01, 0.02], |v| {
             let profile = SampledProfile::new(&[-1.0, 0.1, 1.0], &[v[1], v[2], 0.03])?;
             Ok(Box::new(Roller::with_profile(v[0], profile)?))

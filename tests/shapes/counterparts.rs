@@ -8,8 +8,8 @@ use nacre::hertz::{Ellipse, Line, Point, contact_modulus, equivalent_radius, rel
 use nacre::surface::Extent;
 use nacre::{
     Contact, Cylinder, Elastic, Error, Grid, HeightMap, LogarithmicProfile, Motion, Options,
-    Paraboloid, Result, Roller, Section, Sphere, StressOptions, Superposition, Surface, solve,
-    stress,
+    Paraboloid, Result, Roller, SampledProfile, Section, Sphere, StressOptions, Superposition,
+    Surface, solve, stress,
 };
 use ndarray::Array2;
 
@@ -60,6 +60,49 @@ fn a_roller_in_a_raceway_has_the_gap_of_two_circles() -> Result<()> {
     let thin = Cylinder::new(r)?.with_counter_radius(2e-3)?;
     assert!(thin.gap(0.0, 1.9e-3).is_finite() && thin.gap(0.0, 2.1e-3).is_infinite());
     assert_eq!(thin.extent()[1], Extent::Within([-2e-3, 2e-3]));
+    Ok(())
+}
+
+#[test]
+fn a_tapered_roller_has_the_gap_of_two_cones() -> Result<()> {
+    // A cone of half angle β whose apex is t away touches a plane along a line. The normal height h of its surface at y is
+    // the smaller root of h² cos 2β − 2 t h sin β cos β + y² cos²β = 0, which follows from its equation (p·a = |p| cos β).
+    let height = |t: f64, tan: f64, y: f64| {
+        let (cos2, sin2) = ((1.0 - tan * tan) / (1.0 + tan * tan), 2.0 * tan / (1.0 + tan * tan));
+        let (b, c) = (0.5 * t * sin2, y * y / (1.0 + tan * tan));
+        c / (b + (b * b - c * cos2).sqrt())
+    };
+    let (apex, roller, race) = (0.11, 0.05, 0.25);
+    let profile = LogarithmicProfile::new(2e-6, 12e-3, 0.0, 1.0)?;
+    for side in [1.0, -1.0] {
+        let shape = Roller::with_profile(apex * roller, profile)?
+            .with_counter_radius(side * apex * race)?
+            .with_apex(apex)?;
+        for (x, y) in [(0.0, 4e-4), (5e-3, 4e-4), (-5e-3, -2e-4)] {
+            let t = apex - x;
+            let exact = height(t, roller, y) + side * height(t, race, y);
+            let drop = shape.gap(x, 0.0);
+            near!(drop, -2e-6 * (1.0 - (x / 6e-3) * (x / 6e-3)).ln(), ROUNDING);
+            // Circles in place of the cones' sections err by tan²β (y/2R)²: that of the raceway by 1e-6 of its own
+            // height. The profile reduces the radius R of the roller by d/R, 1e-3.
+            near!(shape.gap(x, y) - drop, exact, 1e-3);
+            let bare = Roller::with_profile(
+                apex * roller,
+                SampledProfile::new(&[-6e-3, 6e-3], &[0.0; 2])?,
+            )?
+            .with_counter_radius(side * apex * race)?
+            .with_apex(apex)?;
+            near!(bare.gap(x, y), exact, 5e-6);
+        }
+        assert_eq!(shape.apex(), Some(apex));
+    }
+    // Roller and raceway end at the apex.
+    let short = Roller::new(5e-3, 8e-3, 2.0)?.with_apex(6e-3)?;
+    assert!(short.gap(6e-3, 0.0).is_infinite() && short.gap(5.9e-3, 0.0).is_finite());
+    assert!(Roller::new(5e-3, 8e-3, 2.0)?.with_apex(0.0).is_err());
+    let cut = Roller::new(5e-3, 8e-3, 2.0)?.with_length(10e-3)?.with_apex(50e-3)?;
+    assert_eq!(cut.extent()[1], Extent::Within([-0.9 * 5e-3, 0.9 * 5e-3]));
+    near!(cut.radii()[1], 4.5e-3, ROUNDING);
     Ok(())
 }
 

@@ -5,7 +5,7 @@ its like find loads, tilts and pressures of all elements under forces, displacem
 tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281.
 """
 
-from nacre.bearing.bearings import AngularContactBall, CylindricalRoller, DeepGrooveBall
+from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
@@ -17,6 +17,7 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
+from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
 from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
 
 __all__ = [
@@ -30,7 +31,9 @@ __all__ = [
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
+    "SphericalRoller",
     "StressVolume",
+    "TaperedRoller",
     "Zaretsky",
     "edge_factors",
     "film_thickness",

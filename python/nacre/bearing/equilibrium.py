@@ -37,6 +37,10 @@ SLACK = 1e-8
 """Rounding of the energy, relative, which contacts of a tolerance of 1e-9 have."""
 
 
+AXIAL = np.array([0, 0, 1, 0, 0])
+"""Direction of the bearing's axis among those of the ring."""
+
+
 class Places(NamedTuple):
     """Coordinates of all contacts, and their derivatives by ``(t, z)`` of the element."""
 
@@ -49,22 +53,31 @@ class Places(NamedTuple):
 
 
 class Rollers:
-    """Rollers between raceways. ``t = (u, ψ)`` of the ring and ``z = (v, w)`` of the roller."""
+    """Rollers between raceways. ``t = (u, ψ)`` of the ring and ``z = (v, w)`` of the roller.
+
+    They are approaches and slopes of both contacts together, and of the outer one.
+    """
 
     def __init__(self, bearing: Any, angles: Array) -> None:
+        """Take the motion of the inner ring at each roller."""
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
+        self.contact_angles = np.array(bearing.contact_angles)
+        across, along = math.cos(bearing.nominal_angle), math.sin(bearing.nominal_angle)
+        lever = bearing.lever
         self.motion = np.stack(
             [
-                np.stack([cos, sin, zero, zero, zero], axis=-1),
+                np.stack(
+                    [across * cos, across * sin, zero + along, lever * sin, -lever * cos], axis=-1
+                ),
                 np.stack([zero, zero, zero, -sin, cos], axis=-1),
             ],
             axis=1,
         )
-        self.play, self.count, self.size = bearing.play, len(angles), bearing.pitch
+        self.play, self.count, self.size = across * bearing.play, len(angles), bearing.pitch
         self.lengths = np.array([1.0, bearing.length / math.sqrt(12)])
         """A slope times this length moves a lamina as far, in the mean of squares."""
-        self.arm = bearing.length
+        self.arm, self.outward = bearing.length, bearing.outward
         self.jacobian = np.zeros((self.count, 2, 2, 4))
         self.jacobian[:, 0, 0] = [1, 0, -1, 0]
         self.jacobian[:, 0, 1] = [0, 1, 0, -1]
@@ -84,6 +97,10 @@ class Rollers:
         found = np.stack([moved - own, own], axis=1)
         found[..., 0] -= self.play / 4
         return Places(found, self.jacobian, self.curvature)
+
+    def angles(self, moved: Array, own: Array) -> Array:
+        """Return the contact angles ``(Z, 2)`` [rad]."""
+        return np.tile(self.contact_angles, (self.count, 1))
 
 
 class Balls:
@@ -105,7 +122,7 @@ class Balls:
             ],
             axis=1,
         )
-        between, self.size = bearing.between, bearing.pitch
+        between, self.size, self.outward = bearing.between, bearing.pitch, bearing.outward
         if bearing.nominal_angle:
             start = (between * math.cos(free), between * math.sin(free))
         else:
@@ -147,7 +164,44 @@ class Balls:
         return np.arctan2(arms[..., 1], arms[..., 0])
 
 
+class Barrels(Balls):
+    """Barrels in a groove of the inner ring, and in a sphere about the bearing's centre.
+
+    Both raceways are circles in the plane of the axis. A barrel between them turns freely until it
+    touches both in its middle, so that its forces are those of a ball: along the lines to the
+    centres of both circles. In the axes of the inner ring a tilt moves nothing, for the outer
+    circle is a sphere. Ribs hold the barrels along their axes at speed.
+    """
+
+    def __init__(self, bearing: Any, angles: Array) -> None:
+        """Take the centres of both circles, and on which side of the middle a row is."""
+        cos, sin = np.cos(angles), np.sin(angles)
+        zero = np.zeros_like(angles)
+        self.motion = np.stack(
+            [
+                np.stack([cos, sin, zero, zero, zero], axis=-1),
+                np.stack([zero, zero, zero + 1, zero, zero], axis=-1),
+            ],
+            axis=1,
+        )
+        side = np.repeat([1.0, -1.0][: bearing.rows], bearing.count)
+        sides = np.stack([np.ones_like(side), side], axis=-1)
+        normal = np.array([math.cos(bearing.nominal_angle), math.sin(bearing.nominal_angle)])
+        self.groove = np.array(bearing.grooves) - bearing.diameter / 2
+        self.start = (self.groove.sum() - bearing.play * normal[0] / 2) * normal * sides
+        self.size, self.arm = bearing.pitch, bearing.pitch / 2
+        own, along = bearing.outward
+        self.outward = np.array(own) * sides, along
+        self.lengths = np.array([1.0, 1.0])
+
+
 Kinematics = Rollers | Balls
+
+
+def kinematics_of(bearing: Any, angles: Array) -> Kinematics:
+    """Return the motion of the elements of a bearing at their angles."""
+    made = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
+    return made(bearing, angles)
 
 
 @dataclass
@@ -185,6 +239,12 @@ class Problem:
     centrifugal: float
     """Force on each element [N]."""
 
+    def __post_init__(self) -> None:
+        """Divide the centrifugal force between elements and ring."""
+        own, ring = self.kinematics.outward
+        self.outward = np.array(own)
+        self.thrust = ring * self.centrifugal * len(self.kinematics.motion)
+
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
         kinematics = self.kinematics
@@ -192,7 +252,7 @@ class Problem:
         found = kinematics.places(moved, own)
         reaction = self.law(found.places)
         gradient = np.einsum("zrak,zra->zk", found.jacobian, reaction.force)
-        gradient[:, 2] -= self.centrifugal
+        gradient[:, 2:] -= self.centrifugal * self.outward
         hessian = np.einsum(
             "zrak,zrab,zrbl->zkl", found.jacobian, reaction.stiffness, found.jacobian
         )
@@ -205,14 +265,15 @@ class Problem:
         pull = gradient[:, :2] - np.einsum("zab,zb->za", cross, gradient[:, 2:])
         motion = kinematics.motion
         wanting = np.einsum("zak,za->k", motion, gradient[:, :2]) - self.loads
+        wanting -= self.thrust * AXIAL
         step = -np.einsum("zab,zb->za", inverse, gradient[:, 2:])
         follow = -inverse @ hessian[:, 2:, :2] @ motion
-        energy = float(reaction.energy.sum() - self.loads @ ring)
-        energy -= self.centrifugal * float(own[:, 0].sum())
+        energy = float(reaction.energy.sum() - self.loads @ ring) - self.thrust * float(ring[2])
+        energy -= self.centrifugal * float((own * self.outward).sum())
         state = State(
             ring, own, found.places, reaction, energy, wanting, gradient[:, 2:],
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
-            np.einsum("zak,za->k", motion, pull) - self.loads,
+            np.einsum("zak,za->k", motion, pull) - self.loads - self.thrust * AXIAL,
             (step, follow),
         )  # fmt: skip
         state.balance = self.mismatch(state)

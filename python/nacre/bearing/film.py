@@ -148,6 +148,11 @@ def _modulus(solution: Solution) -> float:
     return 2 * contact_modulus(*elastic)
 
 
+def is_line(solution: Solution) -> bool:
+    """Return whether a contact is one of a roller, or of strips."""
+    return solution.grid.is_line or solution.report.rolling_direction is not None
+
+
 def film_thickness(
     solution: Solution,
     *,
@@ -219,7 +224,7 @@ def film_thickness(
     section = int(np.argmax(solution.line_load))
     if radius is None:
         radius = 1 / _curvature(solution, section)
-    line = solution.grid.is_line or solution.report.rolling_direction is not None
+    line = is_line(solution)
     across, along = (high - low for low, high in solution.contact_extent)
     k = math.inf if line else across / along
     load = float(solution.line_load[section]) if line else solution.load

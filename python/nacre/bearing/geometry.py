@@ -41,6 +41,12 @@ def above(name: str, value: Any, least: float = 0.0) -> None:
         raise ValueError(f"{name} must be finite{bound}, got {value!r}")
 
 
+def check_flag(name: str, value: Any) -> None:
+    """Raise a `TypeError` unless a value is True or False."""
+    if not isinstance(value, bool):
+        raise TypeError(f"{name} must be True or False, got {value!r}")
+
+
 def pair(name: str, value: Any) -> tuple[Any, Any]:
     """Return two values, of the inner and the outer ring."""
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -68,14 +74,14 @@ KNOWN: dict[str, type[Bearing]] = {}
 
 @dataclass(frozen=True, kw_only=True)
 class Bearing(ABC):
-    """What all bearings have: one row of elements between two rings.
+    """What all bearings have: rows of elements between two rings.
 
     The bearing's axis is z. Element j stands at the angle ``rotation + 2 π j / count`` from x.
     Rings are rigid in the large, so that only contacts are elastic.
     """
 
     count: int
-    """Number of rolling elements."""
+    """Number of rolling elements in a row."""
     diameter: float
     """Diameter of an element [m]."""
     pitch_diameter: float | None = None
@@ -99,6 +105,10 @@ class Bearing(ABC):
     """Name in case files."""
     rolls: ClassVar[bool]
     """Whether the elements are rollers, in line contact."""
+    leans: ClassVar[bool]
+    """Whether the elements tilt against the raceways and carry moments."""
+    aligns: ClassVar[bool] = False
+    """Whether the bearing aligns itself, so that a tilt of the ring changes nothing."""
 
     def __init_subclass__(cls) -> None:
         """Make a kind of bearing known to files."""
@@ -128,6 +138,12 @@ class Bearing(ABC):
                     raise ValueError(f"{name} must have an elastic substrate, got {body!r}")
                 if body.ends != (None, None):
                     raise ValueError(f"{name} must have no ends: those of rollers are free_ends")
+
+    def _check_given_pitch(self) -> None:
+        """Raise an error unless the pitch diameter is given, and in range."""
+        if self.pitch_diameter is None:
+            raise ValueError("pitch_diameter must be given")
+        above("pitch_diameter", self.pitch_diameter)
 
     def _check_room(self) -> None:
         """Raise a `ValueError` unless the rings hold the elements."""
@@ -160,6 +176,16 @@ class Bearing(ABC):
         return self.pitch_diameter
 
     @property
+    def rows(self) -> int:
+        """Number of rows of elements."""
+        return 1
+
+    @property
+    def elements(self) -> int:
+        """Number of elements of all rows."""
+        return self.rows * self.count
+
+    @property
     def play(self) -> float:
         """Diametral clearance [m], below 0 with preload."""
         return self.clearance or 0.0
@@ -175,10 +201,46 @@ class Bearing(ABC):
         return 0.0
 
     @property
+    def radius(self) -> float:
+        """Radius of an element in the direction of rolling [m]."""
+        return self.diameter / 2
+
+    @property
+    def tracks(self) -> tuple[float, float]:
+        """Radii of the tracks of both rings about the bearing's axis [m]."""
+        inner, outer = self.raceways
+        cos = math.cos(self.nominal_angle)
+        return inner * cos, outer * cos
+
+    @property
+    def outward(self) -> tuple[tuple[float, float], float]:
+        """Parts of the centrifugal force: on an element's coordinates, and on the ring along z."""
+        return (1.0, 0.0), 0.0
+
+    @property
     def raceways(self) -> tuple[float, float]:
         """Radii of inner and outer raceway in the direction of rolling [m]."""
         wide = self.pitch / math.cos(self.nominal_angle)
         return (wide - self.diameter) / 2, (wide + self.diameter) / 2
+
+    def curvature(self, ring: Ring, x: Array | float = 0.0) -> Array:
+        """Return the curvature of the gap in the direction of rolling [1/m].
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the raceway.
+        x : array_like, optional
+            Places along the element from its middle [m].
+
+        Returns
+        -------
+        numpy.ndarray
+            Curvatures.
+        """
+        number = RINGS.index(ring)
+        found = 1 / self.radius + (1, -1)[number] / self.raceways[number]
+        return np.full(np.shape(x), found)
 
     @cached_property
     def modulus(self) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre.bearing.geometry import Bearing, above
+from nacre.bearing.geometry import RINGS, Bearing, above, laminae_of
 from nacre.bearing.laws import LAMINAE
 
 Array = npt.NDArray[np.float64]
@@ -80,8 +80,8 @@ def rating(bearing: Any) -> float:
 
     Parameters
     ----------
-    bearing : CylindricalRoller, DeepGrooveBall or AngularContactBall
-        Bearing; its `rating_factor` is b_m.
+    bearing : CylindricalRoller, DeepGrooveBall, or another
+        Bearing of `nacre.bearing`; its `rating_factor` is b_m.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def rating(bearing: Any) -> float:
         shape = 551.13373 * 0.377 * REDUCTION * gamma ** (2 / 9)
         shape *= (1 - gamma) ** (29 / 27) * (1 + gamma) ** -0.25
         shape *= (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
-        size = (bearing.length * 1e3 * cos) ** (7 / 9) * diameter ** (29 / 27)
+        size = (bearing.rows * bearing.length * 1e3 * cos) ** (7 / 9) * diameter ** (29 / 27)
         return float(bearing.rating_factor * shape * size * bearing.count**0.75)
     inner, outer = bearing.osculation
     if inner <= 0.52 and outer <= 0.53:  # one table of f_c holds for all of these: that of 0.52
@@ -121,6 +121,11 @@ def rating(bearing: Any) -> float:
     shape *= (2 * inner / (2 * inner - 1)) ** 0.41
     size = diameter**1.8 if diameter <= LARGE_BALL else 3.647 * diameter**1.4
     return float(bearing.rating_factor * shape * cos**0.7 * bearing.count ** (2 / 3) * size)
+
+
+def capacity_of(bearing: Bearing) -> float:
+    """Return the rating that is given, or that of ISO 281 [N]."""
+    return bearing.capacity or rating(bearing)
 
 
 class Rated(NamedTuple):
@@ -143,7 +148,7 @@ def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
     if bearing.rolls:
         share = (1.038 * ratio ** (143 / 108)) ** 4.5
-        base = capacity / (REDUCTION * count * cos)
+        base = capacity / (REDUCTION * count * cos * bearing.rows ** (7 / 9))
         factors = ((0.378, share), (0.364, 1 / share))
         power = 2 / 9
     else:
@@ -186,16 +191,23 @@ def edge_factors(count: int) -> Array:
     return 1 - 0.01 / np.log(1.985 * np.abs(2 * k - count - 1) / (2 * count - 2))
 
 
+def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
+    """Return Hertz's pressures of laminae under their loads ``(Z, 2, laminae)`` [Pa]."""
+    count = loads.shape[-1]
+    x = laminae_of(bearing.length, count)
+    curvature = np.stack([bearing.curvature(ring, x) for ring in RINGS])
+    line = loads * count / bearing.length
+    found: Array = np.sqrt(line * moduli[:, None] * curvature / math.pi)
+    return found
+
+
 def pressure_factors(bearing: Any, loads: Array, pressures: Array) -> Array:
     """Return pressures of laminae over those of Hertz under their loads ``(Z, 2, laminae)``.
 
     ISO/TS 16281, equations 58 and 59, with the moduli of the substrates in place of the standard's
     constant 271, which is ``√(E/(π (1 − ν²)))`` of its steel. It is 1 where a lamina has no load.
     """
-    signs = np.array([1, -1])
-    curvature = 2 / bearing.diameter + signs / np.array(bearing.raceways)
-    scale = (np.array(bearing.modulus) * curvature / math.pi)[:, None]
-    hertz = np.sqrt(scale * loads * loads.shape[-1] / bearing.length)
+    hertz = hertz_pressures(bearing, loads, np.array(bearing.modulus))
     return np.where(loads > 0, pressures / np.where(hertz > 0, hertz, 1.0), 1.0)
 
 
@@ -213,9 +225,9 @@ def reference_life(
 
     ISO/TS 16281, equations 61 to 65 for the laminae of rollers ``(Z, 2, laminae)``, with factors
     for the stress at edges; equations 12 to 16 for balls ``(Z, 2)``. The ring that rotates sees the
-    loads of all elements.
+    loads of all elements of a row; rows survive independently.
     """
-    capacity = bearing.capacity or rating(bearing)
+    capacity = capacity_of(bearing)
     found = capacities(bearing, capacity)
     if bearing.rolls:
         powers, exponent, life = (4.0, 4.5), 4.5, -8 / 9
@@ -225,9 +237,10 @@ def reference_life(
         limits = np.array(found)
     if rotating == "outer":
         powers = powers[::-1]
-    weighted = loads * factors
+    rows = (loads * factors).reshape(bearing.rows, bearing.count, *loads.shape[1:])
     sums = sum(
-        float(((_mean(weighted[:, ring], powers[ring]) / limits[ring]) ** exponent).sum())
+        float(((_mean(row[:, ring], powers[ring]) / limits[ring]) ** exponent).sum())
+        for row in rows
         for ring in range(2)
     )
     revolutions = sums**life if sums > 0 else math.inf

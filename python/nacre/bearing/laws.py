@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.bearing.geometry import RINGS, Bearing, Ring, laminae_of
+from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
-from nacre.hertz import Ellipse
+from nacre.hertz import Ellipse, contact_modulus
 
 Array = npt.NDArray[np.float64]
 
@@ -33,7 +33,7 @@ SPRING = 35948.0
 L_we^(8/9)."""
 LINE = 10 / 9
 """Exponent of the deflection in the load of a lamina, ISO/TS 16281."""
-STANDARD = 210e9 / (2 * (1 - 0.3**2))
+STANDARD = contact_modulus(STEEL, STEEL)
 """Contact modulus of the steel of the standard [Pa]."""
 WIDER = 1.5
 """Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
@@ -128,7 +128,8 @@ def grid_of(bearing: Any, ring: Ring, line: float, cells: tuple[int, int]) -> co
     """
     number = RINGS.index(ring)
     if bearing.rolls:
-        curvature = 2 / bearing.diameter + (1, -1)[number] / bearing.raceways[number]
+        ends = np.array([-0.5, 0.0, 0.5]) * bearing.length
+        curvature = float(bearing.curvature(ring, ends).min())
         half = math.sqrt(4 * line / (math.pi * bearing.modulus[number] * curvature))
         return core.Grid(cells, (bearing.length, 2 * WIDER * half))
     along, rolling = bearing.radii[number]
@@ -245,7 +246,7 @@ class Solved:
                     stiffness[j, r] = tangent[:2, :2]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
-        if not self.bearing.rolls:  # a ball has no moment along its axis
+        if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
         self.kept = kept

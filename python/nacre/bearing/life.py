@@ -21,6 +21,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Member
+from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution
@@ -374,7 +375,7 @@ def stress_volume(
         raise TypeError(f"model must be a model of a life, or models by layer, got {model!r}")
     plan = solution.stress_plan(body, threads)
     half, line = _half_width(solution), solution.grid.is_line
-    slopes = {one.slope(line=_is_line(solution)) for one in models.values()}
+    slopes = {one.slope(line=is_line(solution)) for one in models.values()}
     if len(slopes) > 1:
         raise ValueError(f"models must have the same slope e, got {sorted(slopes)}")
     (slope,) = slopes
@@ -423,11 +424,6 @@ def stress_volume(
         extremes = max(coats), max(shears), max(tensions)
     share = change / total if total > 0 else 0.0
     return StressVolume(total, share, largest, slope, *extremes, notes)
-
-
-def _is_line(solution: Solution) -> bool:
-    """Return whether a contact is one of a roller, or of strips."""
-    return solution.grid.is_line or solution.report.rolling_direction is not None
 
 
 def life_ratio(
@@ -533,9 +529,9 @@ def life_ratio(
 def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of the inner one.
 
-    The inner ring sees ``Z (1 + γ)/2`` cycles in a revolution, the outer one ``Z (1 − γ)/2``;
-    cycles of different loads add up as Miner's (derived here: it gives the exponents of
-    ISO/TS 16281).
+    A ring sees ``Z r/(r_i + r_e)`` cycles in a revolution, r the radius of the other one's track:
+    the inner one ``Z (1 + γ)/2``, the outer one ``Z (1 − γ)/2``. Cycles of different loads add up
+    as Miner's (derived here: it gives the exponents of ISO/TS 16281).
     """
     bearing: Bearing = solution.bearing
     loaded = np.argwhere(solution.loads > 0)
@@ -550,15 +546,15 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
             tell(done + (number + 1) / len(loaded) / 2)
     slope = next(iter(volumes.values())).slope
     total = changed = 0.0
-    for r, sign in enumerate((1, -1)):
-        found = np.zeros((2, bearing.count))
+    for r in range(2):
+        found = np.zeros((2, bearing.elements))
         for (j, ring), volume in volumes.items():
             if ring == r:
                 found[:, j] = volume.integral, volume.integral * (1 + volume.change)
-        means = (found ** (1 / slope)).mean(1) ** slope if r == 0 else found.mean(1)
-        cycles = bearing.count * (1 + sign * bearing.gamma) / 2
-        track = 2 * math.pi * bearing.raceways[r] * math.cos(bearing.nominal_angle)
-        means = means * cycles**slope * track
+        rows = found.reshape(2, bearing.rows, bearing.count)
+        means = (rows ** (1 / slope)).mean(2) ** slope if r == 0 else rows.mean(2)
+        cycles = bearing.count * bearing.tracks[1 - r] / sum(bearing.tracks)
+        means = means.sum(1) * cycles**slope * 2 * math.pi * bearing.tracks[r]
         total, changed = total + float(means[0]), changed + float(means[1])
 
     def largest(name: str) -> float:

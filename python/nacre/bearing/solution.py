@@ -13,7 +13,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import printable, symbol, written
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
-from nacre.bearing.iso import Edge, edge_factors, pressure_factors, rating, reference_life
+from nacre.bearing.iso import Edge, capacity_of, edge_factors, pressure_factors, reference_life
 from nacre.bearing.laws import LAMINAE, bodies_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -57,6 +57,8 @@ EDGES = {
     None: "without edge factors",
 }
 """Words for the factors of a life."""
+BARRELS = "barrels have none of the standard's edge factors"
+"""The same of spherical rollers."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,6 +140,8 @@ class BearingLife(Listed):
 class BearingSolution(Tabular):
     """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
 
+    Elements of two rows are numbered row by row.
+
     Examples
     --------
     >>> from nacre.bearing import CylindricalRoller
@@ -186,7 +190,7 @@ class BearingSolution(Tabular):
     They are NaN of balls.
     """
     contact_angles: Array
-    """Contact angles ``(Z, 2)`` [rad]; 0 of cylindrical rollers."""
+    """Contact angles ``(Z, 2)`` [rad], below 0 in a second row; 0 of cylindrical rollers."""
     lamina_loads: Array | None
     """Loads of 40 laminae along each contact ``(Z, 2, 40)`` [N]; None of balls."""
     lamina_pressures: Array | None
@@ -285,8 +289,9 @@ class BearingSolution(Tabular):
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
         if isinstance(element, bool) or not isinstance(element, int | np.integer):
             raise TypeError(f"element must be an integer, got {element!r}")
-        if not 0 <= element < self.bearing.count:
-            raise ValueError(f"element must be from 0 to {self.bearing.count - 1}, got {element!r}")
+        last = self.bearing.elements - 1
+        if not 0 <= element <= last:
+            raise ValueError(f"element must be from 0 to {last}, got {element!r}")
         number = RINGS.index(ring)
         if not self.loads[element, number] > 0:
             return None
@@ -345,8 +350,8 @@ class BearingSolution(Tabular):
         ----------
         edge : {"standard", "pressure"} or None, optional
             Factors by which the loads of the laminae are multiplied: those of the standard, which
-            hold for its profile, medium loads and tilts below 4'; the solved pressure over that of
-            Hertz; or none. Balls have none.
+            hold for its profile, medium loads and tilts below 4', and which barrels have not; the
+            solved pressure over that of Hertz; or none. Balls have none.
         rotating : {"inner", "outer"}, optional
             Ring that rotates against the load.
 
@@ -378,13 +383,14 @@ class BearingSolution(Tabular):
         words = "ISO/TS 16281, 90 % reliability, a model"
         loads, factors = self.loads, np.array(1.0)
         if self.lamina_loads is not None:
-            loads, words = self.lamina_loads, f"{words}; {EDGES[edge]}"
-            if edge == "standard":
+            barrels = edge == "standard" and self.bearing.aligns
+            loads, words = self.lamina_loads, f"{words}; {BARRELS if barrels else EDGES[edge]}"
+            if edge == "standard" and not barrels:
                 factors = edge_factors(LAMINAE)
             elif edge == "pressure":
                 factors = self.edge_factors()
         found = reference_life(self.bearing, loads, factors, rotating)
-        capacity = self.bearing.capacity or rating(self.bearing)
+        capacity = capacity_of(self.bearing)
         return BearingLife(
             found.revolutions, found.equivalent_load, capacity, found.capacities, words
         )
@@ -486,7 +492,7 @@ class BearingSolution(Tabular):
         names = [name for _, name, _ in columns]
         heads = zip(names, units, strict=True)
         yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
-        for j in range(self.bearing.count):
+        for j in range(self.bearing.elements):
             yield [j, *(float(values[j]) for _, _, values in columns)]
 
     def _rows(self) -> list[tuple[str, str]]:
@@ -504,7 +510,7 @@ class BearingSolution(Tabular):
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
         return [
             *rows,
-            ("loaded", f"{self.loaded} of {self.bearing.count} elements"),
+            ("loaded", f"{self.loaded} of {self.bearing.elements} elements"),
             ("contacts", contacts),
             (
                 "ended",
@@ -582,7 +588,7 @@ class BearingSolution(Tabular):
             raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
         if self.model not in ("solved", "iso16281"):
             raise ValueError(f"model must be one of nacre's, got {self.model!r}")
-        count = self.bearing.count
+        count = self.bearing.elements
         shapes: dict[str, tuple[int, ...]] = dict.fromkeys(ARRAYS, (count, 2))
         shapes |= {"angles": (count,), "tangent": (5, 5), "grid_sizes": (count, 2, 2)}
         shapes |= dict.fromkeys(("lamina_loads", "lamina_pressures"), (count, 2, LAMINAE))

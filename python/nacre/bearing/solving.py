@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre.bearing.equilibrium import Balls, Kinematics, Problem, Rollers, State
+from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import Bearing, above, pair
+from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, law
 from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model
 from nacre.contact.solution import Solution
@@ -62,11 +63,25 @@ def _asked(
                 f"{words[k]} and {others[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
-    if bearing.rolls and (loads[2] is not None or moved[2] is not None):
+    if bearing.aligns and values["moment"] != [None, None]:
+        raise ValueError(
+            f"moment must be None: a spherical roller bearing aligns itself and carries none, "
+            f"got {given['moment']!r}"
+        )
+    axial = not bearing.rolls or bearing.nominal_angle > 0
+    if not axial and (loads[2] is not None or moved[2] is not None):
         name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
         raise ValueError(
-            f"{name} along z must be None: cylindrical rollers carry none, got {value!r}"
+            f"{name} along z must be None: rollers without a contact angle carry none, "
+            f"got {value!r}"
         )
+    if bearing.rolls and axial and bearing.rows == 1 and loads[2] is not None:
+        pushed = math.hypot(*(loads[k] or 0.0 for k in range(2))) * math.tan(bearing.nominal_angle)
+        if loads[2] < pushed:
+            raise ValueError(
+                f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
+                f"the rings apart, got {loads[2]!r}"
+            )
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
 
@@ -99,7 +114,8 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
         multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
         raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
     angles = given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
-    kinematics: Kinematics = (Rollers if bearing.rolls else Balls)(bearing, angles)
+    angles = np.tile(angles, bearing.rows)
+    kinematics = kinematics_of(bearing, angles)
     centrifugal = bearing.mass * bearing.pitch / 2 * given["speed"] ** 2
     problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
     limit = given["max_iterations"]
@@ -124,7 +140,7 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
             contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
             state, done, ended = problem.solve(state.ring, state.own, tolerance, limit, tell)
-    found = _found(bearing, given, problem, state, (done, ended), cells)
+    found = _found(bearing, given, problem, state, angles, (done, ended), cells)
     for message in found.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     if given["check"] and ended == "iteration limit":
@@ -165,6 +181,7 @@ def _found(
     given: Mapping[str, Any],
     problem: Problem,
     state: State,
+    angles: Array,
     ended: tuple[int, str],
     cells: tuple[int, int],
 ) -> BearingSolution:
@@ -190,10 +207,7 @@ def _found(
                 pressures[key] = contact.pressure.max(1).reshape(LAMINAE, -1).max(1)
     elif isinstance(problem.law, Slices):
         laminae = problem.law.loads(places)
-        signs = np.array([1, -1]) / np.array(bearing.raceways)
-        curvature = (2 / bearing.diameter + signs)[:, None]
-        line = laminae * LAMINAE / bearing.length  # type: ignore[attr-defined]
-        pressures = np.sqrt(line * STANDARD * curvature / math.pi)
+        pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
         peaks = pressures.max(-1)
     else:
         assert isinstance(problem.law, Hertzian)
@@ -203,9 +217,7 @@ def _found(
         outer = round(EDGE * LAMINAE)
         edges = np.maximum(pressures[..., :outer].max(-1), pressures[..., -outer:].max(-1))
     kinematics = problem.kinematics
-    angles = np.zeros(loads.shape)
-    if isinstance(kinematics, Balls):
-        angles = kinematics.angles(kinematics.motion @ state.ring, state.own)
+    normals = kinematics.angles(kinematics.motion @ state.ring, state.own)
     total = state.wanting + problem.loads
     notes = tuple(_notes(bearing, given["model"], contacts, len(contacts)))
     return BearingSolution(
@@ -217,14 +229,14 @@ def _found(
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),
         moment=tuple(total[3:].tolist()),
-        angles=given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count,
+        angles=angles,
         approaches=places[..., 0].copy(),
         tilts=places[..., 1].copy(),
         loads=loads.copy(),
-        moments=force[..., 1].copy(),
+        moments=force[..., 1] * bearing.leans,
         peak_pressures=peaks,
         edge_pressures=edges,
-        contact_angles=angles,
+        contact_angles=normals,
         lamina_loads=laminae,
         lamina_pressures=pressures,
         tangent=(state.tangent + state.tangent.T) / 2,

@@ -8,11 +8,29 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
-from nacre.bearing.bearings import KINDS, Solvable
+from nacre.bearing import (
+    AngularContactBall,
+    CylindricalRoller,
+    DeepGrooveBall,
+    SphericalRoller,
+    TaperedRoller,
+)
+from nacre.bearing.bearings import Solvable
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
 from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, said
 
+KINDS: dict[str, type[Solvable]] = {
+    made.kind: made
+    for made in (
+        CylindricalRoller,
+        TaperedRoller,
+        SphericalRoller,
+        DeepGrooveBall,
+        AngularContactBall,
+    )
+}
+"""Bearings by their names in case files."""
 SOLVE = described(Solvable.solve)
 
 
@@ -80,6 +98,7 @@ class BearingKind(Table):
 
 TYPES: dict[str, Any] = {
     "count": Count,
+    "rows": Count,
     "raceway_diameters": Pair | None,
     "osculation": Pair,
     "profile": Annotated[

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -110,20 +112,29 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
             figure = plt.figure(figsize=(0.5 * WIDTH, 0.5 * WIDTH), layout="constrained")
             axes = figure.add_subplot(projection="polar")
         same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * loads.max(initial=0.0))
-        width = 2 * np.pi / solution.bearing.count
-        for number, ring in enumerate(RINGS[:1] if same else RINGS):
-            place = solution.angles + (0 if same else (number - 0.5) * width / 4)
-            style = {"color": look(number)["color"], "label": f"{ring} ring"}
-            share = 0.5 if same else 0.25
-            axes.bar(place, scale.factor * loads[:, number], width=share * width, **style)
+        count, rows = solution.bearing.count, solution.bearing.rows
+        width, rings = 2 * np.pi / count, RINGS[:1] if same else RINGS
+        share = 0.5 / (rows * len(rings))
+        for number, (row, ring) in enumerate(product(range(rows), rings)):
+            members = slice(row * count, (row + 1) * count)
+            words = [f"row {row + 1}"] * (rows > 1)
+            words += [ring if words else f"{ring} ring"] * (not same or rows == 1)
+            style = {"color": look(number)["color"], "label": ", ".join(words)}
+            place = (
+                solution.angles[members] + (number - (rows * len(rings) - 1) / 2) * share * width
+            )
+            heights = scale.factor * loads[members, RINGS.index(ring)]
+            axes.bar(place, heights, width=share * width, **style)
         axes.set_axisbelow(True)
         highest = scale.factor * float(loads.max(initial=0.0))
         ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]
         axes.set_yticks(ticks)
-        axes.set_xticks(solution.angles, [f"{j}" for j in range(solution.bearing.count)])
+        axes.set_xticks(solution.angles[:count], [f"{j}" for j in range(count)])
         axes.set_title(f"load of each element [{scale.unit}]", loc="center")
-        axes.set_rlabel_position(180.0)  # type: ignore[attr-defined]
-        if not same:
+        # Between two elements, on the left.
+        beside = solution.rotation + (math.floor(count / 2) + 0.5) * width
+        axes.set_rlabel_position(math.degrees(beside))  # type: ignore[attr-defined]
+        if not same or rows > 1:
             axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.08), ncols=2)
     return axes
 

@@ -66,6 +66,7 @@ CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
 """Callables by their names in data, each with its arguments."""
 LATER = {
     "name",
+    "apex",
     "counter_radius",
     "counter_radius_x",
     "counter_radius_y",

@@ -20,7 +20,9 @@ use crate::model::grid::Grid;
 /// profiles are steep at the ends, and their drop is averaged over each cell.
 ///
 /// On a raceway of radius R_2, which is below 0 for a concave one, h has R_2 − √(R_2² − y²) added:
-/// [`Roller::with_counter_radius`].
+/// [`Roller::with_counter_radius`]. The radii of a tapered roller and of its raceway are those at x = 0
+/// and vanish at the common apex x_A, so that with s = 1 − x/x_A the gap is
+/// s h(d/s, y/s): [`Roller::with_apex`].
 ///
 /// ```
 /// use nacre::{LogarithmicProfile, Roller, Surface};
@@ -44,6 +46,7 @@ pub struct Roller {
     profile: Profile,
     length: Option<f64>,
     counterpart: Counterpart,
+    apex: Option<f64>,
 }
 
 impl Roller {
@@ -66,6 +69,7 @@ impl Roller {
             profile: profile.into(),
             length: None,
             counterpart: Counterpart::default(),
+            apex: None,
         })
     }
 
@@ -77,6 +81,26 @@ impl Roller {
     /// Unless `counter_radius` is finite and above 0, or below minus the radius of the roller.
     pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
         Ok(Self { counterpart: Counterpart::cylindrical(counter_radius, self.radius)?, ..self })
+    }
+
+    /// This roller as a cone that rolls on a conical raceway about the same apex at x = `apex` \[m\], where both
+    /// end. x runs along the line of contact, and the radii of roller and raceway are those of the normal sections:
+    /// half the diameter over the cosine of the half angle of each cone. The profile is normal to the line.
+    ///
+    /// # Errors
+    /// Unless `apex` is finite and not 0.
+    ///
+    /// ```
+    /// use nacre::{Roller, SampledProfile, Surface};
+    /// let straight = Roller::with_profile(5e-3, SampledProfile::new(&[-0.01, 0.01], &[0.0; 2])?)?;
+    /// let tapered = straight.with_counter_radius(20e-3)?.with_apex(0.1)?;
+    /// // At 8 mm of 100 mm the radii are 8 % smaller.
+    /// assert!((tapered.gap(8e-3, 1e-4) / (1e-8 / (2.0 * 0.92 * 4e-3)) - 1.0).abs() < 1e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn with_apex(self, apex: f64) -> Result<Self> {
+        require("apex", apex, apex.is_finite() && apex != 0.0, "finite and not 0")?;
+        Ok(Self { apex: Some(apex), ..self })
     }
 
     /// This roller, cut off at |x| = `length` / 2 \[m\].
@@ -100,6 +124,11 @@ impl Roller {
     /// Radius of the raceway along y \[m\]; `None` for a plane.
     pub fn counter_radius(&self) -> Option<f64> {
         self.counterpart.radii[1]
+    }
+
+    /// Coordinate x \[m\] of the apex of a tapered roller and its raceway; `None` of a cylindrical one.
+    pub fn apex(&self) -> Option<f64> {
+        self.apex
     }
 
     /// Equivalent radius along y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
@@ -150,6 +179,46 @@ impl Roller {
         })
     }
 
+    /// Radii at x over those at x = 0; at most 0 at the apex and beyond it.
+    fn scale(&self, x: f64) -> f64 {
+        self.apex.map_or(1.0, |apex| 1.0 - x / apex)
+    }
+
+    /// Ends of the profile along x.
+    fn natural_span(&self) -> [f64; 2] {
+        match &self.profile {
+            Profile::Crowned(crowned) => {
+                // The crown ends where the drop is R, or at a quarter of the crown's circle.
+                let (r, ra) = (self.radius, crowned.crown_radius());
+                let crown = if r < ra { (r * (2.0 * ra - r)).sqrt() } else { ra };
+                let half = 0.5 * crowned.flat_length() + crown;
+                [-half, half]
+            }
+            other => other.ends(),
+        }
+    }
+
+    /// Ends of the profile along x, cut off by the length.
+    fn span(&self) -> [f64; 2] {
+        let half = 0.5 * self.length.unwrap_or(f64::INFINITY);
+        self.natural_span().map(|x| x.clamp(-half, half))
+    }
+
+    /// Scale at the end that is nearer to the apex; 0 where the roller ends at the apex.
+    fn smallest_scale(&self) -> f64 {
+        self.span().map(|x| self.scale(x)).into_iter().fold(1.0, f64::min).max(0.0)
+    }
+
+    /// Scales of the rows of `grid`.
+    fn scales(&self, grid: &Grid) -> Array1<f64> {
+        grid.x().mapv(|x| self.scale(x))
+    }
+
+    /// Gap for the drop d where the radii have the `scale` s.
+    fn scaled_gap(&self, scale: f64, drop: f64, y: f64) -> f64 {
+        if scale > 0.0 { scale * self.gap_at(drop / scale, y / scale) } else { f64::INFINITY }
+    }
+
     /// Gap R − √((R − d)² − y²) to a plane for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
     fn gap_at(&self, drop: f64, y: f64) -> f64 {
         if drop > self.radius {
@@ -162,30 +231,23 @@ impl Roller {
 
 impl Surface for Roller {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if self.reaches(x) { self.gap_at(self.profile.drop(x), y) } else { f64::INFINITY }
+        if self.reaches(x) {
+            self.scaled_gap(self.scale(x), self.profile.drop(x), y)
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-        let (drops, y) = (self.drops(grid), grid.y());
-        Ok(sampled(grid, |i, j| self.gap_at(drops[i], y[j])))
+        let (drops, scales, y) = (self.drops(grid), self.scales(grid), grid.y());
+        Ok(sampled(grid, |i, j| self.scaled_gap(scales[i], drops[i], y[j])))
     }
 
     fn extent(&self) -> [Extent; 2] {
-        let natural = match &self.profile {
-            Profile::Crowned(crowned) => {
-                // The crown ends where the drop is R, or at a quarter of the crown's circle.
-                let (r, ra) = (self.radius, crowned.crown_radius());
-                let crown = if r < ra { (r * (2.0 * ra - r)).sqrt() } else { ra };
-                let half = 0.5 * crowned.flat_length() + crown;
-                [-half, half]
-            }
-            other => other.ends(),
-        };
-        let half = 0.5 * self.length.unwrap_or(f64::INFINITY);
-        let ends = [natural[0].max(-half), natural[1].min(half)];
-        let cut = self.profile.has_sharp_ends() || half < natural[1] || -half > natural[0];
+        let (ends, natural) = (self.span(), self.natural_span());
+        let cut = self.profile.has_sharp_ends() || natural[0] < ends[0] || ends[1] < natural[1];
         let x = if cut { Extent::CutOff(ends) } else { Extent::Within(ends) };
-        let [_, half] = self.counterpart.reach([self.radius; 2]);
+        let [_, half] = self.counterpart.reach([self.smallest_scale() * self.radius; 2]);
         [x, Extent::Within([-half, half])]
     }
 
@@ -195,7 +257,7 @@ impl Surface for Roller {
 
     fn radii(&self) -> [f64; 2] {
         let [_, smaller] = self.counterpart.smaller([self.radius; 2]);
-        [self.profile.radius(), smaller]
+        [self.profile.radius(), self.smallest_scale() * smaller]
     }
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {
@@ -207,26 +269,33 @@ impl Surface for Roller {
         others.map(|profile| Box::new(Self { profile, ..self.clone() }) as Box<_>).collect()
     }
 
-    /// Radii, and the numbers of the profile: `flat_length` and `crown_radius`, `profile.amplitude`,
+    /// Radii, the apex, and the numbers of the profile: `flat_length` and `crown_radius`, `profile.amplitude`,
     /// `profile.flat_length` and `profile.end_factor`, or `profile.drop[k]`.
     fn parameters(&self) -> Vec<(String, f64)> {
         let mut parameters = vec![("radius".to_owned(), self.radius)];
         parameters.extend(self.counter_radius().map(|r| ("counter_radius".to_owned(), r)));
+        parameters.extend(self.apex.map(|x| ("apex".to_owned(), x)));
         parameters.extend(self.profile.parameters());
         parameters
     }
 
-    /// With the root of [`Roller`], ∂h/∂R = 1 − (R − d)/√ and ∂h/∂d = (R − d)/√.
+    /// With the root of [`Roller`], ∂h/∂R = 1 − (R − d)/√ and ∂h/∂d = (R − d)/√, of d/s and y/s at the scale s.
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
-        let (drops, y) = (self.drops(grid), grid.y());
-        let per_radius = |drop: f64, y: f64| match drop < self.radius {
-            true => sagitta_slope(self.radius - drop, y * y),
-            false => 0.0,
+        let (drops, scales, y) = (self.drops(grid), self.scales(grid), grid.y());
+        let per_radius = |i: usize, j: usize| {
+            let [drop, y] = [drops[i], y[j]].map(|length| length / scales[i]);
+            match scales[i] > 0.0 && drop < self.radius {
+                true => sagitta_slope(self.radius - drop, y * y),
+                false => 0.0,
+            }
         };
-        match (name, self.counter_radius()) {
-            ("radius", _) => Ok(sampled(grid, |i, j| per_radius(drops[i], y[j]))),
-            ("counter_radius", Some(radius)) => {
+        match (name, self.counter_radius(), self.apex) {
+            ("radius", ..) => Ok(sampled(grid, |i, j| scales[i] * per_radius(i, j))),
+            ("counter_radius", Some(radius), _) => {
                 by_difference(radius, |radius| self.clone().with_counter_radius(radius)?.gaps(grid))
+            }
+            ("apex", _, Some(apex)) => {
+                by_difference(apex, |apex| self.clone().with_apex(apex)?.gaps(grid))
             }
             _ => {
                 let half = 0.5 * grid.spacing()[0];
@@ -234,7 +303,7 @@ impl Surface for Roller {
                 let slopes = self.profile.mean_drop_slopes(name, &cells);
                 let slopes = slopes.ok_or_else(|| absent(name))?;
                 Ok(sampled(grid, |i, j| match drops[i].is_finite() {
-                    true => slopes[i] * (1.0 - per_radius(drops[i], y[j])),
+                    true => slopes[i] * (1.0 - per_radius(i, j)),
                     false => 0.0,
                 }))
             }

@@ -35,12 +35,15 @@ shape_class! {
     /// counter_radius : float, optional
     ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
     ///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.
+    /// apex : float, optional
+    ///     Coordinate x [m] of the apex that a tapered roller and its raceway share; x is along the line of
+    ///     contact, and both radii are those at x = 0 in the section normal to it. Cylinders by default.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If a length is out of range, there is neither a crown nor a profile, or both, or a concave raceway
-    ///     is not wider than the roller.
+    ///     If a length is out of range, there is neither a crown nor a profile, or both, a concave raceway
+    ///     is not wider than the roller, or the apex is at 0.
     ///
     /// Examples
     /// --------
@@ -66,6 +69,8 @@ shape_class! {
         profile: Option<Bound<'py, PyAny>> = profiles::to_python(py, of.profile())?;
         /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
         counter_radius: Option<f64> = of.counter_radius();
+        /// Coordinate x of the apex of a tapered roller [m]; None of a cylindrical one.
+        apex: Option<f64> = of.apex();
     }
     attributes {
         /// Coordinates x of both ends [m], which `HalfSpace` takes as those of the roller's body.
@@ -79,7 +84,9 @@ shape_class! {
     methods {
         #[new]
         #[pyo3(
-            signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None)
+            signature = (
+                radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None, apex=None
+            )
         )]
         fn new(
             radius: Real,
@@ -88,6 +95,7 @@ shape_class! {
             length: Option<Real>,
             profile: Option<&Bound<'_, PyAny>>,
             counter_radius: Option<Real>,
+            apex: Option<Real>,
         ) -> PyResult<PyClassInitializer<Self>> {
             let mut roller = match (flat_length, crown_radius, profile) {
                 (Some(flat_length), Some(crown_radius), None) => {
@@ -108,6 +116,9 @@ shape_class! {
             }
             if let Some(counter_radius) = counter_radius {
                 roller = roller.with_counter_radius(counter_radius.0)?;
+            }
+            if let Some(apex) = apex {
+                roller = roller.with_apex(apex.0)?;
             }
             Ok(object(Self, roller))
         }

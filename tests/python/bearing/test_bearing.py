@@ -18,6 +18,8 @@ from nacre.bearing import (
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
+    SphericalRoller,
+    TaperedRoller,
     rating,
 )
 from nacre.bearing.laws import Slices
@@ -30,6 +32,21 @@ ROLLERS: dict[str, Any] = {
     "length": 9.6e-3,
     "pitch_diameter": 65e-3,
     "clearance": 41e-6,
+}
+TAPERED: dict[str, Any] = {
+    "count": 17,
+    "diameter": 8e-3,
+    "length": 11e-3,
+    "pitch_diameter": 48e-3,
+    "contact_angle": 0.25,
+}
+BARRELS: dict[str, Any] = {
+    "count": 9,
+    "diameter": 12e-3,
+    "length": 11e-3,
+    "pitch_diameter": 62e-3,
+    "contact_angle": 0.23,
+    "profile_radius": 35e-3,
 }
 BALLS: dict[str, Any] = {"count": 7, "diameter": 11.5e-3, "pitch_diameter": 43.5e-3}
 COARSE: dict[str, Any] = {"cells": (40, 24)}
@@ -101,7 +118,7 @@ def test_mirrored_load_mirrors_the_loads(options: dict[str, Any]) -> None:
 
 def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[Any, Any]:
     x, y, z, about_x, about_y = place.tolist()
-    along = (x, y, None if bearing.rolls else z)
+    along = (x, y, z if bearing.nominal_angle or not bearing.rolls else None)
     asked = {"displacement": along, "tilt": (about_x, about_y), "tolerance": 1e-11} | options
     found = quiet(bearing.solve, **asked)
     return np.array([*found.force, *found.moment])
@@ -113,14 +130,27 @@ def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[An
         (CylindricalRoller(**ROLLERS), STANDARD, (1e-10, 1e-10, 0, 1e-8, 1e-8)),
         # A step is so short that no cell joins the contact: derivatives are those of the cells.
         (CylindricalRoller(**ROLLERS), COARSE, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
+        (TaperedRoller(**TAPERED), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (1e-8,) * 2),
+        (TaperedRoller(**TAPERED), COARSE, (2e-11,) * 3 + (1e-9,) * 2),
+        (SphericalRoller(**BARRELS), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (0, 0)),
+        (SphericalRoller(**BARRELS), COARSE, (2e-11,) * 3 + (0, 0)),
         (DeepGrooveBall(**BALLS), STANDARD | {"speed": 500.0}, (1e-9,) * 3 + (1e-8,) * 2),
     ],
-    ids=["rollers, standard", "rollers, solved", "balls"],
+    ids=[
+        "rollers, standard",
+        "rollers, solved",
+        "tapered, standard",
+        "tapered, solved",
+        "barrels, standard",
+        "barrels, solved",
+        "balls",
+    ],
 )
 def test_stiffness_is_the_derivative(
     bearing: Any, options: dict[str, Any], steps: tuple[float, ...]
 ) -> None:
-    force = (4450.0, 300.0, None) if bearing.rolls else (1000.0, 200.0, 500.0)
+    force: Any = (1000.0, 200.0, 500.0) if bearing.nominal_angle == 0 else (1500.0, 300.0, 3000.0)
+    force = (4450.0, 300.0, None) if isinstance(bearing, CylindricalRoller) else force
     solution = quiet(bearing.solve, force=force, tilt=(1e-4, 5e-4), tolerance=1e-11, **options)
     place = np.array([*solution.displacement, *solution.tilt])
     stiffness = solution.stiffness()
@@ -291,7 +321,10 @@ def test_wrong_ball_bearings_are_refused(given: dict[str, Any], message: str) ->
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"force": (1.0, None, 5.0)}, "force along z must be None: cylindrical rollers carry none"),
+        (
+            {"force": (1.0, None, 5.0)},
+            "force along z must be None: rollers without a contact angle",
+        ),
         ({"force": (1.0, None)}, "force must be 3 numbers or None"),
         ({"force": (math.inf, None, None)}, "force must be finite"),
         (

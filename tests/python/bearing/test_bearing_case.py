@@ -12,7 +12,13 @@ import pytest
 
 import nacre
 from bodies import quiet
-from nacre.bearing import BearingSolution, CylindricalRoller, DeepGrooveBall
+from nacre.bearing import (
+    BearingSolution,
+    CylindricalRoller,
+    DeepGrooveBall,
+    SphericalRoller,
+    TaperedRoller,
+)
 from nacre.case import Case, CaseError
 from support import Capture, command, written
 
@@ -53,6 +59,44 @@ diameter = 11.5e-3
 pitch_diameter = 43.5e-3
 osculation = [0.515, 0.525]
 solve = { force = { z = 1000 }, model = "iso16281" }
+"""
+
+
+TAPERED = """
+[bearing]
+kind = "tapered_roller"
+count = 17
+diameter = 8e-3
+length = 11e-3
+pitch_diameter = 48e-3
+contact_angle = 0.25
+profile = "straight"
+solve = { force = { x = 3000, z = 4000 }, model = "iso16281" }
+life = { edge = "none" }
+
+[sweep]
+store = "study.nc"
+parameters."bearing.contact_angle" = [0.2, 0.25]
+outputs = ["peak_pressure", "reference_life", "loads"]
+"""
+SPHERICAL = """
+[bearing]
+kind = "spherical_roller"
+count = 19
+rows = 2
+diameter = 12e-3
+length = 11e-3
+pitch_diameter = 82e-3
+contact_angle = 0.17
+profile_radius = 46.5e-3
+groove_radius = 47.5e-3
+solve = { force = { x = 20000, z = 2000 }, tilt = { y = 0.01 }, model = "iso16281" }
+life = {}
+
+[sweep]
+store = "study.nc"
+parameters."bearing.profile_radius" = [46e-3, 46.5e-3]
+outputs = ["peak_pressure", "reference_life", "loads"]
 """
 
 
@@ -124,6 +168,57 @@ def test_a_function_makes_a_study_of_bearings() -> None:
         nacre.sweep({"bearing": case(0.0)["bearing"], "load": 1.0}, {"speed": [1.0]})
     with pytest.raises(ValueError, match=r"nacre\.bearing\.BearingSolution"):
         nacre.sweep({"bearing": case(0.0)["bearing"]}, {"speed": [1.0]}, outputs=["approach"])
+
+
+@pytest.mark.parametrize(
+    ("text", "bearing", "elements"),
+    [
+        (
+            TAPERED,
+            TaperedRoller(
+                count=17,
+                diameter=8e-3,
+                length=11e-3,
+                pitch_diameter=48e-3,
+                contact_angle=0.25,
+                profile=None,
+            ),
+            17,
+        ),
+        (
+            SPHERICAL,
+            SphericalRoller(
+                count=19,
+                diameter=12e-3,
+                length=11e-3,
+                pitch_diameter=82e-3,
+                contact_angle=0.17,
+                profile_radius=46.5e-3,
+                groove_radius=47.5e-3,
+            ),
+            38,
+        ),
+    ],
+    ids=["tapered", "spherical"],
+)
+def test_other_rollers_are_solved_and_swept(
+    text: str, bearing: Any, elements: int, tmp_path: Path, capsys: Capture
+) -> None:
+    path, saved = written(tmp_path, text), tmp_path / "bearing.nc"
+    assert Case.read(path).arguments()["bearing"] == bearing
+    assert command("solve", path, "--save", saved) == 0
+    assert "life L10r" in capsys.readouterr().out
+    solution = nacre.load(saved)
+    assert isinstance(solution, BearingSolution)
+    assert solution.bearing == bearing
+    assert command("sweep", path) == 0
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "study.nc") as study:
+        assert study.loads.shape == (2, elements, 2)
+        assert study.peak_pressure.values[1] == pytest.approx(solution.peak_pressure, rel=1e-12)
+        lives = study.reference_life.values
+        assert lives[1] == pytest.approx(solution.reference_life, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -387,8 +387,8 @@ SHAPES: list[tuple[dict[str, Any], nacre.types.Shape]] = [
         nacre.Paraboloid(1, 2, counter_radius_y=-3),
     ),
     (
-        of("roller", flat_length=8, crown_radius=2, counter_radius=-5),
-        nacre.Roller(1, 8, 2, counter_radius=-5),
+        of("roller", flat_length=8, crown_radius=2, counter_radius=-5, apex=30),
+        nacre.Roller(1, 8, 2, counter_radius=-5, apex=30),
     ),
     (
         of("roller", length=9, profile={"kind": "logarithmic", "amplitude": 1e-6, "length": 2}),

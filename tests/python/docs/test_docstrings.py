@@ -143,10 +143,12 @@ def test_its_examples_are_true(name: str) -> None:
         importlib.import_module("nacre.plot.bearing"),  # whose name is a function, too
         nacre.plot.rough,
         nacre.plot.sections,
+        nacre.bearing.balls,
         nacre.bearing.bearings,
         nacre.bearing.film,
         nacre.bearing.iso,
         nacre.bearing.life,
+        nacre.bearing.rollers,
         nacre.bearing.solution,
         nacre.indent.curves,
         nacre.indent.checks,

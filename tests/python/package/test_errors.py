@@ -66,6 +66,7 @@ VALUES = {
     "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
     "Cylinder(-30e-3)": r"radius must be .*raceway or groove use counter_radius.*got -0\.03",
     "Roller(-1.0, 1.0, 1.0)": r"radius must be .*counter_radius.*above 0, got -1",
+    "Roller(1.0, 1.0, 1.0, apex=0.0)": r"apex must be finite and not 0, got 0",
     "Cylinder(5e-3, counter_radius=-4e-3)": r"counter_radius must be .*raceway.*wider.*got -0\.004",
     "Cylinder(5e-3, counter_radius=0.0)": r"counter_radius must be finite, and above 0.*got 0",
     "Sphere(5e-3, counter_radius_x=-5e-3)": r"counter_radius_x must be .*groove.*got -0\.005",

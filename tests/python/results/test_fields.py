@@ -52,7 +52,7 @@ MADE: dict[str, list[dict[str, Any]]] = {
     "Cylinder": [{"radius": 5e-3, "counter_radius": 6e-2}],
     "Roller": [
         {"radius": 5e-3, "flat_length": 8e-3, "crown_radius": 7.5, "length": 9e-3},
-        {"radius": 5e-3, "profile": PROFILE, "counter_radius": 6e-2},
+        {"radius": 5e-3, "profile": PROFILE, "counter_radius": 6e-2, "apex": 0.1},
     ],
     "FlatPunch": [{"radius": 1e-3}],
     "HeightMap": [

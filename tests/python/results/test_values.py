@@ -67,6 +67,7 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "barrel on a ring": nacre.Paraboloid(5e-3, 1.0, counter_radius_x=-1e-2 / 3 * 2),
     "cylinder on a ring": nacre.Cylinder(5e-3, counter_radius=1e-1 / 3),
     "roller in a raceway": nacre.Roller(5e-3, 19.13e-3, 7.5, counter_radius=-0.1 / 3),
+    "tapered roller": nacre.Roller(5e-3, 19.13e-3, 7.5, apex=0.4 / 3),
     "point contact": nacre.hertz.Point(5e-3, 1e11 / 3, 10.0),
     "line contact": nacre.hertz.Line(5e-3, 1e11 / 3, 1e4 / 3),
     "ellipse": nacre.hertz.Ellipse(5e-3, None, 1e11 / 3, 10.0, counter_radius_y=0.1 / 3),

@@ -1,0 +1,197 @@
+"""Ball bearings by what a catalogue or a drawing says of them; radii of contacts follow."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import nacre._core as core
+from nacre.bearing.bearings import Solvable
+from nacre.bearing.geometry import RINGS, Ring, above, millimetres, pair
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Balls(Solvable):
+    """Bearing with one row of balls in grooves."""
+
+    osculation: tuple[float, float] = (0.52, 0.53)
+    """Radii of the grooves of inner and outer ring over the diameter of a ball."""
+    rating_factor: float = 1.3
+    """Factor b_m of ISO 281 for the rating."""
+
+    rolls: ClassVar[bool] = False
+    leans: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        super().__post_init__()
+        self._check_given_pitch()
+        object.__setattr__(self, "osculation", pair("osculation", self.osculation))
+        for value in self.osculation:
+            above("osculation", value, 0.5)
+        self._check_room()
+
+    @property
+    def between(self) -> float:
+        """Distance of the centres of both grooves of unloaded contacts [m]."""
+        return (sum(self.osculation) - 1) * self.diameter
+
+    @property
+    @abstractmethod
+    def free_angle(self) -> float:
+        """Contact angle at which the balls touch both rings without load [rad]."""
+
+    @property
+    def mass(self) -> float:
+        """Mass of a ball [kg]."""
+        return self.density * math.pi / 6 * self.diameter**3
+
+    @property
+    def radii(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Signed radii of the raceways of inner and outer ring, along x and y [m]."""
+        groove = [-f * self.diameter for f in self.osculation]
+        inner, outer = self.raceways
+        return (groove[0], inner), (groove[1], -outer)
+
+    def shape(self, ring: Ring) -> core.Shape:
+        """Return the gap between a ball and a groove.
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the groove.
+
+        Returns
+        -------
+        Shape
+            Shape for `nacre.solve`: x across the groove, y in the direction of rolling.
+        """
+        along, rolling = self.radii[RINGS.index(ring)]
+        return core.Paraboloid(self.diameter / 2, self.diameter / 2, along, rolling)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeepGrooveBall(_Balls):
+    """Deep-groove ball bearing. Displacements count from the position in its middle.
+
+    Parameters
+    ----------
+    count : int
+        Number of balls.
+    diameter : float
+        Diameter D of a ball [m].
+    pitch_diameter : float
+        Diameter d_m of the circle of the balls' centres [m].
+    osculation : tuple of float, optional
+        Radii of the grooves of inner and outer ring over the diameter of a ball, above 0.5.
+    clearance : float, optional
+        Diametral clearance [m], below 0 with preload; 0 by default.
+    element, inner, outer : HalfSpace or Elastic, optional
+        Bodies of balls and rings; steel with E = 210 GPa by default.
+    capacity : float, optional
+        Dynamic load rating C_r [N]; by default that of ISO 281.
+    rating_factor : float, optional
+        Factor b_m of ISO 281.
+    density : float, optional
+        Density of the balls [kg/m³].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the rings do not hold the balls.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    >>> solution = bearing.solve(force=(1000.0, 0.0, None), model="iso16281")
+    >>> round(float(solution.loads.max()))
+    620
+    """
+
+    kind: ClassVar[str] = "deep_groove_ball"
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        super().__post_init__()
+        if self.play >= 2 * self.between:
+            raise ValueError(
+                f"clearance must be below twice the distance of the grooves' centres, "
+                f"{millimetres(2 * self.between)}, got {millimetres(self.play)}"
+            )
+
+    @property
+    def free_angle(self) -> float:
+        """Contact angle at which the balls touch both rings without load [rad]."""
+        return math.acos(min(1.0, 1 - self.play / (2 * self.between)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class AngularContactBall(_Balls):
+    """Single-row angular contact ball bearing. Positive z presses the inner ring into contact.
+
+    Parameters
+    ----------
+    count : int
+        Number of balls.
+    diameter : float
+        Diameter D of a ball [m].
+    pitch_diameter : float
+        Diameter d_m of the circle of the balls' centres [m].
+    contact_angle : float
+        Contact angle without load [rad], above 0 and below π/2.
+    osculation : tuple of float, optional
+        Radii of the grooves of inner and outer ring over the diameter of a ball, above 0.5.
+    element, inner, outer : HalfSpace or Elastic, optional
+        Bodies of balls and rings; steel with E = 210 GPa by default.
+    capacity : float, optional
+        Dynamic load rating C_r [N]; by default that of ISO 281.
+    rating_factor : float, optional
+        Factor b_m of ISO 281.
+    density : float, optional
+        Density of the balls [kg/m³].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the rings do not hold the balls.
+
+    Examples
+    --------
+    >>> import math
+    >>> from nacre.bearing import AngularContactBall
+    >>> bearing = AngularContactBall(
+    ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=math.radians(25)
+    ... )
+    >>> solution = bearing.solve(force=(0.0, 0.0, 2000.0), model="iso16281")
+    >>> bool(solution.contact_angles[0, 0] > math.radians(25))
+    True
+    """
+
+    contact_angle: float
+    """Contact angle without load [rad]."""
+
+    kind: ClassVar[str] = "angular_contact_ball"
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        above("contact_angle", self.contact_angle)
+        if self.contact_angle >= math.pi / 2:
+            raise ValueError(f"contact_angle must be below π/2, got {self.contact_angle!r}")
+        if self.clearance is not None:
+            raise ValueError(
+                "clearance must not be given: the contact angle says where balls touch"
+            )
+        super().__post_init__()
+
+    @property
+    def nominal_angle(self) -> float:
+        """Nominal contact angle α [rad]."""
+        return self.contact_angle
+
+    @property
+    def free_angle(self) -> float:
+        """Contact angle at which the balls touch both rings without load [rad]."""
+        return self.contact_angle
