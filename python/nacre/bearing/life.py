@@ -322,6 +322,37 @@ def _nodes(first: float, last: float) -> tuple[Array, Array]:
     return depths, weights * half * depths
 
 
+def _ranges(
+    body: core.HalfSpace, models: Mapping[int | str, Model], depth: float
+) -> list[tuple[Model, float, float]]:
+    """Return the ranges of depth of each model, from the surface down, to some `depth` at least.
+
+    Layers that differ in nothing are one range, as their stress has no kink between them.
+    """
+    faces = [0.0, *body.interfaces]
+    faces.append(max(depth, 2 * faces[-1]))
+    names: list[int | str] = [*range(len(body.layers)), "substrate"]
+    for layer in models:
+        if layer not in names:
+            told = ", ".join(map(repr, names))
+            raise ValueError(f"model must have layers among {told}, got {layer!r}")
+    materials = [*(layer.material for layer in body.layers), body.substrate]
+    found: list[tuple[Model, float, float]] = []
+    for k, name in enumerate(names):
+        if (one := models.get(name)) is None:
+            continue
+        top, bottom = faces[k], faces[k + 1]
+        if (
+            found
+            and (found[-1][0], found[-1][2]) == (one, top)
+            and materials[k - 1] == materials[k]
+            and body.layers[k - 1].interface == "bonded"
+        ):
+            top = found.pop()[1]
+        found.append((one, top, bottom))
+    return found
+
+
 def _half_width(solution: Solution) -> float:
     """Return half of the contact's width in the direction of rolling [m]."""
     low, high = solution.contact_extent[1]
@@ -379,19 +410,9 @@ def stress_volume(
     if len(slopes) > 1:
         raise ValueError(f"models must have the same slope e, got {sorted(slopes)}")
     (slope,) = slopes
-    faces = [0.0, *plan.body.interfaces]
-    deepest = faces[-1] + DEEPEST * half
-    parts: dict[int | str, tuple[float, float]] = {
-        k: (faces[k], faces[k + 1]) for k in range(len(faces) - 1)
-    }
-    depths: dict[int | str, tuple[float, float]] = {**parts, "substrate": (faces[-1], deepest)}
     total, change, largest = 0.0, 0.0, 0.0
     across = 1.0 if line else solution.grid.spacing[0]
-    for layer, one in models.items():
-        if layer not in depths:
-            names = ", ".join(map(repr, depths))
-            raise ValueError(f"model must have layers among {names}, got {layer!r}")
-        top, bottom = depths[layer]
+    for one, top, bottom in _ranges(plan.body, models, DEEPEST * half):
         begin = SHALLOWEST * half
         ranges = [(max(top, begin), bottom)]
         if top < begin:

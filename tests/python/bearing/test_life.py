@@ -122,11 +122,9 @@ def test_layers_of_the_substrate_change_nothing() -> None:
     for model in (LundbergPalmgren(), Zaretsky()):
         ratio = stress_volume(two, model).integral / stress_volume(one, model).integral
         assert ratio == pytest.approx(1.0, rel=1e-6)  # the bar
-    model = Zaretsky()
-    parts = stress_volume(two, {0: model, 1: model, "substrate": model})
-    bare = stress_volume(POINT[0], model)
-    # Gauss points in three ranges for those in one.
-    assert parts.integral == pytest.approx(bare.integral, rel=2e-6)
+        parts = stress_volume(two, {0: model, 1: model, "substrate": model})
+        bare = stress_volume(POINT[0], model)
+        assert parts.integral == pytest.approx(bare.integral, rel=1e-6)  # the bar
     assert parts.coating_tension > 0 or parts.interface_shear > 0
     assert bare.interface_shear == 0
 
