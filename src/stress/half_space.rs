@@ -192,13 +192,14 @@ impl HalfSpacePlan {
     pub(super) fn uncertainties(
         &self,
         places: &[Place],
-        friction: [f64; 2],
+        (friction, uniform): ([f64; 2], bool),
         window: &Window,
     ) -> Option<Array1<f64>> {
         let subcell = &self.solved.as_ref()?.subcell;
         let steps = subcell.steps(window);
         let error = |place: &Place| {
-            let [along, across] = subcell.uncertainty(&self.body, place, friction, steps);
+            let [along, across] =
+                subcell.uncertainty(&self.body, place, (friction, uniform), steps);
             along.max(across)
         };
         Some(places.iter().map(error).collect())
@@ -213,7 +214,7 @@ impl HalfSpacePlan {
     ) -> [f64; 2] {
         let of = |solved: &SolvedPressure| {
             let steps = solved.subcell.steps(window);
-            solved.subcell.uncertainty(&self.body, place, friction, steps)
+            solved.subcell.uncertainty(&self.body, place, (friction, false), steps)
         };
         self.solved.as_ref().map_or([0.0; 2], of)
     }

@@ -249,15 +249,18 @@ impl StressPlan {
     }
 
     /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`: from the size of the cells, and of
-    /// what free ends add. None where neither is known.
+    /// what free ends add. None where neither is known. Known tractions are uniform over cells unless they are taken
+    /// `within` them.
     pub(super) fn uncertainties(
         &self,
         places: &[Place],
         friction: [f64; 2],
         window: &Window,
+        within: bool,
     ) -> Option<Array1<f64>> {
+        let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
-        let cells = self.whole.uncertainties(places, friction, window);
+        let cells = self.whole.uncertainties(places, (friction, uniform), window);
         let Some(ends) = &self.ends else {
             return cells;
         };
@@ -510,7 +513,8 @@ impl<'a> Request<'a> {
         }
         let done = self.fill(plan, &mut fields, progress);
         let window = self.points.window();
-        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
+        let within = self.is_point() && self.known_point(plan).is_some();
+        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window, within);
         self.result(fields, done, uncertainty)
     }
 
@@ -599,17 +603,19 @@ impl<'a> Request<'a> {
             let parts = found.iter().zip(&weights);
             value[0] = parts.map(|(components, weight)| weight * components[k]).sum();
         }
-        let known = |point: &CellPoint| {
-            let solved = evaluation.plan.whole.solved.as_ref();
-            solved.is_some_and(|solved| solved.subcell.has_point(point))
-        };
-        if let Some(point) = self.points.between().filter(known)
+        if let Some(point) = self.known_point(evaluation.plan)
             && let Some(at) = evaluation.point_stress(place)
         {
             let found = evaluation.at_point(place, &at, &point, progress)?;
             here.iter_mut().zip(found).for_each(|(value, found)| value[0] = found);
         }
         ControlFlow::Continue(())
+    }
+
+    /// The single point, where it lies between centres and the pressure around it is known within cells.
+    fn known_point(&self, plan: &StressPlan) -> Option<CellPoint> {
+        let solved = plan.whole.solved.as_ref()?;
+        self.points.between().filter(|point| solved.subcell.has_point(point))
     }
 
     /// The result of the first `done` places.

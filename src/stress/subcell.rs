@@ -129,12 +129,12 @@ impl SubcellStress {
     }
 
     /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells along x and along y, where the
-    /// pressure has these steps.
+    /// pressure has these steps; with the friction, whether its tractions are uniform over cells.
     pub(super) fn uncertainty(
         &self,
         body: &HalfSpace,
         place: &Place,
-        friction: [f64; 2],
+        friction: ([f64; 2], bool),
         steps: LocalSteps,
     ) -> [f64; 2] {
         self.uncertainty.at(body, place, friction, steps)

@@ -188,7 +188,8 @@ pub(super) fn place_of(body: &HalfSpace, which: usize, peak: Peak) -> Place {
     let top: f64 = body.layers()[..layer.min(count)].iter().map(Layer::thickness).sum();
     let below_top = if is_below { 0.0 } else { (depth - top).max(0.0) };
     let own = body.layers().get(layer).map(Layer::material);
-    let material = own.or(substrate_material(body)).unwrap_or(body.layers()[count - 1].material());
+    let material =
+        own.or(substrate_material(body)).unwrap_or_else(|| body.layers()[count - 1].material());
     Place { layer, below_top, depth, material }
 }
 
@@ -513,14 +514,15 @@ impl<'a, 'b> Planes<'a, 'b> {
     fn peak(&self, Largest { value, cell }: Largest, place: &Place) -> Peak {
         let ny = self.plan.whole.grid.shape()[1];
         let centre = CellPoint { cell: [cell / ny, cell % ny], within: [0.0; 2] };
-        self.peak_at(value, &centre, place)
+        self.peak_at(value, &centre, place, false)
     }
 
-    fn peak_at(&self, value: f64, point: &CellPoint, place: &Place) -> Peak {
+    /// A peak at a point, whose stress is that of loads `within` cells or that of the cell.
+    fn peak_at(&self, value: f64, point: &CellPoint, place: &Place, within: bool) -> Peak {
         let [x, y] = self.plan.position(point);
         let window = point.cell.map(|cell| cell..cell + 1);
         let places = std::slice::from_ref(place);
-        let error = self.plan.uncertainties(places, self.friction, &window);
+        let error = self.plan.uncertainties(places, self.friction, &window, within);
         Peak { value, position: [x, y, place.depth], uncertainty: error.map(|errors| errors[0]) }
     }
 
@@ -609,7 +611,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
         for (which, value, point) in found {
             if value > peaks[which].value {
-                peaks[which] = self.peak_at(value, &point, place);
+                peaks[which] = self.peak_at(value, &point, place, true);
             }
         }
         ControlFlow::Continue(peaks)

@@ -256,7 +256,7 @@ class Rolling:
         points = self.plan.edge
         if self.x is not None:
             points = points[np.abs(points[:, 0] - self.x) <= self.grid.spacing[0]]
-        if self.known or not len(points):  # tractions have edges of their own, of stick and slip
+        if not len(points):
             return states
         ends = points[[points[:, 1].argmin(), points[:, 1].argmax()]]
         # Beside the edge tractions are means over cells, and the other stresses those of points.

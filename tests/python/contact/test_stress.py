@@ -126,6 +126,29 @@ def test_friction_is_asked_for_its_direction(solution: nacre.Solution) -> None:
         nacre.Solution.from_dict(state).stress(0.0, friction=0.1)
 
 
+@pytest.mark.parametrize("cells", [64, 128])
+def test_the_uncertainty_of_known_tractions_holds_at_the_surface(cells: int) -> None:
+    """In full slip, against tractions that follow the pressure within cells."""
+    grid = nacre.Grid(shape=(cells, cells), size=(2.4e-4, 2.4e-4))
+    slid = nacre.slide(BALL, STEEL, STEEL, load=10.0, grid=grid, friction=0.3, shift=(1e-4, 0.0))
+    assert slid.report.full_slip
+    within = slid.normal.stress(0.0, friction=0.3, direction=(1.0, 0.0))
+    uniform = slid.stress(0.0)
+    assert within.uncertainty is not None
+    assert uniform.uncertainty is not None
+    largest = max(
+        float(np.abs(uniform.components[name] - within.components[name]).max())
+        for name in ("xx", "yy", "xy")
+    )
+    assert largest > 3.0 * within.uncertainty[0]
+    assert largest <= uniform.uncertainty[0] < 3.0 * largest
+    # Between centres they follow the pressure within cells.
+    x, y = grid.x[cells // 2], grid.y[cells // 2] + 0.25 * grid.spacing[1]
+    one = slid.stress(0.0, x=float(x), y=float(y))
+    assert one.uncertainty is not None
+    assert one.uncertainty[0] < 0.2 * uniform.uncertainty[0]
+
+
 def test_a_line_contact_slides_across_its_strips_and_has_the_same_datum() -> None:
     grid = nacre.Grid.line(64, 3e-4)
     solution = nacre.solve(ROD, COATED, grid=grid, load=2e4)
@@ -435,6 +458,22 @@ def test_refined_extremes_agree_with_a_finer_grid() -> None:
     assert error <= 0.05 * shear
     expected, own = fine.interfaces[0].shear[0], fine.interfaces[0].uncertainty["shear"]
     assert abs(shear - expected) <= error + own
+
+
+@pytest.mark.parametrize("body", ["body", "counterbody"])
+def test_bare_bodies_on_coarse_cells_are_refined(body: Any) -> None:
+    """Friction at the surface, on cells that do not resolve it; Hertz' contact of one modulus."""
+    grid = nacre.Grid(shape=(16, 16), size=(3e-4, 3e-4))
+    coarse = nacre.solve(BALL, STEEL, STEEL, grid=grid, load=10.0)
+    sliding = {"friction": 0.2, "direction": (0.0, 1.0), "body": body}
+    (plain,) = coarse.stress_summary(**sliding).layers
+    (refined,) = coarse.stress_summary(**sliding, refine=0.02).layers
+    fine = nacre.Grid(shape=(256, 256), size=(3e-4, 3e-4))
+    resolved = nacre.solve(BALL, STEEL, STEEL, grid=fine, load=10.0)
+    (expected,) = resolved.stress_summary(**sliding).layers
+    assert refined.uncertainty["tension"] < 0.5 * plain.uncertainty["tension"]
+    value, error = refined.tension[0], refined.uncertainty["tension"]
+    assert abs(value - expected.tension[0]) <= error + expected.uncertainty["tension"]
 
 
 def test_refine_refuses_what_it_cannot_refine() -> None:
