@@ -255,7 +255,7 @@ WRONG: dict[str, tuple[Any, type[Exception], str]] = {
     ),
     "layer": (lambda: assessed(shear_yield={"TiN": 1.0}), ValueError, "keys of shear_yield"),
     "friction": (lambda: assessed(friction=-0.1), ValueError, "friction must be .*at least 0"),
-    "NaN": (lambda: assessed(friction=np.nan), ValueError, "friction must be finite"),
+    "NaN": (lambda: assessed(friction=np.nan), ValueError, "friction must be a number, finite"),
     "depth": (lambda: assessed(depths=[-1.0]), ValueError, "depths must be finite and at least 0"),
     "no depth": (lambda: assessed(depths=[]), ValueError, "depths must be .*one or more"),
     "rule": (lambda: assessed(rule="tresca"), ValueError, "rule must be 'von_mises'"),
