@@ -49,6 +49,11 @@ class _Balls(Solvable):
         return self.density * math.pi / 6 * self.diameter**3
 
     @property
+    def own_radii(self) -> tuple[float, float]:
+        """Radii of a ball along x and y [m]."""
+        return self.radius, self.radius
+
+    @property
     def radii(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Signed radii of the raceways of inner and outer ring, along x and y [m]."""
         groove = [-f * self.diameter for f in self.osculation]
@@ -69,7 +74,7 @@ class _Balls(Solvable):
             Shape for `nacre.solve`: x across the groove, y in the direction of rolling.
         """
         along, rolling = self.radii[RINGS.index(ring)]
-        return core.Paraboloid(self.diameter / 2, self.diameter / 2, along, rolling)
+        return core.Paraboloid(*self.own_radii, along, rolling)
 
 
 @dataclass(frozen=True, kw_only=True)

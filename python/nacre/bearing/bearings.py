@@ -59,7 +59,8 @@ class Solvable(Bearing):
             ellipses of balls.
         cells : tuple of int, optional
             Cells of a contact along the axis of the element and across it; by default (120, 48) of
-            rollers, a multiple of 40 laminae, and (96, 96) of balls.
+            rollers, a multiple of 40 laminae, and (96, 96) of balls. Grids are as long as a roller,
+            and those of balls and barrels as the contact needs.
         tolerance : float, optional
             Largest mismatch of forces and moments, relative to those of the elements.
         max_iterations : int, optional

@@ -101,10 +101,7 @@ class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
     def __init__(self, bearing: Any) -> None:
-        self.unit = [
-            Ellipse(bearing.diameter / 2, bearing.diameter / 2, modulus, 1.0, *radii)
-            for modulus, radii in zip(bearing.modulus, bearing.radii, strict=True)
-        ]
+        self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
 
     def pressures(self, loads: Array) -> Array:
@@ -120,23 +117,50 @@ class Hertzian:
         return Reaction(0.4 * self.spring * deflection**2.5, force, stiffness)
 
 
+def ellipse_of(bearing: Any, ring: Ring, load: float) -> Ellipse:
+    """Return Hertz's contact of a ball or a barrel that carries a load [N]."""
+    number = RINGS.index(ring)
+    (own_x, own_y), (x, y) = bearing.own_radii, bearing.radii[number]
+    return Ellipse(own_x, own_y, bearing.modulus[number], load, x, y)
+
+
 def grid_of(bearing: Any, ring: Ring, line: float, cells: tuple[int, int]) -> core.Grid:
     """Return a grid for a contact that carries a load.
 
-    That of a roller spans its length. `line` is the largest load per length [N/m] of a roller, and
-    the load of a ball [N].
+    That of a roller spans its length, or of a barrel what Hertz's ellipse needs of it. `line` is
+    the largest load per length [N/m] of a roller, and the load of a ball [N].
     """
-    number = RINGS.index(ring)
-    if bearing.rolls:
-        ends = np.array([-0.5, 0.0, 0.5]) * bearing.length
-        curvature = float(bearing.curvature(ring, ends).min())
-        half = math.sqrt(4 * line / (math.pi * bearing.modulus[number] * curvature))
-        return core.Grid(cells, (bearing.length, 2 * WIDER * half))
-    along, rolling = bearing.radii[number]
-    radius = bearing.diameter / 2
-    ellipse = Ellipse(radius, radius, bearing.modulus[number], line, along, rolling)
-    a, b = ellipse.semi_axes
-    return core.Grid(cells, (2 * WIDER * a, 2 * WIDER * b))
+    if not bearing.rolls:
+        a, b = ellipse_of(bearing, ring, line).semi_axes
+        return core.Grid(cells, (2 * WIDER * a, 2 * WIDER * b))
+    ends = np.array([-0.5, 0.0, 0.5]) * bearing.length
+    curvature = float(bearing.curvature(ring, ends).min())
+    modulus = bearing.modulus[RINGS.index(ring)]
+    half = math.sqrt(4 * line / (math.pi * modulus * curvature))
+    length = bearing.length
+    if bearing.aligns:
+        # In the middle of an ellipse the load per length is 3 W/(4 a), and a = c W^(1/3).
+        unit = ellipse_of(bearing, ring, 1.0).semi_axes[0]
+        length = min(length, 2 * WIDER * unit * math.sqrt(4 * unit * line / 3))
+    return core.Grid(cells, (length, 2 * WIDER * half))
+
+
+def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
+    """Return loads [N] and largest pressures [Pa] of the laminae of a roller in a contact.
+
+    A cell that lies in two laminae gives each its part of the load, and both its pressure.
+    """
+    grid = contact.grid
+    edges = np.linspace(-0.5, 0.5, grid.shape[0] + 1) * grid.size[0]
+    sums = np.concatenate([[0.0], np.cumsum(contact.line_load * grid.spacing[0])])
+    bounds = np.linspace(-0.5, 0.5, LAMINAE + 1) * bearing.length
+    loads = np.diff(np.interp(bounds, edges, sums))
+    pressures, peaks = np.zeros(LAMINAE), contact.pressure.max(1)
+    inner = 1e-6 * grid.spacing[0]
+    for side in (edges[:-1] + inner, edges[1:] - inner):
+        lamina = np.floor((side / bearing.length + 0.5) * LAMINAE).astype(int)
+        np.maximum.at(pressures, lamina, peaks)
+    return loads, pressures
 
 
 def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
@@ -213,7 +237,8 @@ class Solved:
         """Return whether a contact ends within its grid, but for the ends of a roller."""
         inside = solution.in_contact
         across = inside[:, 0].any() or inside[:, -1].any()
-        along = not self.bearing.rolls and (inside[0].any() or inside[-1].any())
+        whole = self.bearing.rolls and solution.grid.size[0] == self.bearing.length
+        along = not whole and (inside[0].any() or inside[-1].any())
         return not (across or along)
 
     def _widen(self) -> None:

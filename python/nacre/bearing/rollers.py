@@ -548,6 +548,17 @@ class SphericalRoller(Solvable):
         return self.groove_radius or outer, outer
 
     @property
+    def own_radii(self) -> tuple[float, float]:
+        """Radii of a roller in its middle, along x and y [m]."""
+        return self.profile_radius, self.radius
+
+    @property
+    def radii(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Signed radii of the raceways of inner and outer ring, along x and y [m]."""
+        inner, outer = self.raceways
+        return (-self.grooves[0], inner), (-self.grooves[1], -outer)
+
+    @property
     def outward(self) -> tuple[tuple[float, float], float]:
         """Parts of the centrifugal force: on an element's coordinates, and on the ring along z."""
         sin, cos = math.sin(self.contact_angle), math.cos(self.contact_angle)

@@ -16,7 +16,7 @@ from nacre._tools.progress import lasting
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import Bearing, above, pair
 from nacre.bearing.iso import hertz_pressures
-from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, law
+from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, binned, law
 from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model
 from nacre.contact.solution import Solution
 
@@ -202,9 +202,7 @@ def _found(
         for key, contact in contacts.items():
             peaks[key] = contact.peak_pressure
             if laminae is not None and pressures is not None:
-                width = contact.grid.spacing[0]
-                laminae[key] = contact.line_load.reshape(LAMINAE, -1).sum(1) * width
-                pressures[key] = contact.pressure.max(1).reshape(LAMINAE, -1).max(1)
+                laminae[key], pressures[key] = binned(bearing, contact)
     elif isinstance(problem.law, Slices):
         laminae = problem.law.loads(places)
         pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))

@@ -22,6 +22,7 @@ from nacre.bearing import (
     rating,
 )
 from nacre.bearing.iso import reference_life
+from nacre.bearing.laws import Solved, binned
 
 SIZE: dict[str, Any] = {
     "count": 19,
@@ -196,6 +197,96 @@ def test_centrifugal_force_is_shared_with_the_ribs() -> None:
     outer = solution.loads[:, 1] @ np.sin(solution.contact_angles[:, 1])
     assert outer == pytest.approx(2e3, rel=1e-4)
     assert solution.force[2] == pytest.approx(2e3, rel=1e-8)
+
+
+LIGHT = (500.0, 0.0, 0.0)
+
+
+def hertz(bearing: SphericalRoller, ring: int, load: float) -> nacre.hertz.Ellipse:
+    """Return the contact at the middle of a barrel, of radii that are written anew."""
+    modulus = 210e9 / (1 - 0.3**2) / 2
+    sphere = 41e-3 / math.cos(ANGLE) + 6e-3
+    rolling = (41e-3 / math.cos(ANGLE) - 6e-3, -sphere)[ring]
+    return nacre.hertz.Ellipse(46.5e-3, 6e-3, modulus, load, -sphere, rolling)
+
+
+def test_light_barrels_are_hertz_ellipses() -> None:
+    bearing = spherical(free_ends=False)
+    solution = bearing.solve(force=LIGHT, cells=(80, 32))
+    assert solution.lamina_loads is not None
+    assert solution.grid_sizes is not None
+    bounds = np.linspace(-5.5e-3, 5.5e-3, 41)
+    for ring in range(2):
+        load = float(solution.loads[0, ring])
+        ellipse = hertz(bearing, ring, load)
+        a, _ = ellipse.semi_axes
+        # Measured: 1e-3 and 3e-4.
+        assert solution.peak_pressures[0, ring] == pytest.approx(ellipse.peak_pressure, rel=3e-3)
+        assert solution.approaches[0, ring] == pytest.approx(ellipse.approach, rel=1e-3)
+        assert 2 * a < solution.grid_sizes[0, ring, 0] < 5.3e-3
+        # Loads per length are those of a parabola, and laminae their integrals.
+        part = np.clip(bounds / a, -1.0, 1.0)
+        expected = np.diff(0.75 * load * (part - part**3 / 3))
+        found = solution.lamina_loads[0, ring]
+        np.testing.assert_allclose(found, expected, atol=2e-3 * expected.max())
+        assert found.sum() == pytest.approx(load, rel=1e-12)
+        # The largest pressure of a lamina is that nearest to the middle, or of a cell across there.
+        nearer = np.minimum(np.abs(bounds[1:]), np.abs(bounds[:-1]))
+        cell = solution.grid_sizes[0, ring, 0] / 80
+        low, high = (
+            ellipse.peak_pressure * np.sqrt(np.maximum(1 - (np.maximum(x, 0.0) / a) ** 2, 0.0))
+            for x in (nearer + cell / 2, nearer - cell / 2)
+        )
+        assert solution.lamina_pressures is not None
+        pressures = solution.lamina_pressures[0, ring]
+        bar = 3e-3 * ellipse.peak_pressure
+        inside = nearer + cell < a
+        assert (pressures >= low - bar)[inside].all()
+        assert (pressures <= high + bar)[inside].all()
+        np.testing.assert_array_equal(pressures > 0, found > 0)
+    assert solution.edge_pressure == 0.0
+
+
+def test_ends_beyond_the_grid_are_free() -> None:
+    bearing = spherical()
+    solution = bearing.solve(force=LIGHT, cells=(80, 32))
+    contact = solution.contact(0, "outer")
+    assert contact is not None
+    assert contact.grid.size[0] < 0.5 * bearing.length
+    body, barrel = contact.report.body, contact.report.counterbody
+    assert isinstance(barrel, nacre.HalfSpace)
+    assert barrel.ends == (-5.5e-3, 5.5e-3)
+    whole = nacre.Grid((240, 48), (11e-3, 1.2e-4))
+    place = float(solution.approaches[0, 1])
+    wide = nacre.solve(bearing.shape("outer"), body, barrel, grid=whole, approach=place)
+    assert contact.load == pytest.approx(wide.load, rel=3e-3)
+    # Free ends take 5 % of the load at this approach.
+    alone = (place / hertz(bearing, 1, 1.0).approach) ** 1.5
+    assert contact.load < 0.97 * alone
+    laminae, pressures = binned(bearing, wide)
+    # Six cells a lamina, as those of heavy barrels are.
+    cells = wide.line_load.reshape(40, 6) * wide.grid.spacing[0]
+    np.testing.assert_allclose(laminae, cells.sum(1), rtol=1e-12, atol=1e-15 * wide.load)
+    np.testing.assert_array_equal(pressures, wide.pressure.reshape(40, -1).max(1))
+    assert solution.lamina_loads is not None
+    short = solution.lamina_loads[0, 1]
+    np.testing.assert_allclose(short, laminae, atol=3e-3 * laminae.max())
+
+
+def test_barrels_that_outgrow_their_grids_are_solved_on_longer_ones() -> None:
+    bearing = spherical(free_ends=False)
+    lines = np.full((38, 2), 1.0)  # N/m: a thousandth of what comes
+    law = Solved(bearing, lines, (40, 24), 1e-9, 1)
+    light = law.sizes()[0, 0, 0]
+    load = 5e3
+    places = np.full((38, 2, 2), -1e-6)
+    places[..., 1] = 0.0
+    places[0, 0, 0] = hertz(bearing, 0, load).approach
+    found = law(places)
+    assert light < 1e-3
+    assert law.sizes()[0, 0, 0] == pytest.approx(bearing.length, rel=1e-15)
+    # Hertz's ellipse of 5 kN is 14 mm long, longer than the barrel.
+    assert 0.7 * load < found.force[0, 0, 0] < load
 
 
 def test_rating_counts_rows() -> None:
