@@ -70,15 +70,15 @@ def added(nu, p):
     return np.linalg.solve(np.eye(len(t)) - t @ t, t @ (t @ p))
 
 
-def displaced(x, s):
-    """Integral of [K0(|x - t|) + K0(x + t)] S(t) dt."""
-    total, values = 0.0, s.reshape(NODES.shape)
+def displacing(x):
+    """Weights of S at the nodes in the integral of [K0(|x - t|) + K0(x + t)] S(t) dt."""
+    found = np.zeros(NODES.shape)
     bary = np.array([1 / np.prod(node - np.delete(X, k)) for k, node in enumerate(X)])
     fine, weights = np.polynomial.legendre.leggauss(16)
     for panel, (low, high) in enumerate(zip(np.exp(EDGES[:-1]), np.exp(EDGES[1:]), strict=True)):
         if x == 0 or not low / 3 < x < 3 * high:
             kernel = k0(np.abs(x - NODES[panel])) + k0(x + NODES[panel])
-            total += WEIGHTS[panel] @ (kernel * values[panel])
+            found[panel] = WEIGHTS[panel] * kernel
             continue
         middle = min(max(x, low), high)  # pieces that shrink towards x
         shrink = np.concatenate([[0.0], 0.25 ** np.arange(22, -1, -1)])
@@ -90,10 +90,15 @@ def displaced(x, s):
             away = place[..., None] - X
             away[away == 0] = 1e-300
             share = bary / away
-            s_at = (share @ values[panel]) / share.sum(-1)
             near = np.maximum(np.abs(x - at), 1e-300)
-            total += (rule * (k0(near) + k0(np.maximum(x + at, 1e-300))) * s_at).sum()
-    return total
+            rule = rule * (k0(near) + k0(np.maximum(x + at, 1e-300))) / share.sum(-1)
+            found[panel] += np.tensordot(rule, share, 2)
+    return found.ravel()
+
+
+def displaced(x, s):
+    """Integral of [K0(|x - t|) + K0(x + t)] S(t) dt."""
+    return displacing(x) @ s
 
 
 def from_zero(x):
