@@ -138,6 +138,31 @@ def indentations():
         yield case(row["name"], given, asked, 1e-11)
 
 
+YIELDS = {
+    "shakedown": "shakedown, von Mises",
+    "shakedown_tresca_in_plane": "shakedown, Tresca in the plane",
+    "first_yield": "first yield, von Mises",
+}
+
+
+def shakedowns():
+    b, p = 1e-4, 1e9
+    for row in read("fatigue/shakedown.json")["cases"]:
+        ratio, h, nu, mu = (row[key] for key in ("E1_over_E2", "h_over_b", "nu", "mu"))
+        given = coat(ratio, h * b, nu)
+        if not h:
+            del given["coating"]
+        given |= {"half_width_m": b, "peak_pressure_Pa": p, "friction": mu}
+        asked = {
+            f"p0/k {text}, {part}": row[part][key]
+            for part in ("coating", "substrate")
+            if part in row
+            for key, text in YIELDS.items()
+        }
+        name = f"ratio {ratio:g}, h/b {h:g}, mu {mu:g}" if h else f"bare, mu {mu:g}"
+        yield case(name, given, asked, 3e-6)
+
+
 SETS = {
     "coated_spheres": (
         spheres,
@@ -173,6 +198,16 @@ SETS = {
         indentations,
         "axisym.json",
         "Rigid tip on a coating, no friction, at given contact radii",
+    ),
+    "shakedown": (
+        shakedowns,
+        "fatigue/shakedown.json",
+        "Half-plane, bare or with a bonded coating, over which the given pressure "
+        "p0 sqrt(1 - y^2/b^2) and the traction friction * pressure along y pass steadily, plane "
+        "strain: largest p0/k for which each material shakes down or does not yield, k its yield "
+        "stress in pure shear. von Mises: sqrt(J2) <= k; Tresca in the plane: "
+        "hypot((s_yy - s_zz)/2, s_yz) <= k. Shakedown: with the best residual stresses s_yy(z) "
+        "and s_xx(z); in the plane, s_yy(z) alone",
     ),
 }
 

@@ -32,6 +32,7 @@ QUICK: list[tuple[str, dict[str, list[int]]]] = [
     ("springs", {"cases": [0, 9]}),
     ("stress_disc", {"cases": [2]}),
     ("stress_patch", {"cases": [0, 10, 27]}),
+    ("shakedown", {"cases": [0, 8, 14]}),
     ("quarter_space_wave", {"cases": [0, 8, 14]}),
 ]
 
@@ -72,7 +73,9 @@ def test_a_number_that_is_off_by_a_millionth_is_found() -> None:
 
 
 def test_files_say_where_their_numbers_come_from() -> None:
-    for path in sorted([*DATA.glob("*.json"), *(DATA / "friction").glob("*.json")]):
+    for path in sorted(
+        [*DATA.glob("*.json"), *(DATA / "friction").glob("*.json"), DATA / "fatigue/shakedown.json"]
+    ):
         content = json.loads(path.read_text(encoding="utf-8"))
         for key in ("description", "source", "method", "error"):
             assert content.get(key), f"{path.name} says no {key}"
