@@ -1,7 +1,8 @@
 """A straight roller with sharp ends on a flat race: finite_roller.json.
 
-Half-spaces and quarter spaces. Lengths in b, pressures in p0, displacements of (1 - nu^2)/E = 1 for each body. Cells graded in x
-towards the ends, equal in y; the pressure of a cell is uniform and the gap is met at its centre.
+Half-spaces and quarter spaces. Lengths in b, pressures in p0, displacements of (1 - nu^2)/E = 1
+for each body. Cells graded in x towards the ends, equal in y; the pressure of a cell is uniform and
+the gap is met at its centre.
 A half-space has u = (1/pi) integral of p/r. A free end adds the mirror image and, for each wave
 number k along y (see quarter_space_wave.py; lengths in 1/k), what S = T (1 - T^2)^-1 T p displaces.
 That is symmetric, hence K T = T' K for the half-space's kernel K and, from p to u,
