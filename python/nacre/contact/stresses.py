@@ -767,6 +767,10 @@ class Stressed:
         -----
         The pressure varies within cells, as in `stress`.
 
+        Extremes are those on the grid. With friction, the largest tension below a coating may trail
+        the contact by more than the grid holds: where an extreme is found in the outermost cells,
+        it is larger beyond, and a wider grid finds it.
+
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
