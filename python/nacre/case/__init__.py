@@ -194,6 +194,10 @@ class Case:
         """Return the arguments of `BearingSolution.life`, or None without a table for it."""
         return self._table.life() if isinstance(self._table, BearingCase) else None
 
+    def film(self) -> dict[str, Any] | None:
+        """Return a ring and the arguments of `film_thickness`, or None without a table for it."""
+        return self._table.film() if isinstance(self._table, BearingCase) else None
+
     def __call__(self, **values: Any) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = self.data
@@ -213,8 +217,10 @@ class Case:
         self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
             self._check_key(key)
-            if not key.startswith(self._table.solved) or key.endswith(
-                (".yield_stress", ".strength", ".shear_yield")
+            if (
+                not key.startswith(self._table.solved)
+                or key.startswith("bearing.film.")
+                or key.endswith((".yield_stress", ".strength", ".shear_yield"))
             ):
                 message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
                 raise CaseError(message)

@@ -14,8 +14,10 @@ from nacre.bearing import (
     DeepGrooveBall,
     SphericalRoller,
     TaperedRoller,
+    film_thickness,
 )
 from nacre.bearing.bearings import Solvable
+from nacre.bearing.geometry import Ring
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
 from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, said
@@ -32,6 +34,7 @@ KINDS: dict[str, type[Solvable]] = {
 }
 """Bearings by their names in case files."""
 SOLVE = described(Solvable.solve)
+FILMS = described(film_thickness)
 
 
 class InSpace(Directions):
@@ -87,13 +90,25 @@ class BearingLife(Table):
         return {"edge": None if self.edge == "none" else self.edge, "rotating": self.rotating}
 
 
+class BearingFilm(Table):
+    """Oil film in the heaviest contact of a ring, which is printed; for solved contacts."""
+
+    speed: Number = Field(description=FILMS["speed"])
+    viscosity: Number = Field(description=FILMS["viscosity"])
+    pressure_viscosity: Number = Field(description=FILMS["pressure_viscosity"])
+    roughness: Number | None = Field(None, description=FILMS["roughness"])
+    radius: Number | None = Field(None, description=FILMS["radius"])
+    ring: Ring = Field("inner", description="Ring of the contact.")
+
+
 class BearingKind(Table):
-    """Keys that every bearing may have: what is solved, and a life."""
+    """Keys that every bearing may have: what is solved, a life, and a film."""
 
     made: ClassVar[type[Any]]
 
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
+    film: BearingFilm | None = Field(None, description="Oil film that is printed.")
 
 
 TYPES: dict[str, Any] = {
@@ -167,9 +182,20 @@ class BearingCase(Keys):
             )
         return self
 
+    @model_validator(mode="after")
+    def _with_contacts(self) -> BearingCase:
+        if self.bearing.film is not None and self.bearing.solve.model != "solved":
+            raise ValueError(
+                f'bearing.solve.model must be "solved" for bearing.film, which is that of a '
+                f"contact; got {self.bearing.solve.model!r}"
+            )
+        return self
+
     def arguments(self) -> dict[str, Any]:
         """Return the bearing and the keywords of its ``solve``."""
-        given = self.bearing.model_dump(exclude={"kind", "solve", "life"}, exclude_unset=True)
+        given = self.bearing.model_dump(
+            exclude={"kind", "solve", "life", "film"}, exclude_unset=True
+        )
         for name in given:
             value = getattr(self.bearing, name)
             if isinstance(value, Body):
@@ -189,3 +215,8 @@ class BearingCase(Keys):
     def life(self) -> dict[str, Any] | None:
         """Return the keywords of the life, or None where none is asked for."""
         return None if self.bearing.life is None else self.bearing.life.keywords()
+
+    def film(self) -> dict[str, Any] | None:
+        """Return the ring and the keywords of the film, or None where none is asked for."""
+        asked = self.bearing.film
+        return None if asked is None else {"ring": asked.ring, **asked.keywords()}

@@ -14,12 +14,15 @@ import nacre
 from nacre._tools.disk import PICTURES, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import system
+from nacre.bearing import BearingSolution, Film, film_thickness
+from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
 from nacre.results.display import SLIGHT
+from nacre.results.listed import Listed
 from nacre.results.outputs import ERROR, check_direction
 from nacre.studies import default_threads
 
@@ -115,30 +118,45 @@ def _read_case(case: Path, units: str | None) -> Case:
 
 
 def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool) -> None:
-    """Solve a bearing, save and print it, with its life where that is asked for."""
+    """Solve a bearing, save and print it, with its life and a film where they are asked for."""
     for path in save:
         if path.suffix.lower() == ".vtr":
             raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
         _check_ending(path)
     arguments = described.arguments()
     bearing, asked = arguments.pop("bearing"), described.life()
+    added: dict[str, Listed] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():
                 solution = bearing.solve(**arguments)
-                life = None if asked is None else solution.life(**asked)
+                if asked is not None:
+                    added["life"] = solution.life(**asked)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: bearing: {error}") from error
+        if (film := described.film()) is not None:
+            try:
+                added["film"] = _film(solution, **film)
+            except (ArithmeticError, TypeError, ValueError) as error:
+                raise CaseError(f"{case}: bearing.film: {error}") from error
     for path in save:
         solution.save(path)
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         state = {k: v for k, v in solution.to_dict().items() if k not in left}
-        lived = {} if life is None else {"life": life._state()}
-        print(json.dumps(_plain(state | lived), indent=2))
+        state |= {name: one._state() for name, one in added.items()}
+        print(json.dumps(_plain(state), indent=2))
     else:
-        print(solution if life is None else f"{solution}\n\n{life}")
+        print("\n\n".join(map(str, (solution, *added.values()))))
+
+
+def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
+    """Return the film in the heaviest contact of a ring."""
+    heaviest = solution.loads[:, RINGS.index(ring)].argmax()
+    if (contact := solution.contact(int(heaviest), ring)) is None:
+        raise ValueError("no element is loaded, so that there is no film")
+    return film_thickness(contact, **keywords)
 
 
 def _solve(

@@ -18,6 +18,7 @@ from nacre.bearing import (
     DeepGrooveBall,
     SphericalRoller,
     TaperedRoller,
+    film_thickness,
 )
 from nacre.case import Case, CaseError
 from support import Capture, command, written
@@ -44,6 +45,12 @@ cells = [40, 24]
 
 [bearing.life]
 edge = "pressure"
+
+[bearing.film]
+speed = 8
+viscosity = 0.02
+pressure_viscosity = 20e-9
+roughness = 0.1e-6
 
 [sweep]
 store = "study.nc"
@@ -139,6 +146,15 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
     told = json.loads(capsys.readouterr().out)
     np.testing.assert_allclose(told["loads"], solution.loads, rtol=1e-12)
     assert told["life"]["revolutions"] == pytest.approx(solution.life("pressure").revolutions)
+    contact = solution.contact(int(solution.loads[:, 0].argmax()), "inner")
+    assert contact is not None
+    film = film_thickness(
+        contact, speed=8.0, viscosity=0.02, pressure_viscosity=20e-9, roughness=0.1e-6
+    )
+    for name in ("minimum", "film_ratio", "load"):
+        assert told["film"][name] == pytest.approx(getattr(film, name), rel=1e-6)
+    assert told["film"]["ellipticity"] is None  # infinite
+    assert f"film ratio λ    {film.film_ratio:.4g}" in out
     assert command("sweep", path) == 0
     assert "4 cases, 0 failed" in capsys.readouterr().out
     import xarray
@@ -229,6 +245,15 @@ def test_other_rollers_are_solved_and_swept(
         ('kind = "cylindrical_roller"', 'kind = "sleeve"', "bearing.kind: must be one of"),
         ("[materials]", 'units = "N-mm-MPa"\n[materials]', 'units must be "SI" for a bearing'),
         ('edge = "pressure"', 'edge = "sharp"', "bearing.life.edge: must be"),
+        ("viscosity = 0.02", "viscocity = 0.02", "bearing.film.viscocity: there is no such key"),
+        ("viscosity = 0.02", "", "bearing.film.viscosity: this key is missing"),
+        ("speed = 8", 'speed = "fast"', "bearing.film.speed: must be a finite number"),
+        ("speed = 8", 'speed = 8\nring = "cage"', "bearing.film.ring: must be"),
+        (
+            "cells = [40, 24]",
+            'model = "iso16281"',
+            'bearing.solve.model must be "solved" for bearing.film',
+        ),
         ('substrate = "steel"', 'substrate = "bronze"', "bearing.inner.substrate: must be one of"),
     ],
 )
@@ -236,6 +261,30 @@ def test_wrong_cases_are_refused(old: str, new: str, message: str, tmp_path: Pat
     path = written(tmp_path, CASE.replace(old, new, 1))
     with pytest.raises(CaseError, match=message):
         Case.read(path).arguments()
+
+
+def test_films_of_both_rings_and_wrong_ones(tmp_path: Path, capsys: Capture) -> None:
+    film = "film = { speed = 5, viscosity = 0.02, pressure_viscosity = 20e-9, ring = 'outer' }"
+    text = BALL.replace(', model = "iso16281"', ", cells = [32, 32]") + film
+    path = written(tmp_path, text)
+    assert command("solve", path, "--json") == 0
+    told = json.loads(capsys.readouterr().out)["film"]
+    # Hamrock and Dowson's point; the radius is that of ball and outer raceway, 1/(2/D − 2/d).
+    assert told["radius"] == pytest.approx(1 / (2 / 11.5e-3 - 2 / 55e-3), rel=1e-3)
+    assert told["film_ratio"] is None
+    for old, new, message in (
+        ("speed = 5", "speed = 0", "bearing.film: speed must be finite and above 0"),
+        ("force = { z = 1000 }", "force = { z = 0 }", "bearing.film: no element is loaded"),
+    ):
+        assert command("solve", written(tmp_path, text.replace(old, new))) == 2
+        assert message in capsys.readouterr().err
+
+
+def test_a_sweep_of_a_film_is_refused(tmp_path: Path) -> None:
+    key = 'parameters."bearing.clearance"'
+    path = written(tmp_path, CASE.replace(key, 'parameters."bearing.film.speed"', 1))
+    with pytest.raises(CaseError, match=r"bearing\.film\.speed.* changes nothing in a solve"):
+        Case.read(path).study()
 
 
 def test_bearing_has_no_initial_solution_and_no_fields(tmp_path: Path) -> None:
