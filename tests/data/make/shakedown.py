@@ -48,22 +48,20 @@ class Field:
 
     def __init__(self, stack, fine):
         reach, h = 8 / fine, stack.layers[0][0] if stack.layers else 1.0
-        near = np.linspace(-3, 3, 2 * round(2100 / fine) + 1)  # the edges are not among them
-        far = np.linspace(3, reach, round(400 / fine**2))[1:]
-        self.y = np.unique(np.concatenate([-far, near, far, [-1.0, 1.0]]))
+        near = np.linspace(-3, 3, 2 * round(2100 / fine) + 1)
+        far = np.linspace(3, reach, round(400 / fine**2))
+        self.y = np.unique([*-far, *near, *far, -1.0, 1.0])
         self.h, self.bare = h, not stack.layers
         if self.bare:
             return
         self.knots = np.linspace(0, reach, int(reach * 24 / (fine * h)))
         self.alpha, weights = panels(40 / h, 1.5 / reach)
-        weights = weights * j1(self.alpha) / self.alpha
-        angle = np.outer(self.alpha, self.knots)
-        self.waves = [weights[:, None] * f(angle) for f in (np.cos, np.sin)]
+        pressure, angle = weights * j1(self.alpha) / self.alpha, np.outer(self.alpha, self.knots)
+        self.waves = [pressure[:, None] * f(angle) for f in (np.cos, np.sin)]
         self.base, part = stack.base, stack.layers[0][1:3]
-        alone = Body(stack.layers, part)
         depths = h * (1 - np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))) / 2
-        more = [self.state(stack, z) - self.state(alone, z) for z in depths]
-        added = np.array([self.transformed(state, part) for state in more])
+        pair = [[self.state(body, z) for z in depths] for body in (stack, Body(stack.layers, part))]
+        added = np.array([self.transformed(a - b, part) for a, b in zip(*pair, strict=True)])
         self.added = BarycentricInterpolator(depths, added)
         self.top = self.state(stack, h)
 
@@ -78,14 +76,16 @@ class Field:
         normal = [yy @ cos, -pressed[:, 2] @ cos, pressed[:, 3] @ sin]
         return np.array([normal, [yy2 @ sin, -pulled[:, 2] @ sin, -pulled[:, 3] @ cos]])
 
+    def lower(self, z):
+        """Integrals in the substrate, where (A + 1)^2 = 0 holds for the states."""
+        x = (self.alpha * (z - self.h))[:, None, None]
+        slope = np.array(plane(*self.base)) @ self.top + self.top
+        return self.transformed(np.exp(-x) * (self.top + x * slope), self.base)
+
     def at(self, z, below):
         if self.bare:
             return mcewen(self.y, z)
-        found = self.added(z)
-        if below:
-            x = (self.alpha * (z - self.h))[:, None, None]
-            slope = np.array(plane(*self.base)) @ self.top + self.top
-            found = self.transformed(np.exp(-x) * (self.top + x * slope), self.base)
+        found = self.lower(z) if below else self.added(z)
         smooth = CubicSpline(self.knots, found, axis=-1)(abs(self.y))
         smooth[ODD] *= np.sign(self.y)
         return smooth if below else smooth + mcewen(self.y, z)
@@ -129,19 +129,17 @@ def limits(field, mu, nu, low, high, below):
 
     depths, found = np.linspace(low, high, 26), {}
     for k, key in enumerate(KEYS):
-        values = [at(z)[k] for z in depths]
-        best = int(np.argmax(values))
+        best = int(np.argmax([at(z)[k] for z in depths]))
         bracket = depths[max(best - 1, 0)], depths[min(best + 1, 25)]
         peak = minimize_scalar(lambda z, k=k: -at(z)[k], bounds=bracket, options={"xatol": 1e-6})
-        found[key] = float(1 / max(*values, -peak.fun))
+        found[key] = float(1 / max(at(depths[best])[k], -peak.fun))
     return found
 
 
 def fill(content, fine=1.0):
     body = operator.itemgetter("E1_over_E2", "h_over_b", "nu")
     for (ratio, h, nu), rows in itertools.groupby(content["cases"], body):
-        stack = coat(ratio, h, nu) if h else Body([], (1.0, nu))
-        field = functools.cache(Field(stack, fine).at)
+        field = functools.cache(Field(coat(ratio, h, nu) if h else Body([], (1.0, nu)), fine).at)
         for row in rows:
             if h:
                 row["coating"] = limits(field, row["mu"], nu, 0.0, h, False)

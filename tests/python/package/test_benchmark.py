@@ -9,9 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import nacre
+from bodies import quiet
+from nacre import fatigue
 from nacre.indent import Indentation, Tip
 from support import DATA
 
@@ -42,9 +45,10 @@ def truth(compare: Any) -> Rows:
 
 
 def body(given: dict[str, Any]) -> nacre.HalfSpace:
-    coat, base = given["coating"], given["substrate"]
-    layer = nacre.Layer(nacre.Elastic(coat["young_Pa"], coat["poisson"]), coat["thickness_m"])
-    layers = [layer]
+    base, layers = given["substrate"], []
+    if coat := given.get("coating"):
+        elastic = nacre.Elastic(coat["young_Pa"], coat["poisson"])
+        layers = [nacre.Layer(elastic, coat["thickness_m"])]
     return nacre.HalfSpace(nacre.Elastic(base["young_Pa"], base["poisson"]), layers)
 
 
@@ -93,6 +97,73 @@ def test_nacre_meets_its_benchmark(
     assert "coated_spheres" in out
     assert "indentations" in out
     assert "rollers" not in out  # rows without a value are not compared
+
+
+def pressed(given: dict[str, Any]) -> nacre.Solution:
+    """Solve the contact whose pressure is elliptic: of a cylinder, or of what that pressure bends.
+
+    Outside the contact the shape of a coated body stays a little off, so that nothing touches.
+    """
+    half, peak, solid = given["half_width_m"], given["peak_pressure_Pa"], body(given)
+    grid = nacre.Grid.line(160, 2.5 * half)
+    base = nacre.Elastic(given["substrate"]["young_Pa"], given["substrate"]["poisson"])
+    shape: Any = nacre.Cylinder(base.plane_strain_modulus * half / (2 * peak))
+    if solid.layers:
+        ends = np.clip((grid.y[:, None] + np.array([-0.5, 0.5]) * grid.spacing[1]) / half, -1, 1)
+        area = (ends * np.sqrt(1 - ends**2) + np.arcsin(ends)) / 2
+        pressure = peak * half / grid.spacing[1] * np.diff(area, axis=1).T
+        bent = nacre.stress(solid, grid, pressure, 0.0, displacement=True).uz.reshape(1, -1)
+        apart = np.clip(np.abs(grid.y) / half - 1, 0, None) ** 1.5
+        bent = bent - apart * peak * half / base.young
+        shape = nacre.HeightMap(np.repeat(bent, 2, axis=0), grid.spacing)
+    solution: nacre.Solution = quiet(
+        nacre.solve, shape, solid, load=np.pi / 2 * half * peak, grid=grid
+    )
+    return solution
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance"),
+    [
+        ("bare, mu 0", "1e-3"),
+        ("bare, mu 0.2", "1e-3"),
+        # The edge of the contact at the surface decides: as in fatigue/test_contacts.py.
+        ("bare, mu 0.5", "5e-3"),
+        ("ratio 2, h/b 0.3, mu 0", "1e-3"),
+        ("ratio 4, h/b 1, mu 0", "1e-3"),
+        pytest.param("ratio 0.5, h/b 0.3, mu 0.3", "1e-3", marks=pytest.mark.slow),
+        pytest.param("ratio 2, h/b 1, mu 0.3", "1e-3", marks=pytest.mark.slow),
+    ],
+)
+def test_nacre_meets_the_shakedown_of_its_benchmark(
+    compare: Any, write: Write, name: str, tolerance: str
+) -> None:
+    cases = json.loads((SET / "shakedown.json").read_text(encoding="utf-8"))["cases"]
+    given = next(case["given"] for case in cases if case["name"] == name)
+    solution, rows = pressed(given), {}
+    assert solution.peak_pressure == pytest.approx(given["peak_pressure_Pa"], rel=1e-4)
+    rules: tuple[tuple[Any, str], ...] = (
+        ("von_mises", "von Mises"),
+        ("in_plane_tresca", "Tresca in the plane"),
+    )
+    for rule, text in rules:
+        layers = quiet(fatigue.assess, solution, friction=given["friction"], rule=rule).layers
+        parts = ("coating", "substrate")[-len(layers) :]
+        for part, layer in zip(parts, layers, strict=True):
+            limit = given["peak_pressure_Pa"] / layer.shakedown[0]
+            rows["shakedown", name, f"p0/k shakedown, {text}, {part}"] = limit
+            if rule == "von_mises":
+                first = given["peak_pressure_Pa"] / layer.first_yield[0]
+                rows["shakedown", name, f"p0/k first yield, {text}, {part}"] = first
+    assert compare.main([write(rows), "--tolerance", tolerance]) == 0
+
+
+def test_bare_bodies_shake_down_below_the_bound_of_friction(compare: Any) -> None:
+    # Tresca's rule at the surface allows 1/mu, and 4 below it without friction (Johnson).
+    found = truth(compare)
+    for mu, limit in (("0", 4.0), ("0.4", 2.5), ("0.5", 2.0)):
+        place = ("shakedown", f"bare, mu {mu}", "p0/k shakedown, Tresca in the plane, substrate")
+        assert found[place] == pytest.approx(limit, rel=3e-6)
 
 
 def test_a_wrong_number_is_named(
