@@ -35,6 +35,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
 mod beside;
+mod beyond;
 mod ends;
 mod field;
 mod half_space;

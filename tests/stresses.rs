@@ -9,6 +9,7 @@ mod support {
 }
 
 mod stress {
+    mod beyond;
     mod closed_forms;
     mod coated;
     mod edge;

@@ -198,6 +198,26 @@ impl Grid {
         Self::new(cells, size).unwrap_or(*self)
     }
 
+    /// A grid with the same centre, wider along `axes`: about twice as wide at level 0, with the same cells, and twice as wide
+    /// with cells twice as large at each further level.
+    pub(crate) fn widened(&self, axes: [bool; 2], level: usize) -> Result<Self> {
+        let larger = 2.0_f64.powi(level.min(1000) as i32);
+        let cells = |axis: usize| self.shape[axis] + 2 * self.shape[axis].div_ceil(2);
+        let shape = [0, 1].map(|axis| if axes[axis] { cells(axis) } else { self.shape[axis] });
+        let size = [0, 1].map(|axis| match axes[axis] {
+            true => larger * self.spacing()[axis] * shape[axis] as f64,
+            false => self.size[axis],
+        });
+        let grid =
+            if self.is_line() { Self::line(shape[1], size[1])? } else { Self::new(shape, size)? };
+        grid.periodic(self.periodic)?.centered_at(self.center)
+    }
+
+    /// Whether a point lies in the grid.
+    pub(crate) fn holds(&self, point: [f64; 2]) -> bool {
+        (0..2).all(|axis| (point[axis] - self.center[axis]).abs() < 0.5 * self.size[axis])
+    }
+
     /// Coordinates of cell centres along `axis`. They are computed from the centre of the grid, so
     /// that they are exactly symmetric about it.
     pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {

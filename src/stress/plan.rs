@@ -53,7 +53,7 @@ pub struct StressPlan {
     /// What adds to the stress of the whole half-space: ends of the body, tractions that are known.
     parts: Vec<Box<dyn Part>>,
     /// Known tractions along x and y on this body \[Pa\], in C order.
-    known: Option<[Vec<f64>; 2]>,
+    pub(super) known: Option<[Vec<f64>; 2]>,
     /// Present where the body has free ends, and bears pressure.
     ends: Option<EndErrors>,
 }

@@ -43,8 +43,8 @@ const NEAR: f64 = 2.0;
 /// the patch.
 const MARGINS: [f64; 2] = [0.25, 1.25];
 
-/// Fewest cells of which a patch may have as many, however small the grid is.
-const FEWEST_CELLS: usize = 1 << 14;
+/// Number of cells that a patch may have, however small the grid is: 512². It takes some two seconds.
+const FEWEST_CELLS: usize = 1 << 18;
 
 /// What a refined summary is made of.
 struct Refined<'a> {

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::beside::Beside;
+use super::beyond::Beyond;
 use super::field::{Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
@@ -215,7 +216,8 @@ impl StressPlan {
     ///
     /// Depths are the faces of the layers, and some 18 inside each, spread over its thickness and over
     /// the width of the contact; a peak inside is then refined by parabolas through three depths
-    /// (successive parabolic interpolation). Positions are cell centres.
+    /// (successive parabolic interpolation). Positions are cell centres, or points at the edge of the contact. Where
+    /// the largest value at a depth lies on the border of the grid, wider grids are searched.
     ///
     /// # Errors
     /// Bad options, a strength that is not finite and above 0, or too little memory.
@@ -400,16 +402,14 @@ fn interface(
     let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
     let next = body.layers().get(number + 1).map(Layer::material);
     let below = next.or(substrate_material(body));
-    let [tension, compression, shear] = planes.tractions(&Place {
-        layer: number,
-        below_top: layer.thickness(),
-        depth,
-        material: layer.material(),
-    })?;
+    let above =
+        Place { layer: number, below_top: layer.thickness(), depth, material: layer.material() };
+    let [tension, compression, shear] = planes.tractions(&above)?;
     let jump = match below {
         None => None,
         Some(material) => {
-            Some(planes.jump(&Place { layer: number + 1, below_top: 0.0, depth, material })?)
+            let below = Place { layer: number + 1, below_top: 0.0, depth, material };
+            Some(planes.jump(&above, &below)?)
         }
     };
     ControlFlow::Continue(InterfaceSummary {
@@ -436,6 +436,7 @@ struct Planes<'a, 'b> {
     done: usize,
     /// Planes that are evaluated at most, but for those below an interface.
     planned: usize,
+    beyond: Beyond<'a>,
 }
 
 /// The largest value found so far, and its cell.
@@ -477,6 +478,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             progress,
             done: 0,
             planned,
+            beyond: Beyond::new(plan, friction),
         }
     }
 
@@ -546,6 +548,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             }
         }
         let peaks = [von_mises, tension, shear].map(|one| self.peak(one, place));
+        let peaks = self.with_beyond(peaks, &[*place], |tensors| three(&tensors[0]))?;
         if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
     }
 
@@ -627,24 +630,50 @@ impl<'a, 'b> Planes<'a, 'b> {
             compression.offer(-zz, cell);
             shear.offer(xz.hypot(yz), cell);
         }
-        compression.value = -compression.value;
-        ControlFlow::Continue([tension, compression, shear].map(|one| self.peak(one, place)))
+        let peaks = [tension, compression, shear].map(|one| self.peak(one, place));
+        let mut peaks = self.with_beyond(peaks, &[*place], |tensors| {
+            let Tensor { zz, yz, xz, .. } = tensors[0];
+            [zz, -zz, xz.hypot(yz)]
+        })?;
+        peaks[1].value = -peaks[1].value;
+        ControlFlow::Continue(peaks)
     }
 
-    /// Largest jump of the in-plane stress from the plane evaluated last to that at `below`.
-    fn jump(&mut self, below: &Place) -> ControlFlow<(), Peak> {
-        let [above_xx, above_yy, above_xy] = [0, 1, 3].map(|k| self.fields[k].clone());
+    /// Largest jump of the in-plane stress from the plane at `above`, which was evaluated last, to that at `below`.
+    fn jump(&mut self, above: &Place, below: &Place) -> ControlFlow<(), Peak> {
+        let fields_above = self.fields.clone();
         self.evaluate(below)?;
         let mut largest = Largest::NONE;
         for cell in self.cells() {
-            let below = self.tensor(cell);
-            let (xx, yy) = (below.xx - above_xx[cell], below.yy - above_yy[cell]);
-            let xy = below.xy - above_xy[cell];
-            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-            largest.offer(mean.abs() + half.hypot(xy), cell);
+            let above = Tensor::new(fields_above.each_ref().map(|field| field[cell]));
+            largest.offer(jump([above, self.tensor(cell)]), cell);
         }
-        ControlFlow::Continue(self.peak(largest, below))
+        let peak = self.peak(largest, below);
+        let [peak] = self.with_beyond([peak], &[*above, *below], |tensors| [jump(*tensors)])?;
+        ControlFlow::Continue(peak)
     }
+
+    /// The peaks, or those beyond the grid where they lie on its border and rise farther out. `of` has the values of a cell,
+    /// from its stresses at `places`.
+    fn with_beyond<const N: usize, const K: usize>(
+        &mut self,
+        peaks: [Peak; N],
+        places: &[Place; K],
+        of: impl Fn(&[Tensor; K]) -> [f64; N],
+    ) -> ControlFlow<(), [Peak; N]> {
+        if self.beside.is_some() {
+            return ControlFlow::Continue(peaks);
+        }
+        let part = (self.done as f64 / self.planned as f64).min(1.0);
+        let mut told = |_| (self.progress)(part);
+        self.beyond.peaks(peaks, places, self.residual, of, &mut told)
+    }
+}
+
+/// Jump of the in-plane stress from above to below, as the larger principal value of its magnitude.
+fn jump([above, below]: [Tensor; 2]) -> f64 {
+    let (xx, yy, xy) = (below.xx - above.xx, below.yy - above.yy, below.xy - above.xy);
+    (0.5 * (xx + yy)).abs() + (0.5 * (xx - yy)).hypot(xy)
 }
 
 /// Von Mises stress, largest principal stress and largest shear stress.

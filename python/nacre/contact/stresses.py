@@ -743,9 +743,9 @@ class Stressed:
         refine : float, optional
             Largest estimated error of the extremes, as a part of them, such as 0.05. A patch around
             each place where the cells leave a larger one is solved again on finer cells, until
-            the error is below it or the patch has as many cells as the grid. By default the cells
-            of the grid are used. Not for `nacre.slide` and `nacre.roll`, periodic grids, surfaces
-            that have yielded, given coefficients.
+            the error is below it or the patch has as many cells as the grid, or 512 × 512 if that
+            is more. By default the cells of the grid are used. Not for `nacre.slide` and
+            `nacre.roll`, periodic grids, surfaces that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
             seconds.
@@ -767,9 +767,9 @@ class Stressed:
         -----
         The pressure varies within cells, as in `stress`.
 
-        Extremes are those on the grid. With friction, the largest tension below a coating may trail
-        the contact by more than the grid holds: where an extreme is found in the outermost cells,
-        it is larger beyond, and a wider grid finds it.
+        Extremes may lie beyond the grid: below a stiff coating, or with friction, the largest
+        tension can be outside the contact. Where an extreme is found in the outermost cells, wider
+        grids are searched.
 
         Examples
         --------

@@ -391,6 +391,23 @@ def test_a_summary_says_along_which_direction_friction_acts(body: Any, tmp_path:
         nacre.types.StressSummary.from_dict(state | {"friction": [1.0]})
 
 
+def test_extremes_of_partial_slip_beyond_the_grid() -> None:
+    """Below a stiff coating the interface is pulled outside the contact."""
+    body = nacre.HalfSpace(
+        nacre.Elastic(70e9, 0.3), [nacre.Layer(nacre.Elastic(420e9, 0.2), 20e-6)]
+    )
+    slip: dict[str, Any] = {"load": 50.0, "friction": 0.3, "force": (10.0, 5.0)}
+    radius = 0.17e-3  # of the contact
+    tensions = []
+    for wide in (1, 4):
+        grid = nacre.Grid((48 * wide, 48 * wide), (2.4 * radius * wide, 2.4 * radius * wide))
+        solution = nacre.slide(nacre.Sphere(10e-3), body, grid=grid, **slip)
+        tensions.append(solution.stress_summary().interfaces[0].tension)
+    (narrow, (x, y, _)), (wide_value, _) = tensions
+    assert max(abs(x), abs(y)) > 1.2 * radius
+    assert narrow == pytest.approx(wide_value, rel=2e-3)  # growth at which the search ends
+
+
 class StopError(Exception):
     """Raised by a callback."""
 

@@ -1,0 +1,84 @@
+//! Extremes that lie beyond the grid: those of a summary on a narrow grid are those on a grid four times as wide.
+
+use ndarray::{Array2, s};
+
+use crate::support::stresses::sliding;
+use nacre::stress::{Peak, Strengths, StressSummary};
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result, StressOptions, StressPlan};
+
+/// The wider grids of a summary end where a peak grows by less than 1e-3 from one to the next. Growth falls at least by half
+/// from grid to grid, since stress falls off at least as the distance: what is left is at most as much again.
+const REST: f64 = 2e-3;
+
+/// A thick stiff coating on a soft body.
+fn body() -> Result<HalfSpace> {
+    HalfSpace::new(Elastic::new(1.0, 0.4)?, [Layer::new(Elastic::new(60.0, 0.3)?, 0.6)?])
+}
+
+/// √(1 − r²) in the unit circle, or strip, around a point.
+fn pressure(grid: &Grid, [x0, y0]: [f64; 2]) -> Array2<f64> {
+    let (x, y) = (grid.x(), grid.y());
+    Array2::from_shape_fn(grid.shape(), |(i, j)| {
+        let x = if grid.is_line() { 0.0 } else { x[i] - x0 };
+        (1.0 - x * x - (y[j] - y0).powi(2)).max(0.0).sqrt()
+    })
+}
+
+/// `grid`, with cells added to each side along the `axes`.
+fn wider(grid: &Grid, axes: [bool; 2], added: usize) -> Result<Grid> {
+    let added = axes.map(|wide| if wide { 2 * added } else { 0 });
+    let shape = [0, 1].map(|axis| grid.shape()[axis] + added[axis]);
+    let size = [0, 1].map(|axis| shape[axis] as f64 * grid.spacing()[axis]);
+    let wide =
+        if grid.is_line() { Grid::line(shape[1], size[1])? } else { Grid::new(shape, size)? };
+    wide.periodic(grid.is_periodic())?.centered_at(grid.center())
+}
+
+fn peaks(summary: &StressSummary) -> Vec<Peak> {
+    let layers = summary.layers.iter().flat_map(|l| [l.von_mises, l.tension, l.shear]);
+    let interfaces = summary.interfaces.iter();
+    let interfaces =
+        interfaces.flat_map(|f| [Some(f.tension), Some(f.compression), Some(f.shear), f.jump]);
+    layers.chain(interfaces.flatten()).collect()
+}
+
+/// Compares both grids; returns how many peaks lie beyond the narrow one.
+fn check(grid: Grid, axes: [bool; 2], options: &StressOptions) -> Result<usize> {
+    let body = body()?;
+    let wide = wider(&grid, axes, 120)?;
+    let summary = |grid: &Grid, pressure: Array2<f64>| -> Result<_> {
+        let plan = StressPlan::plan(&body, grid, &pressure, None)?;
+        Ok(peaks(&plan.summary(&Strengths::default(), options)?))
+    };
+    let centre = grid.center();
+    let (found, expected) =
+        (summary(&grid, pressure(&grid, centre))?, summary(&wide, pressure(&wide, centre))?);
+    let mut beyond = 0;
+    for (found, expected) in found.iter().zip(&expected) {
+        let error = found.value / expected.value - 1.0;
+        assert!(error.abs() < REST, "{found:?} {expected:?}: {error:.1e}");
+        let far =
+            |axis: usize| (found.position[axis] - centre[axis]).abs() > 0.5 * grid.size()[axis];
+        beyond += usize::from(far(0) || far(1));
+    }
+    Ok(beyond)
+}
+
+/// Without friction and with it, on even and odd numbers of cells, in a line contact, and where the grid repeats along x.
+#[test]
+fn extremes_beyond_the_grid_are_those_of_a_wide_grid() -> Result<()> {
+    let still = StressOptions::default();
+    let rough = sliding(0.3, [0.6, 0.8]);
+    let both = [true, true];
+    for (shape, size) in [([40, 40], [2.5, 2.5]), ([41, 52], [2.5, 3.2])] {
+        let grid = Grid::new(shape, size)?.centered_at([0.3, -0.2])?;
+        for options in [&still, &rough] {
+            assert!(check(grid, both, options)? >= 2);
+        }
+    }
+    let line = Grid::line(50, 2.5)?;
+    assert!(check(line, [false, true], &sliding(0.3, [0.0, 1.0]))? >= 1);
+    let repeated = Grid::new([48, 40], [3.0, 2.5])?.periodic([true, false])?;
+    assert!(check(repeated, [false, true], &still)? >= 1);
+    Ok(())
+}
