@@ -17,7 +17,8 @@ use crate::error::Result;
 use crate::model::grid::Grid;
 
 /// Growth of a value from one grid to the next, as a part of it, below which the place does not matter: a stress that
-/// rises to its residual value at infinity has none.
+/// rises to its residual value at infinity has none. Growth falls at least by half from grid to grid, since stresses fall off
+/// at least as the distance: as much again is left.
 const NEGLIGIBLE_GROWTH: f64 = 1e-3;
 
 /// What evaluates a plan beyond its grid.
@@ -68,6 +69,8 @@ impl<'a> Beyond<'a> {
                     if value > peak.value {
                         grown |= value - peak.value > NEGLIGIBLE_GROWTH * value.abs();
                         (peak.value, peak.position[0], peak.position[1]) = (value, x, y);
+                        let rest = 2.0 * NEGLIGIBLE_GROWTH * value.abs();
+                        peak.uncertainty = peak.uncertainty.map(|error| error.max(rest));
                     }
                 }
             }

@@ -8,7 +8,7 @@ use super::field::{Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
-use super::subcell::CellPoint;
+use super::subcell::{CellPoint, STRESSES};
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive, refuse_if};
@@ -430,7 +430,7 @@ struct Planes<'a, 'b> {
     residual: &'a [f64],
     evaluation: Evaluation<'a>,
     /// The six components at the cells.
-    fields: [Vec<f64>; 6],
+    fields: [Vec<f64>; STRESSES],
     progress: &'a mut StressProgress<'b>,
     /// Planes evaluated so far.
     done: usize,
@@ -547,8 +547,8 @@ impl<'a, 'b> Planes<'a, 'b> {
                 shear.offer(0.5 * (first - last), cell);
             }
         }
-        let peaks = [von_mises, tension, shear].map(|one| self.peak(one, place));
-        let peaks = self.with_beyond(peaks, &[*place], |tensors| three(&tensors[0]))?;
+        let found = [von_mises, tension, shear];
+        let peaks = self.peaks(found, &[*place], &[], |tensors| three(&tensors[0]))?;
         if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
     }
 
@@ -630,8 +630,8 @@ impl<'a, 'b> Planes<'a, 'b> {
             compression.offer(-zz, cell);
             shear.offer(xz.hypot(yz), cell);
         }
-        let peaks = [tension, compression, shear].map(|one| self.peak(one, place));
-        let mut peaks = self.with_beyond(peaks, &[*place], |tensors| {
+        let found = [tension, compression, shear];
+        let mut peaks = self.peaks(found, &[*place], &[], |tensors| {
             let Tensor { zz, yz, xz, .. } = tensors[0];
             [zz, -zz, xz.hypot(yz)]
         })?;
@@ -641,32 +641,64 @@ impl<'a, 'b> Planes<'a, 'b> {
 
     /// Largest jump of the in-plane stress from the plane at `above`, which was evaluated last, to that at `below`.
     fn jump(&mut self, above: &Place, below: &Place) -> ControlFlow<(), Peak> {
-        let fields_above = self.fields.clone();
+        let before = [self.fields.clone()];
         self.evaluate(below)?;
         let mut largest = Largest::NONE;
         for cell in self.cells() {
-            let above = Tensor::new(fields_above.each_ref().map(|field| field[cell]));
-            largest.offer(jump([above, self.tensor(cell)]), cell);
+            largest.offer(jump(self.tensors(&before, cell)), cell);
         }
-        let peak = self.peak(largest, below);
-        let [peak] = self.with_beyond([peak], &[*above, *below], |tensors| [jump(*tensors)])?;
+        let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
+        let [peak] = self.peaks([largest], &[*above, *below], &before, of)?;
         ControlFlow::Continue(peak)
     }
 
-    /// The peaks, or those beyond the grid where they lie on its border and rise farther out. `of` has the values of a cell,
-    /// from its stresses at `places`.
-    fn with_beyond<const N: usize, const K: usize>(
+    /// Stresses of a cell at one place or more: those of the planes `before`, and of the one evaluated last.
+    fn tensors<const K: usize>(&self, before: &[[Vec<f64>; STRESSES]], cell: usize) -> [Tensor; K] {
+        std::array::from_fn(|k| {
+            let fields = before.get(k).unwrap_or(&self.fields);
+            Tensor::new(fields.each_ref().map(|field| field[cell]))
+        })
+    }
+
+    /// The peaks of the largest values, or those beyond the grid where they lie on its border and rise farther out. `of` has
+    /// the values of a cell, from its stresses at `places`: those of the planes `before`, and of the one evaluated last.
+    fn peaks<const N: usize, const K: usize>(
         &mut self,
-        peaks: [Peak; N],
+        found: [Largest; N],
         places: &[Place; K],
+        before: &[[Vec<f64>; STRESSES]],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
     ) -> ControlFlow<(), [Peak; N]> {
+        let peaks = std::array::from_fn(|n| {
+            let peak = self.peak(found[n], &places[K - 1]);
+            let value = |cell: usize| of(&self.tensors(before, cell))[n];
+            let between = self.between(found[n], value);
+            Peak { uncertainty: peak.uncertainty.map(|error| error + between), ..peak }
+        });
         if self.beside.is_some() {
             return ControlFlow::Continue(peaks);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
         let mut told = |_| (self.progress)(part);
         self.beyond.peaks(peaks, places, self.residual, of, &mut told)
+    }
+
+    /// Twice what parabolas through the largest value and its neighbours along each axis rise above it: the value between
+    /// centres of cells is larger by about once that.
+    fn between(&self, Largest { value, cell }: Largest, of: impl Fn(usize) -> f64) -> f64 {
+        let [nx, ny] = self.plan.whole.grid.shape();
+        let axes = [(cell / ny, nx, ny), (cell % ny, ny, 1)];
+        let gain = |(at, count, stride): (usize, usize, usize)| {
+            if at == 0 || at + 1 == count {
+                return 0.0;
+            }
+            let [before, after] = [of(cell - stride), of(cell + stride)];
+            let curvature = (2.0 * value - before - after).max(0.0);
+            // The vertex is at most half a cell away, unless cells that do not count have larger values.
+            let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
+            if curvature > 0.0 { slope * slope / curvature } else { 0.0 }
+        };
+        axes.into_iter().map(gain).sum()
     }
 }
 

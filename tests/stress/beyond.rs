@@ -1,6 +1,6 @@
 //! Extremes that lie beyond the grid: those of a summary on a narrow grid are those on a grid four times as wide.
 
-use ndarray::{Array2, s};
+use ndarray::Array2;
 
 use crate::support::stresses::sliding;
 use nacre::stress::{Peak, Strengths, StressSummary};

@@ -254,6 +254,28 @@ fn tension_at_the_edge_of_a_sliding_sphere() -> Result<()> {
     Ok(())
 }
 
+/// The largest shear stress of Hertz' contact lies on its axis, at the corner of four cells here, and the largest value is that
+/// of a centre of a cell beside it: too small by what the estimated error must say. Johnson, Contact Mechanics (1985), eq.
+/// 3.45, doi:10.1017/CBO9781139171731.
+#[test]
+fn extremes_between_cells_are_within_their_error() -> Result<()> {
+    let on_axis = |s: f64| 0.5 * ((1.0 + NU) * (s * (1.0 / s).atan() - 1.0) + 1.5 / (1.0 + s * s));
+    let exact = (1..2000).map(|k| on_axis(f64::from(k) * 1e-3)).fold(0.0, f64::max);
+    for count in [5, 8, 16] {
+        let n = 2 * (count * 5 / 4);
+        let grid = Grid::new([n, n], [n as f64 / count as f64; 2])?;
+        let load = 4.0 * steel()?.plane_strain_modulus() / (3.0 * RADIUS);
+        let solution = press(grid, &Paraboloid::new(RADIUS, RADIUS)?, load)?;
+        let strengths = nacre::stress::Strengths::default();
+        let options = StressOptions::default();
+        let shear = solution.stress_summary(Member::Body, &strengths, &options)?.layers[0].shear;
+        let (value, error) = (shear.value / (1.5 * load / PI), shear.uncertainty.unwrap_or(0.0));
+        let (missing, error) = (exact - value, error / (1.5 * load / PI));
+        assert!((0.0..=error).contains(&missing), "{count}: {missing:.1e} {error:.1e}");
+    }
+    Ok(())
+}
+
 /// A coating that equals its substrate changes nothing, and at the edge of a punch, where pressure has no end, no point is
 /// added.
 #[test]
