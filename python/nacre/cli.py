@@ -44,6 +44,9 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 
     try:
+        if not given:
+            app(["--help"], prog_name="nacre", standalone_mode=False)
+            return 2
         return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _fail(error.format_message(), 2)

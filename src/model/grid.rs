@@ -198,18 +198,21 @@ impl Grid {
         Self::new(cells, size).unwrap_or(*self)
     }
 
-    /// A grid with the same centre, wider along `axes`: about twice as wide at level 0, with the same cells, and twice as wide
-    /// with cells twice as large at each further level.
-    pub(crate) fn widened(&self, axes: [bool; 2], level: usize) -> Result<Self> {
-        let larger = 2.0_f64.powi(level.min(1000) as i32);
-        let cells = |axis: usize| self.shape[axis] + 2 * self.shape[axis].div_ceil(2);
-        let shape = [0, 1].map(|axis| if axes[axis] { cells(axis) } else { self.shape[axis] });
-        let size = [0, 1].map(|axis| match axes[axis] {
-            true => larger * self.spacing()[axis] * shape[axis] as f64,
-            false => self.size[axis],
-        });
-        let grid =
-            if self.is_line() { Self::line(shape[1], size[1])? } else { Self::new(shape, size)? };
+    /// A grid with the same centre, wider along axes that have a level: about twice as wide at level 0, with the same cells,
+    /// and twice as wide with cells twice as large at each further level.
+    pub(crate) fn widened(&self, levels: [Option<usize>; 2]) -> Result<Self> {
+        let wide = |axis: usize| {
+            let (cells, spacing) = (self.shape[axis], self.spacing()[axis]);
+            levels[axis].map_or((cells, self.size[axis]), |level| {
+                let cells = cells + 2 * cells.div_ceil(2);
+                (cells, 2.0_f64.powi(level.min(1000) as i32) * spacing * cells as f64)
+            })
+        };
+        let [(nx, lx), (ny, ly)] = [wide(0), wide(1)];
+        let grid = match self.is_line() {
+            true => Self::line(ny, ly)?,
+            false => Self::new([nx, ny], [lx, ly])?,
+        };
         grid.periodic(self.periodic)?.centered_at(self.center)
     }
 

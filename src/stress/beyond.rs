@@ -16,10 +16,53 @@ use crate::compliance::response::interior::Place;
 use crate::error::Result;
 use crate::model::grid::Grid;
 
+/// The largest value found so far, and its cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Largest {
+    pub(super) value: f64,
+    pub(super) cell: usize,
+}
+
+impl Largest {
+    pub(super) const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
+
+    pub(super) fn offer(&mut self, value: f64, cell: usize) {
+        if value > self.value {
+            *self = Self { value, cell };
+        }
+    }
+
+    /// Twice what parabolas through this value and its neighbours along each axis rise above it: the value between centres
+    /// of cells is larger by about once that. `of` has the values of cells that count.
+    pub(super) fn between(&self, grid: &Grid, of: impl Fn(usize) -> Option<f64>) -> f64 {
+        let (shape, periodic) = (grid.shape(), grid.is_periodic());
+        let at = [self.cell / shape[1], self.cell % shape[1]];
+        let beside = |axis: usize, step: usize| {
+            let count = shape[axis];
+            let moved = at[axis] + step;
+            let wraps = (moved >= count) == (step == 1);
+            let mut cell = at;
+            cell[axis] = moved % count;
+            if wraps && !periodic[axis] { None } else { of(cell[0] * shape[1] + cell[1]) }
+        };
+        let gain = |axis: usize| {
+            let (before, after) = (beside(axis, shape[axis] - 1)?, beside(axis, 1)?);
+            let curvature = (2.0 * self.value - before - after).max(0.0);
+            // The vertex is at most half a cell away, unless cells that do not count have larger values.
+            let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
+            (curvature > 0.0).then(|| slope * slope / curvature)
+        };
+        [0, 1].into_iter().filter_map(gain).sum()
+    }
+}
+
 /// Growth of a value from one grid to the next, as a part of it, below which the place does not matter: a stress that
 /// rises to its residual value at infinity has none. Growth falls at least by half from grid to grid, since stresses fall off
 /// at least as the distance: as much again is left.
 const NEGLIGIBLE_GROWTH: f64 = 1e-3;
+
+/// Growth that does not matter, as a part of the largest stress at the depth.
+const NEGLIGIBLE_STRESS: f64 = 1e-6;
 
 /// What evaluates a plan beyond its grid.
 #[derive(Debug)]
@@ -48,6 +91,7 @@ impl<'a> Beyond<'a> {
         progress: &mut StressProgress,
     ) -> ControlFlow<(), [Peak; N]> {
         let mut inner = self.plan.whole.grid;
+        let largest = peaks.iter().fold(0.0_f64, |largest, peak| largest.max(peak.value.abs()));
         for level in 0.. {
             let cut = borders(&inner, &peaks);
             if cut == [false; 2] || !self.has(level, cut, progress)? {
@@ -55,24 +99,34 @@ impl<'a> Beyond<'a> {
             }
             let plan = &self.wider[level];
             let planes = self.planes(plan, places, residual, progress)?;
+            let values = |cell: usize| {
+                let tensor = |fields: &[Vec<f64>; STRESSES]| {
+                    Tensor::new(fields.each_ref().map(|field| field[cell]))
+                };
+                of(&planes.each_ref().map(tensor))
+            };
             let grid = &plan.whole.grid;
             let (x, y) = (grid.x(), grid.y());
+            let mut found = peaks.map(|peak| Largest { value: peak.value, cell: usize::MAX });
+            for (cell, at) in x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).enumerate() {
+                if !inner.holds(at) {
+                    let offered = found.iter_mut().zip(values(cell));
+                    offered.for_each(|(found, value)| found.offer(value, cell));
+                }
+            }
             let mut grown = false;
-            for (k, [x, y]) in x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).enumerate() {
-                if inner.holds([x, y]) {
+            for (k, (peak, found)) in peaks.iter_mut().zip(found).enumerate() {
+                if found.cell == usize::MAX {
                     continue;
                 }
-                let tensors = planes
-                    .each_ref()
-                    .map(|fields| Tensor::new(fields.each_ref().map(|field| field[k])));
-                for (peak, value) in peaks.iter_mut().zip(of(&tensors)) {
-                    if value > peak.value {
-                        grown |= value - peak.value > NEGLIGIBLE_GROWTH * value.abs();
-                        (peak.value, peak.position[0], peak.position[1]) = (value, x, y);
-                        let rest = 2.0 * NEGLIGIBLE_GROWTH * value.abs();
-                        peak.uncertainty = peak.uncertainty.map(|error| error.max(rest));
-                    }
-                }
+                let growth = found.value - peak.value;
+                let rest = NEGLIGIBLE_GROWTH * found.value.abs();
+                grown |= growth > rest && growth > NEGLIGIBLE_STRESS * largest;
+                let between = found.between(grid, |cell| Some(values(cell)[k]));
+                peak.value = found.value;
+                peak.position[0] = x[found.cell / y.len()];
+                peak.position[1] = y[found.cell % y.len()];
+                peak.uncertainty = peak.uncertainty.map(|_| 2.0 * rest + between);
             }
             if !grown {
                 break;
@@ -82,7 +136,7 @@ impl<'a> Beyond<'a> {
         ControlFlow::Continue(peaks)
     }
 
-    /// Whether there is a plan of this level, which is made where it lacks.
+    /// Whether there is a plan of this level, which is made if it does not exist yet.
     fn has(
         &mut self,
         level: usize,
@@ -107,7 +161,10 @@ impl<'a> Beyond<'a> {
     /// The plan on a grid 2^(`level` + 1) times as wide.
     fn widened(&self, level: usize, progress: &mut StressProgress) -> Result<Option<StressPlan>> {
         let whole = &self.plan.whole;
-        let grid = whole.grid.widened(self.axes, level)?;
+        // Along x, larger cells might reach beyond a free end.
+        let ended = whole.body.ends() != [None; 2];
+        let levels = [if ended { 0 } else { level }, level];
+        let grid = whole.grid.widened([0, 1].map(|k| self.axes[k].then_some(levels[k])))?;
         let moved = |field: &[f64]| moved(field, &whole.grid, &grid);
         let pressure = moved(&whole.pressure);
         let sign = self.plan.sliding.sign;
@@ -167,14 +224,15 @@ fn moved(field: &[f64], from: &Grid, to: &Grid) -> Array2<f64> {
     const ROUNDING: f64 = 1e-9;
     let shares = |axis: usize| -> Vec<Vec<(usize, f64)>> {
         let (first, spacing) = (to.coordinates(axis)[0], to.spacing()[axis]);
-        let side = from.spacing()[axis] / spacing;
+        let (side, count) = (from.spacing()[axis] / spacing, to.shape()[axis]);
         let share = |at: &f64| {
             let nearest = ((at - first) / spacing).round();
             let moment = (at - first) / spacing - nearest;
             let second = moment * moment + (side * side - 1.0) / 12.0;
             let shares = [0.5 * (second - moment), 1.0 - second, 0.5 * (second + moment)];
             let cells = (0..3).map(|k| (nearest as usize + k).wrapping_sub(1));
-            cells.zip(shares).filter(|(_, share)| share.abs() > ROUNDING).collect()
+            let kept = |(cell, share): &(usize, f64)| *cell < count && share.abs() > ROUNDING;
+            cells.zip(shares).filter(kept).collect()
         };
         from.coordinates(axis).iter().map(share).collect()
     };

@@ -43,7 +43,7 @@ const NEAR: f64 = 2.0;
 /// the patch.
 const MARGINS: [f64; 2] = [0.25, 1.25];
 
-/// Number of cells that a patch may have, however small the grid is: 512². It takes some two seconds.
+/// Number of cells that a patch may have, however small the grid is: 512².
 const FEWEST_CELLS: usize = 1 << 18;
 
 /// What a refined summary is made of.
@@ -193,11 +193,14 @@ impl Refined<'_> {
         Ok(summary)
     }
 
-    /// Numbers of the extremes that are more uncertain than is asked for, the worst first.
+    /// Numbers of the extremes on the grid that are more uncertain than is asked for, the worst first.
     fn uncertain(&self, summary: &mut StressSummary) -> Vec<usize> {
         let least = summary.least_value();
+        let grid = self.solution.grid();
         let ratio = |peak: &Peak| {
-            let ratio = peak.uncertainty? / peak.value.abs().max(least);
+            let [x, y, _] = peak.position;
+            let ratio =
+                peak.uncertainty.filter(|_| grid.holds([x, y]))? / peak.value.abs().max(least);
             Some(ratio).filter(|ratio| *ratio > self.target)
         };
         let peaks = summary.peaks().into_iter().enumerate();

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::beside::Beside;
-use super::beyond::Beyond;
+use super::beyond::{Beyond, Largest};
 use super::field::{Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
@@ -439,23 +439,6 @@ struct Planes<'a, 'b> {
     beyond: Beyond<'a>,
 }
 
-/// The largest value found so far, and its cell.
-#[derive(Debug, Clone, Copy)]
-struct Largest {
-    value: f64,
-    cell: usize,
-}
-
-impl Largest {
-    const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
-
-    fn offer(&mut self, value: f64, cell: usize) {
-        if value > self.value {
-            *self = Self { value, cell };
-        }
-    }
-}
-
 impl<'a, 'b> Planes<'a, 'b> {
     /// Planes of `plan` under a friction and the residual stress of each layer; `progress` is told how
     /// many of those `planned` are done.
@@ -500,13 +483,15 @@ impl<'a, 'b> Planes<'a, 'b> {
         ControlFlow::Continue(())
     }
 
+    /// Whether a cell counts.
+    fn counts(&self, cell: usize) -> bool {
+        let ny = self.plan.whole.grid.shape()[1];
+        self.beside.as_ref().is_none_or(|beside| beside.has([cell / ny, cell % ny]))
+    }
+
     /// Numbers of the cells that count.
     fn cells(&self) -> Vec<usize> {
-        let ny = self.plan.whole.grid.shape()[1];
-        let counts = |cell: &usize| {
-            self.beside.as_ref().is_none_or(|beside| beside.has([cell / ny, cell % ny]))
-        };
-        (0..self.fields[0].len()).filter(counts).collect()
+        (0..self.fields[0].len()).filter(|cell| self.counts(*cell)).collect()
     }
 
     fn tensor(&self, cell: usize) -> Tensor {
@@ -671,8 +656,8 @@ impl<'a, 'b> Planes<'a, 'b> {
     ) -> ControlFlow<(), [Peak; N]> {
         let peaks = std::array::from_fn(|n| {
             let peak = self.peak(found[n], &places[K - 1]);
-            let value = |cell: usize| of(&self.tensors(before, cell))[n];
-            let between = self.between(found[n], value);
+            let value = |cell: usize| self.counts(cell).then(|| of(&self.tensors(before, cell))[n]);
+            let between = found[n].between(&self.plan.whole.grid, value);
             Peak { uncertainty: peak.uncertainty.map(|error| error + between), ..peak }
         });
         if self.beside.is_some() {
@@ -681,24 +666,6 @@ impl<'a, 'b> Planes<'a, 'b> {
         let part = (self.done as f64 / self.planned as f64).min(1.0);
         let mut told = |_| (self.progress)(part);
         self.beyond.peaks(peaks, places, self.residual, of, &mut told)
-    }
-
-    /// Twice what parabolas through the largest value and its neighbours along each axis rise above it: the value between
-    /// centres of cells is larger by about once that.
-    fn between(&self, Largest { value, cell }: Largest, of: impl Fn(usize) -> f64) -> f64 {
-        let [nx, ny] = self.plan.whole.grid.shape();
-        let axes = [(cell / ny, nx, ny), (cell % ny, ny, 1)];
-        let gain = |(at, count, stride): (usize, usize, usize)| {
-            if at == 0 || at + 1 == count {
-                return 0.0;
-            }
-            let [before, after] = [of(cell - stride), of(cell + stride)];
-            let curvature = (2.0 * value - before - after).max(0.0);
-            // The vertex is at most half a cell away, unless cells that do not count have larger values.
-            let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
-            if curvature > 0.0 { slope * slope / curvature } else { 0.0 }
-        };
-        axes.into_iter().map(gain).sum()
     }
 }
 

@@ -34,11 +34,16 @@ MARK, SEAL = 16, 48
 """Bytes of a mark, and of a mark and a digest: the last ones of a file."""
 
 
+def check_folder(path: Path) -> None:
+    """Raise a `FileNotFoundError` unless the folder of a file exists."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
+    check_folder(path)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         temporary = Path(folder) / path.with_suffix(path.suffix.lower()).name
         yield temporary

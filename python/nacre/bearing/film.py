@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution
 from nacre.hertz import contact_modulus
@@ -27,6 +28,8 @@ SEPARATED = 3.0
 """Ratio λ of film and roughness from which surfaces count as separated; recalled."""
 FITTED = {"U": (1.68e-12, 5.05e-11), "W": (1.1e-7, 1.3e-6), "G": (2310.0, 6790.0), "k": (1.0, 8.0)}
 """Ranges of the cases to which Hamrock and Dowson fitted (1977); k is seen, the others recalled."""
+THICKEST = 1e6
+"""Largest G of any oil, roughly: with steel, of 4e-6 1/Pa."""
 FLAT = 1e-9
 """Rise of a shape over the displacement below which it is rounding, of 1e-16 of both."""
 COATED = (
@@ -177,7 +180,7 @@ def film_thickness(
     viscosity : float
         Dynamic viscosity at ambient pressure and the temperature of the inlet [Pa s].
     pressure_viscosity : float
-        Pressure-viscosity coefficient α [1/Pa].
+        Pressure-viscosity coefficient α [1/Pa], of oils some 2e-8.
     roughness : float, optional
         Rms roughness of both surfaces together, ``sqrt(Rq1² + Rq2²)`` [m].
     radius : float, optional
@@ -195,8 +198,9 @@ def film_thickness(
     TypeError
         If solution is no Solution, or another argument no number.
     ValueError
-        If an argument is not finite and above 0, nothing touches, the grid is periodic, a body has
-        no modulus, or the radius cannot be found.
+        If an argument is not finite and above 0, the pressure-viscosity coefficient is that of no
+        oil, nothing touches, the grid is periodic, a body has no modulus, or the radius cannot be
+        found.
 
     Examples
     --------
@@ -221,6 +225,11 @@ def film_thickness(
     if not solution.load > 0:
         raise ValueError(f"solution must be one in contact, got a load of {solution.load:g}")
     modulus = _modulus(solution)
+    if pressure_viscosity * modulus > THICKEST:
+        raise ValueError(
+            f"pressure_viscosity must be at most {THICKEST / modulus:.3g} 1/{symbol('Pa')} between "
+            f"these bodies, of oils it is some 2e-8 1/Pa, got {pressure_viscosity!r}"
+        )
     section = int(np.argmax(solution.line_load))
     if radius is None:
         radius = 1 / _curvature(solution, section)

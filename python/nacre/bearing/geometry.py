@@ -24,11 +24,13 @@ Ring = Literal["inner", "outer"]
 RINGS: tuple[Ring, Ring] = ("inner", "outer")
 STEEL = core.Elastic(young=210e9, poisson=0.3)
 """Steel of bearings, as ISO/TS 16281 has it: its E and ν give the standard's factor 271."""
+HIGHEST = 5e9
+"""Largest pressure that any bearing carries [Pa], roughly."""
 DEEPEST = 1 / 200
 """Largest preload of a contact over the diameter of the element.
 
-Steel then carries some 5 GPa, and the contact is 0.07 of the radius of the element wide: wider ones
-are no half-spaces.
+Steel then carries some `HIGHEST`, and the contact is 0.07 of the radius of the element wide: wider
+ones are no half-spaces.
 """
 
 
@@ -165,7 +167,7 @@ class Bearing(ABC):
         if self.play < -4 * DEEPEST * diameter:
             raise ValueError(
                 f"clearance must be at least {millimetres(-4 * DEEPEST * diameter)}, where "
-                f"contacts of steel carry 5 GPa and are no longer small; "
+                f"contacts of steel carry {HIGHEST / 1e9:g} GPa and are no longer small; "
                 f"got {millimetres(self.play)}"
             )
 

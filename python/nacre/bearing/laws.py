@@ -196,8 +196,7 @@ class Solved:
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = math.ceil(STEPS * math.log2(float(lines.max())) / power)
         heaviest = 2.0 ** (steps * power / STEPS)
-        with np.errstate(divide="ignore"):
-            halved = np.floor(np.log2(heaviest / np.maximum(lines, 1e-300)) / power)
+        halved = np.floor(np.log2(heaviest / np.maximum(lines, 1e-100 * heaviest)) / power)
         self.halved = np.clip(halved, 0, NARROWEST).astype(int)
         self.heaviest, self.power, self.cells = heaviest, power, cells
         self.workers = threads or core.Convolution([[1.0]], None).threads()

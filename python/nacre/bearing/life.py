@@ -9,11 +9,12 @@ weighted by the stress, and Zaretsky (1987).
 
 from __future__ import annotations
 
+import functools
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from nacre.contact.stresses import Stress
 
 Array = npt.NDArray[np.float64]
+P = ParamSpec("P")
+T = TypeVar("T")
 
 SHALLOWEST, DEEPEST = 0.05, 5.0
 """Depths between which the integral is taken, over the half-width of the contact.
@@ -46,6 +49,8 @@ NODES = 16
 Twice as many change the integral of the largest shear stress by 3e-7, and that of the orthogonal
 one, which cells make rough near the surface, by 1e-4.
 """
+OF_RINGS = " of rings, "
+"""Words in the model of a ratio of lives of bearings."""
 LINE, POINT = 9 / 8, 10 / 9
 """Weibull slopes e of line and point contacts, Lundberg and Palmgren."""
 
@@ -250,6 +255,19 @@ class StressVolume(_Beside):
         return [("integral", said), *self._layered()]
 
 
+def _in_si(
+    told: Callable[Concatenate[LifeRatio, P], T],
+) -> Callable[Concatenate[LifeRatio, P], T]:
+    """Return a method that is in SI for lives of bearings, and in the units that are set else."""
+
+    @functools.wraps(told)
+    def inside(ratio: LifeRatio, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        method = display.in_si(told) if OF_RINGS in ratio.model else told
+        return method(ratio, *args, **kwargs)
+
+    return inside
+
+
 @dataclass(frozen=True, repr=False)
 class LifeRatio(_Beside):
     """Life over that of a reference, both at the same probability: a model.
@@ -289,6 +307,10 @@ class LifeRatio(_Beside):
     notes: tuple[str, ...]
     """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
+    to_xarray = _in_si(_Beside.to_xarray)
+    save = _in_si(_Beside.save)
+
+    @_in_si
     def _rows(self) -> list[tuple[str, str]]:
         said = f"{self.ratio:.5g}"
         if math.isinf(self.ratio):
@@ -503,13 +525,13 @@ def life_ratio(
                 _of_bearing(bearing, model, tell, k / 2)
                 for k, bearing in enumerate((solution, reference))
             )
-        kinds = "of rings"
+        kinds = OF_RINGS
     else:
         one, other = (
             stress_volume(contact, model, body=body)  # type: ignore[arg-type]
             for contact in (solution, reference)
         )
-        kinds = "of contacts"
+        kinds = " of contacts, "
     if one.slope != other.slope:
         raise ValueError(
             f"solution and reference must have the same slope e, got {one.slope:.5g} and "
@@ -542,7 +564,7 @@ def life_ratio(
         one.coating_tension,
         one.interface_shear,
         one.interface_tension,
-        f"{names} {kinds}, a model: ratios of equal materials only",
+        f"{names}{kinds}a model: ratios of equal materials only",
         one.notes,
     )
 

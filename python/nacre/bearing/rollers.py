@@ -215,6 +215,11 @@ class CylindricalRoller(_Rollers):
             object.__setattr__(self, "raceway_diameters", both)
             for value in both:
                 above("raceway_diameters", value)
+            if both[0] >= both[1]:
+                raise ValueError(
+                    "raceway_diameters must be (inner, outer), the inner one the smaller, "
+                    f"got {both!r}"
+                )
 
     @property
     def pitch(self) -> float:

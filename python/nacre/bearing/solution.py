@@ -32,6 +32,8 @@ Model = Literal["solved", "iso16281"]
 
 SLIGHT = 1e-8
 """Share of loads and approaches below which a number is printed as 0."""
+ROUNDING = 1e-9
+"""Share of all loads together below which the load of a contact is rounding."""
 EDGE = 0.1
 """Share of the length at either end of a roller in which the edge pressure is looked for."""
 ARRAYS = (
@@ -59,6 +61,12 @@ EDGES = {
 """Words for the factors of a life."""
 BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
+
+
+def carrying(loads: Array) -> npt.NDArray[np.bool_]:
+    """Return which contacts carry more than rounding."""
+    found: npt.NDArray[np.bool_] = loads > ROUNDING * loads.sum()
+    return found
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,6 +136,10 @@ class BearingLife(Listed):
     model: str
     """Model in words."""
 
+    to_xarray = display.in_si(Listed.to_xarray)  # type: ignore[arg-type]
+    save = display.in_si(Listed.save)
+
+    @display.in_si
     def _rows(self) -> list[tuple[str, str]]:
         life = "infinite: no element is loaded"
         if math.isfinite(self.revolutions):
@@ -224,7 +236,7 @@ class BearingSolution(Tabular):
     @property
     def loaded(self) -> int:
         """Number of elements that both rings load."""
-        return int((self.loads > 0).all(axis=1).sum())
+        return int(carrying(self.loads).all(axis=1).sum())
 
     @property
     def reference_life(self) -> float:
@@ -421,6 +433,7 @@ class BearingSolution(Tabular):
 
         return plot.bearing(self, axes)
 
+    @display.in_si
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of all numbers over elements, rings and laminae; needs ``nacre-contact[files]``.
 
@@ -437,6 +450,7 @@ class BearingSolution(Tabular):
         table = [(row, row.si()) for row in BEARING]
         return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
 
+    @display.in_si
     def save(self, path: Any) -> Any:
         """Write a file, whole or not at all.
 
@@ -495,6 +509,7 @@ class BearingSolution(Tabular):
         for j in range(self.bearing.elements):
             yield [j, *(float(values[j]) for _, _, values in columns)]
 
+    @display.in_si
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
         kinds = {row.name: row for row in BEARING}
@@ -531,11 +546,12 @@ class BearingSolution(Tabular):
         rows = ", ".join(" ".join(row) for row in self._rows())
         return printable(f"<{type(self).__name__}: {rows}>")
 
+    @display.in_si
     def __str__(self) -> str:
         """Return the main numbers, and a table of the loaded elements."""
         columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
         lines = [["element", *(name for _, name, _ in columns)]]
-        for j in np.flatnonzero((self.loads > 0).any(axis=1)):
+        for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
             values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
             lines.append([f"{j}", *(written(value, row.si()) for row, value in values)])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])

@@ -309,7 +309,7 @@ def _first(error: ValidationError, data: Any) -> str:
         said = f"got {_shown(got)}" if "kind" in here.value else "this key is missing"
         return f"{here.key}.kind: must be one of {kinds}; {said}"
     if kind == "value_error":
-        return f"{here.key}: {first['ctx']['error']}"
+        return f"{here.key}: {first['ctx']['error']}".removeprefix(": ")  # of the whole file
     return f"{here.key}: must be {here.words()}, got {_shown(here.value)}"
 
 

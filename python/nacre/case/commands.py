@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 import nacre
-from nacre._tools.disk import PICTURES, replacing
+from nacre._tools.disk import PICTURES, check_folder, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import system
 from nacre.bearing import BearingSolution, Film, film_thickness
@@ -46,6 +46,16 @@ ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
+def _in_folder(given: Any) -> Any:
+    """Return the paths of an option, or the path; a folder that is missing is an error."""
+    for path in given if isinstance(given, list | tuple) else [given]:
+        try:
+            check_folder(path or Path())
+        except FileNotFoundError as error:
+            raise typer.BadParameter(str(error)) from error
+    return given
+
+
 def _version(asked: bool) -> None:
     if asked:
         print(f"nacre {nacre.__version__}")
@@ -75,7 +85,10 @@ def solve(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
-        typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
+        typer.Option(
+            callback=_in_folder,
+            help="File to write: .nc, .vtr, .csv, or a picture. May be repeated.",
+        ),
     ] = None,
     initial: Annotated[
         Path | None,
@@ -140,8 +153,6 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
                 added["film"] = _film(solution, **film)
             except (ArithmeticError, TypeError, ValueError) as error:
                 raise CaseError(f"{case}: bearing.film: {error}") from error
-    for path in save:
-        solution.save(path)
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         state = {k: v for k, v in solution.to_dict().items() if k not in left}
@@ -149,6 +160,8 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
         print(json.dumps(_plain(state), indent=2))
     else:
         print("\n\n".join(map(str, (solution, *added.values()))))
+    for path in save:
+        solution.save(path)
 
 
 def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
@@ -187,9 +200,6 @@ def _solve(
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: fatigue: {error}") from error
     steps = solved if isinstance(solved, nacre.types.History) else None
-    for path in save:
-        # The fields of ParaView's file are those of the last step.
-        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
     if as_json:
         named = {"stress": stress, "fatigue": fatigue}
         extremes = {name: one.to_dict() for name, one in named.items() if one is not None}
@@ -199,16 +209,21 @@ def _solve(
         if steps:
             print(f"{steps}\n\nlast step")
         print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
+    for path in save:
+        # The fields of ParaView's file are those of the last step.
+        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
 
 
 @app.command()
 def sweep(
     case: CaseFile,
     store: Annotated[
-        Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
+        Path | None,
+        typer.Option(callback=_in_folder, help="NetCDF file, in place of the one in the case."),
     ] = None,
     save: Annotated[
-        list[Path] | None, typer.Option(help="File to write: .csv. May be repeated.")
+        list[Path] | None,
+        typer.Option(callback=_in_folder, help="File to write: .csv. May be repeated."),
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     units: Units = None,
@@ -226,9 +241,6 @@ def sweep(
             dataset = nacre.sweep(described, retry=retry, **study)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: sweep: {error}") from error
-    for path in save or []:
-        with replacing(path) as temporary:
-            dataset.to_dataframe().to_csv(temporary)
     failed = int((dataset.error != "").sum())
     if as_json:
         print(json.dumps(_plain(dataset.to_dict()), indent=2))
@@ -239,6 +251,9 @@ def sweep(
             if " cases failed" not in text:  # the last line says that
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
+    for path in save or []:
+        with replacing(path) as temporary:
+            dataset.to_dataframe().to_csv(temporary)
     if failed:
         raise typer.Exit(1)
 
@@ -247,7 +262,8 @@ def sweep(
 def indent(
     case: CaseFile,
     save: Annotated[
-        list[Path] | None, typer.Option(help="File to write: .nc or .csv. May be repeated.")
+        list[Path] | None,
+        typer.Option(callback=_in_folder, help="File to write: .nc or .csv. May be repeated."),
     ] = None,
     units: Units = None,
     as_json: Json = False,
@@ -268,9 +284,9 @@ def indent(
                 found = _indent_numbers(solution)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
+        print(json.dumps(_plain(found), indent=2) if as_json else solution)
         for path in save or []:
             solution.save(path)
-        print(json.dumps(_plain(found), indent=2) if as_json else solution)
 
 
 @app.command()

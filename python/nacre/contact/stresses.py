@@ -743,7 +743,7 @@ class Stressed:
         refine : float, optional
             Largest estimated error of the extremes, as a part of them, such as 0.05. A patch around
             each place where the cells leave a larger one is solved again on finer cells, until
-            the error is below it or the patch has as many cells as the grid, or 512 × 512 if that
+            the error is below it or the patch has as many cells as the grid or 512 × 512, whichever
             is more. By default the cells of the grid are used. Not for `nacre.slide` and
             `nacre.roll`, periodic grids, surfaces that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional

@@ -63,8 +63,10 @@ def coating_chart(
         shape rolls, as in `Solution.stress`; for shapes without one it must be given where
         `friction` is above 0.
     refine
-        Largest error of a stress, as a part of it, as in `Solution.stress_summary`. None: cells are
-        not made smaller.
+        Largest estimated error of a stress, as a fraction of it: `Solution.stress_summary` then
+        solves finer cells around the most loaded places, which can take several times as long. None
+        keeps the cells of the grid, as do contacts that cannot be refined: periodic ones and those
+        with a hardness or given coefficients.
     options
         Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 
@@ -96,7 +98,7 @@ def coating_chart(
 
     sliding: dict[str, Any] = {"friction": friction, "direction": direction}
     check_direction({"shape": shape, **asked}, **sliding)
-    stress = {**sliding, "refine": refine}
+    stress = {**sliding, "refine": refine if _refinable(asked) else None}
     outputs = ["peak_pressure", "coating_tension", "interface_shear", "contact_area", "approach"]
     parameters = {"thickness": thickness, "young": young}
     dataset = sweep(case, parameters, outputs=outputs, stress=stress, **study)
@@ -106,6 +108,13 @@ def coating_chart(
         "long_name": "Young's modulus of the coating",
     }
     return dataset
+
+
+def _refinable(asked: Mapping[str, Any]) -> bool:
+    """Whether the stresses of a contact can be refined."""
+    grid = asked.get("grid")
+    given = any(asked.get(name) is not None for name in ("hardness", "indentation", "coefficients"))
+    return not given and (grid is None or not any(grid.periodic))
 
 
 def load_curve(

@@ -49,7 +49,8 @@ class Optimum:
         Number of solves; each derivative of an output counts as one.
     termination : str
         ``"converged"``, ``"line search"`` (no step along the gradient improves, as where cells join
-        and leave the contact) or ``"solve limit"``.
+        and leave the contact), ``"infeasible"`` (no values were found that respect the limits; a
+        warning says by how much) or ``"solve limit"``.
     warnings : list of str
         Warnings of the solutions and of the gradients at the optimum.
     """
@@ -264,6 +265,10 @@ def optimise(
     told = [line for solution in point.solutions for line in solution.report.warnings]
     told = list(dict.fromkeys([*told, *point.warnings]))
     told += [f"{s.name} does not change the objective there" for s in scales if not slopes[s.name]]
+    excess = -float(point.slack.min(initial=math.inf))
+    if excess > tolerance:
+        termination = "infeasible" if termination == "line search" else termination
+        told += [f"a limit is exceeded: the output is {1 + excess:.3g} times as large"]
     best = problem.named(point.x), point.value * problem.unit, tuple(limits), table
     return Optimum(*best, point.solutions, problem.solves, termination, told)
 

@@ -140,6 +140,15 @@ class Fit(Tabular):
 
         indent.fit_report(self, path)
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether all is equal, to the bit."""
+        if not isinstance(other, Fit):
+            return NotImplemented
+        # Texts tell NaN from other numbers, and equal NaN.
+        return str(self._state()) == str(other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __repr__(self) -> str:
         """Return a line with the estimates."""
         said = ", ".join(f"{name} {self._value(name)}" for name in self.free)

@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import WIDTH, look, new_axes, styled
+from nacre.plot.style import STYLE, WIDTH, look, new_axes, styled
+from nacre.results.display import in_si
 
 with extra("plot"):
     import matplotlib.pyplot as plt
@@ -30,6 +31,7 @@ MOST = 7
 """Largest number of curves: there are so many colours."""
 
 
+@in_si
 def bearing(solution: BearingSolution, axes: Any = None) -> dict[str, Any]:
     """Draw the loads of all elements, and the pressure along the heaviest one.
 
@@ -81,6 +83,7 @@ def bearing(solution: BearingSolution, axes: Any = None) -> dict[str, Any]:
         return made
 
 
+@in_si
 def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) -> Axes:
     """Draw the loads of the elements around the bearing, x to the right.
 
@@ -128,12 +131,15 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
         axes.set_axisbelow(True)
         highest = scale.factor * float(loads.max(initial=0.0))
         ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]
-        axes.set_yticks(ticks)
+        axes.set_yticks(ticks, [])
         axes.set_xticks(solution.angles[:count], [f"{j}" for j in range(count)])
         axes.set_title(f"load of each element [{scale.unit}]", loc="center")
         # Between two elements, on the left.
         beside = solution.rotation + (math.floor(count / 2) + 0.5) * width
-        axes.set_rlabel_position(math.degrees(beside))  # type: ignore[attr-defined]
+        paper = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+        for tick in ticks:  # those of Matplotlib lie below the bars
+            style = {"size": STYLE["ytick.labelsize"], "ha": "center", "va": "center"}
+            axes.text(beside, tick, f"{tick:g}", bbox=paper, **style)
         if not same or rows > 1:
             axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.08), ncols=2)
     return axes
@@ -155,6 +161,7 @@ def _curve(solution: BearingSolution, element: int, ring: Ring) -> tuple[Array, 
     return ((np.arange(count) + 0.5) / count - 0.5) * length, pressures[element, number]
 
 
+@in_si
 def elements_pressure(
     solution: BearingSolution,
     elements: list[int] | None = None,

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import base64
+import functools
 import html
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import energy, printable, rounded, symbol, written
+from nacre._tools.units import display_units, energy, printable, rounded, symbol, written
 from nacre.results.quantities import CONTACT, FRICTION, Quantity
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from nacre.contact.stresses import InterfaceStress, LayerStress, StressSummary
     from nacre.fatigue.summary import InterfaceFatigue, LayerFatigue
 
+P = ParamSpec("P")
+T = TypeVar("T")
 Texts = Mapping[str, Callable[[Any], str | None]]
 Peak = tuple[float, tuple[float, float, float]]
 
@@ -35,6 +38,17 @@ SLIGHT = 1e-8
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
 UNFINISHED = "stopped before all depths were done"
+
+
+def in_si(told: Callable[P, T]) -> Callable[P, T]:
+    """Return a function of what is in SI whatever units are set, as the numbers of bearings are."""
+
+    @functools.wraps(told)
+    def inside(*args: P.args, **kwargs: P.kwargs) -> T:
+        with display_units("SI"):
+            return told(*args, **kwargs)
+
+    return inside
 
 
 def numbers(solution: Solution) -> list[tuple[str, str]]:

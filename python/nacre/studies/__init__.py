@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre._tools.paths import put
+from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import shown
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
@@ -92,7 +93,8 @@ def sweep(
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
         vary together. All others are combined. Beside arguments of a mapping, a name may be the
-        path of a number in one, such as ``"body.layers[0].thickness"`` or ``"tip.radius"``.
+        path of a number in one, such as ``"body.layers[0].thickness"``, ``"tip.radius"`` or
+        ``"bearing.clearance"``.
     outputs : sequence or mapping, optional
         Outputs that are kept of each solution: names of its attributes, and functions of it that
         return a number or an array, by name. By default load, approach, tilt, eccentricity, peak
@@ -160,6 +162,8 @@ def sweep(
         no study.
     TypeError
         If the case does not describe a solve, or an argument is of the wrong kind.
+    FileNotFoundError
+        If the folder of the store does not exist.
 
     Examples
     --------
@@ -183,6 +187,8 @@ def sweep(
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
     _check_store(path)
     coordinates, points = laid_out(parameters)
+    if isinstance(case, Mapping):
+        _check_paths(case, points)
     room = _room(case, points) if outputs is None or isinstance(case, Mapping) else None
     usual = [name for name in USUAL[room or "contact"] if name not in parameters]
     wanted = named(usual if outputs is None else outputs, room)
@@ -248,10 +254,13 @@ def sweep(
 
 
 def _check_store(path: Path | None) -> None:
-    """Raise a `ValueError` if something that is no study has the name of the store."""
-    from nacre._tools.disk import is_study
+    """Raise an error if the store has no folder, or something that is no study has its name."""
+    from nacre._tools.disk import check_folder, is_study
 
-    if path is not None and path.exists() and not is_study(path):
+    if path is None:
+        return
+    check_folder(path)
+    if path.exists() and not is_study(path):
         raise ValueError(
             f"store must be a new file or a study, got {str(path)!r}, which is neither"
         )
@@ -300,11 +309,53 @@ def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
                 f"dict(shape=..., body=..., load=...), got {made!r:.80}"
             )
         return dict(made)
-    paths = {name for name in point if "." in name or "[" in name}
-    found = {**case, **{name: value for name, value in point.items() if name not in paths}}
+    found, paths = _opened(case, point)
     for path in paths:
-        put(found, path, point[path], names="parameters", of="the case")
+        found |= core.with_value(_holder(found, path), path, point[path])
+    if isinstance(fields := found.get("bearing"), dict):  # made once: its numbers go together
+        found["bearing"] = type({**case, **point}["bearing"])(**fields)
     return found
+
+
+def _opened(case: Mapping[str, Any], point: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Return arguments before the numbers at paths are replaced, and the paths.
+
+    A bearing that holds such numbers is a dictionary of its fields.
+    """
+    paths = [name for name in point if "." in name or "[" in name]
+    found = {**case, **{name: value for name, value in point.items() if name not in paths}}
+    if any(path.startswith("bearing.") for path in paths):
+        with suppress(KeyError, AttributeError):  # no bearing: the path says so
+            found["bearing"] = found["bearing"]._arguments()
+    return found, paths
+
+
+def _holder(found: Mapping[str, Any], path: str) -> dict[str, Any]:
+    """Return the argument that holds the number at a path; a bearing may have None there."""
+    if path.startswith("bearing."):
+        with suppress(LookupError):
+            if core.at(found, path) is None:
+                return {"bearing": found["bearing"]}
+    return holder(found, path, "parameters", "the case")
+
+
+def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -> None:
+    """Raise a `ValueError` if a path leads to a number in none of the cases."""
+    for path in _opened(case, points[0])[1]:
+        wrong: ValueError | None = None
+        for point in points:
+            found, _ = _opened(case, point)
+            try:
+                _holder(found, path)
+                break
+            except ValueError as error:
+                wrong = wrong or error
+        else:
+            fields = found.get("bearing")
+            unset = [k for k, v in fields.items() if v is None] if isinstance(fields, dict) else []
+            names = [*numbers(found), *(f"bearing.{name}" for name in unset)]
+            known = get_close_matches(path, names, cutoff=0.0)
+            raise ValueError(f"{wrong}; the nearest are {', '.join(known)}")
 
 
 def _room(case: Case, points: Sequence[Mapping[str, Any]]) -> Room:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import math
 import pickle
 from pathlib import Path
@@ -22,7 +23,8 @@ from nacre.bearing import (
     TaperedRoller,
     rating,
 )
-from nacre.bearing.laws import Slices
+from nacre.bearing.laws import Slices, Solved
+from nacre.bearing.solution import carrying
 
 STEEL = nacre.Elastic(young=206e9, poisson=0.3)
 DLC = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(300e9, 0.25), 3e-6, name="DLC")])
@@ -409,3 +411,64 @@ def test_solution_is_saved_loaded_pickled_and_printed(
     damaged = coated.to_dict() | {"loads": [[1.0]]}
     with pytest.raises(ValueError, match="loads must have the shape"):
         BearingSolution.from_dict(damaged)
+
+
+def test_bearings_are_in_si_whatever_units_are_set(tmp_path: Path) -> None:
+    bearing = DeepGrooveBall(**BALLS)
+    solution = bearing.solve(force=(20.0, 0.0, None), cells=(32, 32))
+    ratio = nacre.bearing.life_ratio(solution, solution, nacre.bearing.LundbergPalmgren())
+    found = solution, solution.life(), ratio
+
+    def told() -> list[str]:
+        pages = [one.save(tmp_path / "a.csv").read_text("utf-8") for one in found]
+        sets = [one.to_xarray() for one in found]
+        units = [str({name: one[name].attrs for name in one}) + str(one.attrs) for one in sets]
+        labels = [axes.get_xlabel() + axes.get_title() for axes in solution.plot().values()]
+        forms = [form(one) for one in found for form in (repr, str)]
+        return [*pages, *units, *labels, *forms, *(one._repr_html_() for one in found)]
+
+    expected = told()
+    with nacre.display_units("N-mm-MPa"):
+        assert told() == expected
+        assert nacre.display_units("N-mm-MPa").before.name == "N-mm-MPa"
+
+
+def test_implausible_tilts_and_pressures_are_warned_of() -> None:
+    rollers, balls = CylindricalRoller(**ROLLERS), DeepGrooveBall(**BALLS)
+    with pytest.warns(nacre.NacreWarning):
+        tilted = rollers.solve(displacement=(1e-5, 0.0, None), tilt=(None, 0.5), **STANDARD)
+    tilt, peak = tilted.report.warnings
+    assert tilt.startswith("tilt is a slope: 2' are 5.8e-4; 0.5 is far above")
+    assert peak.startswith("the peak pressure is ")
+    assert ": above 5 GPa, contacts" in peak
+    with pytest.warns(nacre.NacreWarning, match="peak pressure is .* GPa: above 5 GPa"):
+        balls.solve(force=(1e5, 0.0, None), **STANDARD)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_huge_loads_overflow_nothing() -> None:
+    lines = np.array([[0.0, 6e9]])
+    contacts = Solved(CylindricalRoller(**ROLLERS), lines, (40, 24), 1e-9, 1)
+    assert contacts.halved.tolist() == [[3, 0]]
+
+
+def test_contacts_that_carry_rounding_are_not_told() -> None:
+    bearing = AngularContactBall(
+        count=8, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=math.radians(25)
+    )
+    solution = bearing.solve(force=(500.0, 0.0, 500.0), **STANDARD)
+    loads = solution.loads.copy()
+    light = int(loads[:, 0].argmin())
+    loads[light] = 2e-13
+    found = dataclasses.replace(solution, loads=loads)
+    assert found.loaded == solution.loaded - (solution.loads[light] > 0).all()
+    rows = str(found).split("\n\n")[1].splitlines()[1:]
+    assert f"{light}" not in [row.split()[0] for row in rows]
+    assert carrying(np.zeros((2, 2))).sum() == 0
+
+
+def test_swapped_raceways_are_refused() -> None:
+    given = {name: ROLLERS[name] for name in ("count", "diameter", "length")}
+    message = r"raceway_diameters must be \(inner, outer\), the inner one the smaller, got"
+    with pytest.raises(ValueError, match=message):
+        CylindricalRoller(**given, raceway_diameters=(83e-3, 61e-3))

@@ -61,3 +61,12 @@ def test_parts_can_be_drawn_into_given_axes() -> None:
     assert drawn["pressure"].get_title(loc="left") == "peak pressures, Hertz"
     unloaded = ball.solve(displacement=(0.0, 0.0, 0.0), model="iso16281")
     assert sorted(plot.bearing(unloaded)) == ["loads", "pressure"]
+
+
+def test_labels_of_loads_lie_on_white_above_the_bars() -> None:
+    axes = plot.load_distribution(STANDARD)
+    assert [text.get_text() for text in axes.texts] == [f"{tick:g}" for tick in axes.get_yticks()]
+    for text in axes.texts:
+        box: Any = text.get_bbox_patch()
+        assert box.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
+        assert text.get_zorder() > max(bar.get_zorder() for bar in axes.patches)

@@ -292,3 +292,9 @@ def test_contacts_without_a_film_are_refused() -> None:
     pressed = quiet(nacre.solve, waves, STEEL, load=1.0)
     with pytest.raises(ValueError, match="not periodic"):
         film_thickness(pressed, **OIL)
+
+
+def test_a_coefficient_in_another_unit_is_refused() -> None:
+    message = r"pressure_viscosity must be at most 4\.42e-06 1/Pa between .* got 20"
+    with pytest.raises(ValueError, match=message):
+        film_thickness(BALL, speed=1.0, viscosity=0.02, pressure_viscosity=20)

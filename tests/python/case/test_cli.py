@@ -28,6 +28,11 @@ def test_help_names_the_commands() -> None:
     assert [name for name in ("info", "indent", "solve", "sweep") if f" {name} " not in out] == []
 
 
+def test_without_arguments_help_is_printed_and_the_exit_code_is_2(capsys: Capture) -> None:
+    assert command() == 2
+    assert "Commands:" in capsys.readouterr().out
+
+
 def test_version_is_one_line_and_info_prints_the_versions(capsys: Capture) -> None:
     assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
     assert command("info") == 0
@@ -41,7 +46,10 @@ def test_version_is_one_line_and_info_prints_the_versions(capsys: Capture) -> No
         (["info", "--bogus"], "--bogus"),
         (["info", "extra"], "extra"),
         (["nothing"], "nothing"),
-        ([], "command"),
+        (["solve", "FILE", "--save", "nodir/x.nc"], "'--save': 'nodir' is not a folder"),
+        (["sweep", "FILE", "--save", "nodir/x.csv"], "'--save': 'nodir' is not a folder"),
+        (["sweep", "FILE", "--store", "nodir/x.nc"], "'--store': 'nodir' is not a folder"),
+        (["indent", "FILE", "--save", "nodir/x.nc"], "'--save': 'nodir' is not a folder"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(
@@ -84,6 +92,31 @@ load = 10
 [sweep]
 parameters."solve.load" = [1, 2]
 """
+
+
+def test_a_solution_is_printed_where_a_save_fails(tmp_path: Path, capsys: Capture) -> None:
+    case, saved = written(tmp_path, SPHERE), tmp_path / "x.nc"
+    saved.mkdir()
+    assert command("solve", case, "--save", saved) == 1
+    out, err = capsys.readouterr()
+    assert "peak pressure" in out
+    assert err.count("\n") == 1
+
+
+def test_an_error_of_the_whole_file_has_no_key(tmp_path: Path, capsys: Capture) -> None:
+    case = written(
+        tmp_path,
+        """
+        units = "N-mm-MPa"
+        bearing.kind = "deep_groove_ball"
+        bearing.count = 7
+        bearing.diameter = 11.5
+        bearing.pitch_diameter = 43.5
+        bearing.solve.force.z = 1000
+        """,
+    )
+    assert command("solve", case) == 2
+    assert f"{case}: units must be" in capsys.readouterr().err
 
 
 @pytest.fixture

@@ -372,7 +372,7 @@ def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> No
 # The coefficient of the area.
 
 WAVE = nacre.HeightMap(
-    np.repeat(1e-3 * np.cos(2 * np.pi * (np.arange(512) + 0.5) / 512)[:, None], 2, axis=1),
+    np.repeat(1e-3 * np.cos(2 * np.pi * (np.arange(512) + 0.5) / 512)[:, None], 32, axis=1),
     1 / 512,
     periodic=(True, True),
 )
@@ -382,7 +382,7 @@ FLAT = np.pi * 1e-3
 
 def test_the_coefficient_of_a_wave_is_that_of_closed_forms() -> None:
     """H' = √2 π Δ/λ = √2 p*/E*, so κ = √2 (A/A₀) p*/p̄, for two bodies and with a dent likewise."""
-    area, both = 2 / 512, nacre.Elastic(2.0, 0.0)
+    area, both = 32 / 512, nacre.Elastic(2.0, 0.0)
     for kinds in ((BODY,), (both, both), (nacre.HalfSpace(BODY, [nacre.Layer(BODY, 0.1)]),)):
         full = nacre.solve(WAVE, *kinds, load=2 * FLAT * area)
         # Full contact, A = A₀, at twice the pressure that it takes: what remains is rounding.

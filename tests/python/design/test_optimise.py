@@ -122,6 +122,19 @@ def test_a_limit_is_reached_and_kept() -> None:
     assert "limit 1.5e+09 on located_peak" in str(best)
 
 
+def test_a_limit_that_no_value_respects_is_told() -> None:
+    """Between the bounds the peak pressure stays above 0.5 GPa."""
+    best = optimise(
+        **(RADIUS | {"objective": "participation_area"}),
+        bounds={"shape.radius": (4e-3, 6e-3)},
+        constraints=[("located_peak", 0.5e9)],
+    )
+    assert best.termination == "infeasible"
+    assert best.values["shape.radius"] == pytest.approx(6e-3, rel=1e-3)
+    told = [line for line in best.warnings if line.startswith("a limit is exceeded")]
+    assert told == [f"a limit is exceeded: the output is {1 + best.excess:.3g} times as large"]
+
+
 def profile_of(
     grid: nacre.Grid,
     load: float,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -95,3 +97,15 @@ def test_the_files_of_a_fit_say_what_its_numbers_are(tmp_path: Path) -> None:
     assert [float(row[2]) for row in rows] == list(found.estimates.values())
     assert rows[0][1] == "Pa"
     assert "95 % interval" in found._repr_html_()
+
+
+def test_fits_are_equal_where_all_is(tmp_path: Path) -> None:
+    found = solved("fit")
+    assert nacre.load(found.save(tmp_path / "fit.nc")) == found
+    assert pickle.loads(pickle.dumps(found)) == found
+    unknown = [dataclasses.replace(found, condition=float("nan")) for _ in range(2)]
+    assert unknown[0] == unknown[1]
+    assert unknown[0] != found
+    residuals = [part + 1e-15 for part in found.residuals]
+    assert dataclasses.replace(found, residuals=residuals) != found
+    assert found != 1

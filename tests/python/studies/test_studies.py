@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +28,9 @@ import pytest
 import xarray
 
 import nacre
-from bodies import BALL, ROD, STEEL, coated
+from bodies import BALL, ROD, STEEL, coated, quiet
 from nacre import design
+from nacre.bearing import CylindricalRoller
 from support import Capture, Patch, python
 
 Output = str | Callable[[Any], Any]
@@ -42,6 +44,8 @@ def ball(thickness: float, young: float, load: float = 10.0) -> dict[str, Any]:
 THICKNESS, YOUNG = [5e-6, 2e-5, 4e-5], [105e9, 420e9]
 PARAMETERS = {"thickness": THICKNESS, "young": YOUNG}
 ONE = {"thickness": [1e-5], "young": [1e11]}
+MAPPED = {"shape": BALL, "body": coated(1e11, 1e-5), "grid": GRID, "load": 20.0}
+BEARING = CylindricalRoller(count=14, diameter=1e-2, length=1e-2, pitch_diameter=65e-3)
 
 
 def mean_pressure(solution: nacre.Solution) -> float:
@@ -91,6 +95,36 @@ def test_each_case_is_the_solve_it_describes() -> None:
             assert float(one.mean_pressure) == mean_pressure(solution)
             assert one.pressure.values.tobytes() == solution.pressure.tobytes()
     assert (study.error == "").all()
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {"bearing.clearance": [1e-5, 2e-5]},  # None in the case
+        {"bearing.count": [12, 14], "bearing.diameter": [9e-3, 1e-2]},
+        {"bearing.pitch_diameter": [40e-3], "bearing.diameter": [6e-3]},  # no room for 14 of 10 mm
+        {"bearing.inner.young": [100e9, 210e9], "bearing.raceway_crown[0]": [50.0]},
+    ],
+)
+def test_numbers_in_a_bearing_are_its_own_fields(parameters: dict[str, list[Any]]) -> None:
+    asked: dict[str, Any] = {"force": (6000.0, 0.0, None), "model": "iso16281"}
+    study = quiet(nacre.sweep, {"bearing": BEARING, **asked}, parameters, outputs=["loads"])
+    for values in itertools.product(*parameters.values()):
+        given = {name.split(".")[1]: v for name, v in zip(parameters, values, strict=True)}
+        if "raceway_crown[0]" in given:
+            given["raceway_crown"] = (given.pop("raceway_crown[0]"), None)
+            given["inner"] = nacre.Elastic(given["inner"], 0.3)
+        one = study.sel(dict(zip(parameters, values, strict=True)))
+        expected = quiet(replace(BEARING, **given).solve, **asked).loads
+        assert one.error.item() == ""
+        assert one.loads.values[: len(expected)].tolist() == expected.tolist()
+
+
+def test_a_path_that_some_cases_have_fails_only_in_the_others() -> None:
+    bodies = {"bare": STEEL, "coated": coated(1e11, 1e-5)}
+    study = quiet(nacre.sweep, MAPPED, {"body": bodies, "body.layers[0].thickness": [2e-5]})
+    assert study.error.sel(body="coated").item() == ""
+    assert "body.layers[0].thickness" in study.error.sel(body="bare").item()
 
 
 def shear_of_summary(solution: nacre.Solution) -> float:
@@ -723,6 +757,16 @@ def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
         ((lambda load: BALL, {"load": [1.0]}), {}, TypeError, "case must return the arguments"),
         (({"body": STEEL}, {"force": [1.0]}), {}, TypeError, "case must give arguments .*force"),
         (({"progress": print}, {"load": [1.0]}), {}, TypeError, "is not a value that can be kept"),
+        ((MAPPED, {"shape.radus": [1e-3]}), {}, ValueError, "no radus; the nearest are shape.rad"),
+        ((MAPPED, {"body.layers[1].thickness": [1e-6]}), {}, ValueError, r"are body\.layers\[0\]"),
+        ((MAPPED, {"shap.radius": [1e-3]}), {}, ValueError, "the nearest are shape.radius"),
+        (
+            ({"bearing": BEARING}, {"bearing.clearence": [1e-5]}),
+            {},
+            ValueError,
+            r"no clearence; the nearest are bearing\.clearance",
+        ),
+        ((ball, ONE), {"store": "nodir/x.nc"}, FileNotFoundError, "^'nodir' is not a folder$"),
     ],
 )
 def test_bad_input_is_refused_before_anything_is_solved(
@@ -785,6 +829,22 @@ def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> N
     assert (chart.peak_pressure.diff("young") > 0).all()
     assert chart.peak_pressure.attrs["units"] == "Pa"
     assert chart["thickness"].attrs["units"] == "m"
+
+
+@pytest.mark.filterwarnings("ignore:.*(uncertain|unresolved)")
+@pytest.mark.parametrize(
+    "options",
+    [{"hardness": 0.5e9}, {"grid": nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(True, True))}],
+    ids=["hardness", "periodic"],
+)
+def test_contacts_that_cannot_be_refined_have_their_chart(options: dict[str, Any]) -> None:
+    lists: dict[str, Any] = {"thickness": [3e-6], "young": [300e9]}
+    charts = [
+        design.coating_chart(BALL, STEEL, load=10.0, refine=refine, **lists, **options)
+        for refine in (0.2, None)
+    ]
+    assert np.isfinite(charts[0].coating_tension).all()
+    assert charts[0].equals(charts[1])
 
 
 @pytest.mark.filterwarnings("ignore:.*(uncertain|unresolved)")
