@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Solution
 
 
-LETTERS = 34
+LETTERS = 28
 """Letters of a line of the table of numbers; longer ones are wrapped."""
 
 

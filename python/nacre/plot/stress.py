@@ -144,7 +144,7 @@ def stress_section(
         if same:
             axes.set_aspect("equal")
         else:
-            title += f"; {along} and z to different scales"
+            title += f"\n{along} and z to different scales"
         axes.set_title(title)
     return axes
 

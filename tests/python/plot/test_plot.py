@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import nacre
 import support
@@ -174,6 +175,23 @@ def test_a_line_contact_has_one_section(line: nacre.Solution) -> None:
     axes = line.plot()
     assert sorted(axes) == ["numbers", "y"]
     drawn(axes["y"].figure)
+
+
+@pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
+def test_no_text_is_cut_off() -> None:
+    half = 7e-3
+    coat = nacre.Layer(nacre.Elastic(230e9, 0.22), 2.5e-6, name="DLC")
+    body = nacre.HalfSpace(STEEL, [coat], ends=(-half, half))
+    roller = nacre.Roller(5e-3, profile=nacre.LogarithmicProfile.iso16281(10e-3, 2 * half))
+    grid = nacre.Grid((48, 32), (2 * half, 5e-4))
+    solution = nacre.solve(roller, STEEL, body, load=6e3, tilt=(3e-4, None), grid=grid)
+    axes = [*solution.plot().values(), plot.stress_section(solution, body="counterbody")]
+    for one in axes:
+        drawn(one.figure)
+        frame = one.figure.bbox
+        written_out = {text.get_text() for text in one.texts} | {one.get_title(loc="left")}
+        for text in (text for text in one.findobj(Text) if text.get_text() in written_out):
+            assert text.get_window_extent().x1 <= frame.x1, text.get_text()
 
 
 def test_without_contact_there_is_a_picture_that_says_so(nothing: nacre.Solution) -> None:
