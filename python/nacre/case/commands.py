@@ -188,7 +188,9 @@ def _solve(
             with alive():
                 solved = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
+            # The notes of an error name the step of a history.
+            said = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
+            raise CaseError(f"{case}: {said}") from error
         # Of a history, the last step is printed.
         solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
         try:

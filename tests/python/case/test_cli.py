@@ -119,6 +119,12 @@ def test_an_error_of_the_whole_file_has_no_key(tmp_path: Path, capsys: Capture) 
     assert f"{case}: units must be" in capsys.readouterr().err
 
 
+def test_an_error_of_a_history_names_the_step(tmp_path: Path, capsys: Capture) -> None:
+    case = written(tmp_path, LONG["steps"].replace("x = -0.1", "x = 100.0") + FILM)
+    assert command("solve", case) == 2
+    assert f"{case}: slide: step 1: force must be below" in capsys.readouterr().err
+
+
 @pytest.fixture
 def hostile(tmp_path: Path) -> Path:
     """Return a folder of files that are no input of any command."""
