@@ -66,9 +66,9 @@ def test_integrals_over_hertzian_fields(contact: str, kind: Any, width: int) -> 
     shear = stress_volume(solution, Zaretsky())
     unit = p0**c * b ** (1 + width - h)
     name = f"{'int ' * (1 + width)}{LP} {dx}dz"
-    # The bars; the table is right to 1e-8, 2e-3 for the largest shear under a point.
-    assert lundberg.integral / unit == pytest.approx(VALUES[contact, name, 0], rel=0.02)
-    assert limited.integral / unit == pytest.approx(VALUES[contact, name, 0.1], rel=0.05)
+    # The bars are 2 and 5 %; the table is right to 1e-8, 2e-3 for the largest shear under a point.
+    assert lundberg.integral / unit == pytest.approx(VALUES[contact, name, 0], rel=0.01, abs=0)
+    assert limited.integral / unit == pytest.approx(VALUES[contact, name, 0.1], rel=0.01, abs=0)
     name = f"{'int ' * (1 + width)}taumax^10 {dx}dz"
     unit = p0**10 * b ** (1 + width)
     assert shear.integral / unit == pytest.approx(VALUES[contact, name, 0], rel=5e-3)
