@@ -14,6 +14,7 @@ use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::STRESSES;
 use crate::compliance::response::interior::Place;
 use crate::error::Result;
+use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
 /// The largest value found so far, and its cell.
@@ -80,20 +81,25 @@ impl<'a> Beyond<'a> {
         Self { plan, friction, axes: [false; 2], wider: Vec::new() }
     }
 
+    /// Whether a peak lies on the border of the grid.
+    pub(super) fn is_cut(&self, peak: &Peak) -> bool {
+        let whole = &self.plan.whole;
+        borders(&whole.body, &whole.grid, &[*peak]) != [false; 2]
+    }
+
     /// `peaks` at the last of `places`, or larger ones beyond the grid. `of` has the values of a cell, from its stresses at
-    /// `places`. Where memory does not suffice for a wider grid, the peaks found so far stand.
+    /// `places`, of which the `largest` matters. Where memory does not suffice for a wider grid, the peaks found so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
         &mut self,
-        mut peaks: [Peak; N],
+        (mut peaks, largest): ([Peak; N], f64),
         places: &[Place; K],
         residual: &[f64],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
         progress: &mut StressProgress,
     ) -> ControlFlow<(), [Peak; N]> {
         let mut inner = self.plan.whole.grid;
-        let largest = peaks.iter().fold(0.0_f64, |largest, peak| largest.max(peak.value.abs()));
         for level in 0.. {
-            let cut = borders(&inner, &peaks);
+            let cut = borders(&self.plan.whole.body, &inner, &peaks);
             if cut == [false; 2] || !self.has(level, cut, progress)? {
                 break;
             }
@@ -205,15 +211,20 @@ impl<'a> Beyond<'a> {
     }
 }
 
-/// Axes along which a peak lies in the outermost cells of `grid`, which does not repeat there.
-fn borders(grid: &Grid, peaks: &[Peak]) -> [bool; 2] {
+/// Axes along which a peak lies in the outermost cells of `grid`, where neither the grid repeats nor the body ends.
+fn borders(body: &HalfSpace, grid: &Grid, peaks: &[Peak]) -> [bool; 2] {
     [0, 1].map(|axis| {
-        let centres = grid.coordinates(axis);
-        let ends = [centres[0], centres[centres.len() - 1]];
-        let half = 0.75 * grid.spacing()[axis];
-        let is_beside =
-            |peak: &Peak| ends.iter().any(|end| (peak.position[axis] - end).abs() < half);
-        centres.len() > 1 && !grid.is_periodic()[axis] && peaks.iter().any(is_beside)
+        let (centres, cell) = (grid.coordinates(axis), grid.spacing()[axis]);
+        let ends = if axis == 0 { body.ends() } else { [None; 2] };
+        let is_cut = |peak: &Peak| {
+            let borders =
+                [centres[0], centres[centres.len() - 1]].into_iter().zip(ends).zip([-1.0, 1.0]);
+            borders.into_iter().any(|((border, end), side)| {
+                let goes_on = end.is_none_or(|end: f64| side * (end - border) > cell);
+                goes_on && (peak.position[axis] - border).abs() < 0.75 * cell
+            })
+        };
+        centres.len() > 1 && !grid.is_periodic()[axis] && peaks.iter().any(is_cut)
     })
 }
 

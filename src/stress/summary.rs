@@ -358,13 +358,18 @@ fn layer(
         evaluated.push((*place, planes.extremes(place)?));
     }
     for which in 0..3 {
+        search_beyond(planes, &mut evaluated, which)?;
         for _ in 0..REFINEMENTS {
             let values = evaluated.iter().map(|(place, peaks)| (*place, peaks[which].value));
             let values: Vec<_> = values.collect();
             let Some(place) = refined_peak(&values) else {
                 break;
             };
-            evaluated.push((place, planes.extremes(&place)?));
+            let mut peaks = planes.extremes(&place)?;
+            if planes.is_cut(&peaks[which]) {
+                peaks[which] = planes.beyond(&peaks, &place, which)?;
+            }
+            evaluated.push((place, peaks));
             // By the depth in the layer: depths below the surface are equal where a layer is thinner than
             // their rounding.
             evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
@@ -390,6 +395,34 @@ fn layer(
     };
     summary.compare(strengths);
     ControlFlow::Continue(summary)
+}
+
+/// Searches one kind of peak beyond the grid: at the depth where it is largest on the border, and at depths beside as long as
+/// it is the largest of all.
+fn search_beyond(
+    planes: &mut Planes,
+    evaluated: &mut [(Place, [Peak; 3])],
+    which: usize,
+) -> ControlFlow<()> {
+    let mut cut: Vec<bool> =
+        evaluated.iter().map(|(_, peaks)| planes.is_cut(&peaks[which])).collect();
+    let mut depths = 0..evaluated.len();
+    loop {
+        let value = |k: &usize| evaluated[*k].1[which].value;
+        let larger = |a: &usize, b: &usize| value(a).total_cmp(&value(b));
+        let Some(k) = depths.filter(|k| cut[*k]).max_by(larger) else {
+            return ControlFlow::Continue(());
+        };
+        let (place, peaks) = &mut evaluated[k];
+        peaks[which] = planes.beyond(peaks, place, which)?;
+        cut[k] = false;
+        let value = |k: &usize| evaluated[*k].1[which].value;
+        let best = (0..evaluated.len()).max_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(k);
+        depths = match k.abs_diff(best) {
+            0 | 1 => best.saturating_sub(1)..(best + 2).min(evaluated.len()),
+            _ => 0..0,
+        };
+    }
 }
 
 /// Summary of the interface below `layer`, which has the `number`.
@@ -532,8 +565,8 @@ impl<'a, 'b> Planes<'a, 'b> {
                 shear.offer(0.5 * (first - last), cell);
             }
         }
-        let found = [von_mises, tension, shear];
-        let peaks = self.peaks(found, &[*place], &[], |tensors| three(&tensors[0]))?;
+        let of = |tensors: &[Tensor; 1]| three(&tensors[0]);
+        let peaks = self.peaks([von_mises, tension, shear], place, &[], of);
         if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
     }
 
@@ -615,11 +648,12 @@ impl<'a, 'b> Planes<'a, 'b> {
             compression.offer(-zz, cell);
             shear.offer(xz.hypot(yz), cell);
         }
-        let found = [tension, compression, shear];
-        let mut peaks = self.peaks(found, &[*place], &[], |tensors| {
+        let of = |tensors: &[Tensor; 1]| {
             let Tensor { zz, yz, xz, .. } = tensors[0];
             [zz, -zz, xz.hypot(yz)]
-        })?;
+        };
+        let peaks = self.peaks([tension, compression, shear], place, &[], of);
+        let mut peaks = self.with_beyond(peaks, largest_of(&peaks), &[*place], of)?;
         peaks[1].value = -peaks[1].value;
         ControlFlow::Continue(peaks)
     }
@@ -633,7 +667,8 @@ impl<'a, 'b> Planes<'a, 'b> {
             largest.offer(jump(self.tensors(&before, cell)), cell);
         }
         let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
-        let [peak] = self.peaks([largest], &[*above, *below], &before, of)?;
+        let peaks = self.peaks([largest], below, &before, of);
+        let [peak] = self.with_beyond(peaks, largest_of(&peaks), &[*above, *below], of)?;
         ControlFlow::Continue(peak)
     }
 
@@ -645,28 +680,56 @@ impl<'a, 'b> Planes<'a, 'b> {
         })
     }
 
-    /// The peaks of the largest values, or those beyond the grid where they lie on its border and rise farther out. `of` has
-    /// the values of a cell, from its stresses at `places`: those of the planes `before`, and of the one evaluated last.
+    /// The peaks of the largest values at `place`. `of` has the values of a cell, from its stresses at one place or more: those
+    /// of the planes `before`, and of the one evaluated last.
     fn peaks<const N: usize, const K: usize>(
-        &mut self,
+        &self,
         found: [Largest; N],
-        places: &[Place; K],
+        place: &Place,
         before: &[[Vec<f64>; STRESSES]],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
-    ) -> ControlFlow<(), [Peak; N]> {
-        let peaks = std::array::from_fn(|n| {
-            let peak = self.peak(found[n], &places[K - 1]);
+    ) -> [Peak; N] {
+        std::array::from_fn(|n| {
+            let peak = self.peak(found[n], place);
             let value = |cell: usize| self.counts(cell).then(|| of(&self.tensors(before, cell))[n]);
             let between = found[n].between(&self.plan.whole.grid, value);
             Peak { uncertainty: peak.uncertainty.map(|error| error + between), ..peak }
-        });
+        })
+    }
+
+    /// Whether a peak lies on the border of the grid, beyond which it may be larger.
+    fn is_cut(&self, peak: &Peak) -> bool {
+        self.beside.is_none() && self.beyond.is_cut(peak)
+    }
+
+    /// One kind of the peaks of [`Planes::extremes`], or a larger one beyond the grid.
+    fn beyond(&mut self, peaks: &[Peak; 3], place: &Place, which: usize) -> ControlFlow<(), Peak> {
+        let of = |tensors: &[Tensor; 1]| [three(&tensors[0])[which]];
+        let [peak] = self.with_beyond([peaks[which]], largest_of(peaks), &[*place], of)?;
+        ControlFlow::Continue(peak)
+    }
+
+    /// The peaks at the last of `places`, or those beyond the grid where they lie on its border and rise farther out.
+    /// `largest` is the largest stress there.
+    fn with_beyond<const N: usize, const K: usize>(
+        &mut self,
+        peaks: [Peak; N],
+        largest: f64,
+        places: &[Place; K],
+        of: impl Fn(&[Tensor; K]) -> [f64; N],
+    ) -> ControlFlow<(), [Peak; N]> {
         if self.beside.is_some() {
             return ControlFlow::Continue(peaks);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
         let mut told = |_| (self.progress)(part);
-        self.beyond.peaks(peaks, places, self.residual, of, &mut told)
+        self.beyond.peaks((peaks, largest), places, self.residual, of, &mut told)
     }
+}
+
+/// The largest magnitude of peaks.
+fn largest_of(peaks: &[Peak]) -> f64 {
+    peaks.iter().fold(0.0, |largest, peak| peak.value.abs().max(largest))
 }
 
 /// Jump of the in-plane stress from above to below, as the larger principal value of its magnitude.
