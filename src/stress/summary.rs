@@ -397,32 +397,27 @@ fn layer(
     ControlFlow::Continue(summary)
 }
 
-/// Searches one kind of peak beyond the grid: at the depth where it is largest on the border, and at depths beside as long as
-/// it is the largest of all.
+/// Part of the largest value in a layer below which one on the border is not searched beyond the grid, where that value
+/// matters: most contacts have their largest stresses within the grid, and need no wider one.
+const LEAST_ON_BORDER: f64 = 0.1;
+
+/// Searches one kind of peak beyond the grid, at the depths where it lies on the border.
 fn search_beyond(
     planes: &mut Planes,
     evaluated: &mut [(Place, [Peak; 3])],
     which: usize,
 ) -> ControlFlow<()> {
-    let mut cut: Vec<bool> =
-        evaluated.iter().map(|(_, peaks)| planes.is_cut(&peaks[which])).collect();
-    let mut depths = 0..evaluated.len();
-    loop {
-        let value = |k: &usize| evaluated[*k].1[which].value;
-        let larger = |a: &usize, b: &usize| value(a).total_cmp(&value(b));
-        let Some(k) = depths.filter(|k| cut[*k]).max_by(larger) else {
-            return ControlFlow::Continue(());
-        };
-        let (place, peaks) = &mut evaluated[k];
-        peaks[which] = planes.beyond(peaks, place, which)?;
-        cut[k] = false;
-        let value = |k: &usize| evaluated[*k].1[which].value;
-        let best = (0..evaluated.len()).max_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(k);
-        depths = match k.abs_diff(best) {
-            0 | 1 => best.saturating_sub(1)..(best + 2).min(evaluated.len()),
-            _ => 0..0,
-        };
+    let [best, von_mises] = [which, 0].map(|which| {
+        evaluated.iter().map(|(_, peaks)| peaks[which].value).fold(f64::NEG_INFINITY, f64::max)
+    });
+    let matters = best > NEGLIGIBLE_ERROR / UNRESOLVED_EXTREME * von_mises;
+    for (place, peaks) in evaluated {
+        let is_small = matters && peaks[which].value < LEAST_ON_BORDER * best;
+        if !is_small && planes.is_cut(&peaks[which]) {
+            peaks[which] = planes.beyond(peaks, place, which)?;
+        }
     }
+    ControlFlow::Continue(())
 }
 
 /// Summary of the interface below `layer`, which has the `number`.
