@@ -205,7 +205,7 @@ impl Grid {
             let (cells, spacing) = (self.shape[axis], self.spacing()[axis]);
             levels[axis].map_or((cells, self.size[axis]), |level| {
                 let cells = cells + 2 * cells.div_ceil(2);
-                (cells, 2.0_f64.powi(level.min(1000) as i32) * spacing * cells as f64)
+                (cells, (level as f64).exp2() * spacing * cells as f64)
             })
         };
         let [(nx, lx), (ny, ly)] = [wide(0), wide(1)];

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::field::{Peak, Tensor};
+use super::field::{Largest, Peak, Tensor};
 use super::options::StressProgress;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::STRESSES;
@@ -17,49 +17,9 @@ use crate::error::Result;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
-/// The largest value found so far, and its cell.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Largest {
-    pub(super) value: f64,
-    pub(super) cell: usize,
-}
-
-impl Largest {
-    pub(super) const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
-
-    pub(super) fn offer(&mut self, value: f64, cell: usize) {
-        if value > self.value {
-            *self = Self { value, cell };
-        }
-    }
-
-    /// Twice what parabolas through this value and its neighbours along each axis rise above it: the value between centres
-    /// of cells is larger by about once that. `of` has the values of cells that count.
-    pub(super) fn between(&self, grid: &Grid, of: impl Fn(usize) -> Option<f64>) -> f64 {
-        let (shape, periodic) = (grid.shape(), grid.is_periodic());
-        let at = [self.cell / shape[1], self.cell % shape[1]];
-        let beside = |axis: usize, step: usize| {
-            let count = shape[axis];
-            let moved = at[axis] + step;
-            let wraps = (moved >= count) == (step == 1);
-            let mut cell = at;
-            cell[axis] = moved % count;
-            if wraps && !periodic[axis] { None } else { of(cell[0] * shape[1] + cell[1]) }
-        };
-        let gain = |axis: usize| {
-            let (before, after) = (beside(axis, shape[axis] - 1)?, beside(axis, 1)?);
-            let curvature = (2.0 * self.value - before - after).max(0.0);
-            // The vertex is at most half a cell away, unless cells that do not count have larger values.
-            let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
-            (curvature > 0.0).then(|| slope * slope / curvature)
-        };
-        [0, 1].into_iter().filter_map(gain).sum()
-    }
-}
-
 /// Growth of a value from one grid to the next, as a part of it, below which the place does not matter: a stress that
-/// rises to its residual value at infinity has none. Growth falls at least by half from grid to grid, since stresses fall off
-/// at least as the distance: as much again is left.
+/// rises to its residual value at infinity has none. Growth falls at least by half from grid to grid, since stresses approach
+/// their limit at least as fast as the inverse of the distance: as much again is left.
 const NEGLIGIBLE_GROWTH: f64 = 1e-3;
 
 /// Growth that does not matter, as a part of the largest stress at the depth.
@@ -158,13 +118,14 @@ impl<'a> Beyond<'a> {
             match self.widened(self.wider.len(), progress) {
                 Ok(Some(plan)) => self.wider.push(plan),
                 Ok(None) => return ControlFlow::Break(()),
+                // The source was checked for the grid within: what can lack is memory.
                 Err(_) => return ControlFlow::Continue(false),
             }
         }
         ControlFlow::Continue(true)
     }
 
-    /// The plan on a grid 2^(`level` + 1) times as wide.
+    /// The plan on a grid about 2^(`level` + 1) times as wide.
     fn widened(&self, level: usize, progress: &mut StressProgress) -> Result<Option<StressPlan>> {
         let whole = &self.plan.whole;
         // Along x, larger cells might reach beyond a free end.

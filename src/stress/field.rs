@@ -7,6 +7,7 @@ use ndarray::{Array1, Array3, Axis};
 use super::options::Side;
 use crate::error::{Error, Result, finite};
 use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
 
 /// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
 /// positive. Beyond a free end of the body, values are NaN; equal stresses have NaN at the same places.
@@ -353,6 +354,46 @@ impl Stress {
         let mut values = Array3::zeros(self.components[0].raw_dim());
         values.iter_mut().zip(self.tensors()).for_each(|(value, tensor)| *value = f(&tensor));
         values
+    }
+}
+
+/// The largest value found so far, and its cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Largest {
+    pub(super) value: f64,
+    pub(super) cell: usize,
+}
+
+impl Largest {
+    pub(super) const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
+
+    pub(super) fn offer(&mut self, value: f64, cell: usize) {
+        if value > self.value {
+            *self = Self { value, cell };
+        }
+    }
+
+    /// Twice what parabolas through this value and its neighbours along each axis rise above it: the value between centres
+    /// of cells is larger by about once that. `of` has the values of cells that count.
+    pub(super) fn between(&self, grid: &Grid, of: impl Fn(usize) -> Option<f64>) -> f64 {
+        let (shape, periodic) = (grid.shape(), grid.is_periodic());
+        let at = [self.cell / shape[1], self.cell % shape[1]];
+        let beside = |axis: usize, step: usize| {
+            let count = shape[axis];
+            let moved = at[axis] + step;
+            let wraps = (moved >= count) == (step == 1);
+            let mut cell = at;
+            cell[axis] = moved % count;
+            if wraps && !periodic[axis] { None } else { of(cell[0] * shape[1] + cell[1]) }
+        };
+        let gain = |axis: usize| {
+            let (before, after) = (beside(axis, shape[axis] - 1)?, beside(axis, 1)?);
+            let curvature = (2.0 * self.value - before - after).max(0.0);
+            // The vertex is at most half a cell away, unless cells that do not count have larger values.
+            let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
+            (curvature > 0.0).then(|| slope * slope / curvature)
+        };
+        [0, 1].into_iter().filter_map(gain).sum()
     }
 }
 

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::beside::Beside;
-use super::beyond::{Beyond, Largest};
-use super::field::{Peak, Percent, SmallerCells, Tensor};
+use super::beyond::Beyond;
+use super::field::{Largest, Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};

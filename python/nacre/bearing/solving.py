@@ -29,7 +29,7 @@ With these the load of a ball at a given approach is right to 1e-4, the peak pre
 to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured against twice as many.
 """
 STEEPEST = 0.02
-"""Largest prescribed tilt without a warning."""
+"""Largest prescribed tilt without a warning: about a degree, where bearings bear minutes."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
