@@ -96,8 +96,6 @@ class Interrupted(NamedTuple):
     errors: str
     sent: float
     waited: float
-    early: bool
-    """Whether it had ended before."""
 
 
 def interrupted(*arguments: object, wait: float = 0.0, stream: str = "stdout") -> Interrupted:
@@ -109,14 +107,14 @@ def interrupted(*arguments: object, wait: float = 0.0, stream: str = "stdout") -
             first = getattr(process, stream).readline()
             assert first
             time.sleep(wait)
-            early = process.poll() is not None
+            assert process.poll() is None, "it ended before it could be interrupted"
             sent = time.monotonic()
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=60)
         finally:
             process.kill()
     waited = time.monotonic() - sent
-    return Interrupted(process.returncode, first, out.splitlines(), err, sent, waited, early)
+    return Interrupted(process.returncode, first, out.splitlines(), err, sent, waited)
 
 
 RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"
