@@ -198,14 +198,16 @@ impl Grid {
         Self::new(cells, size).unwrap_or(*self)
     }
 
-    /// A grid with the same centre, wider along axes that have a level: about twice as wide at level 0, with the same cells,
-    /// and twice as wide with cells twice as large at each further level.
-    pub(crate) fn widened(&self, levels: [Option<usize>; 2]) -> Result<Self> {
+    /// A grid with the same centre, along axes that have a pair (wider, larger) about 2^wider times as wide, with cells
+    /// 2^larger times as large.
+    pub(crate) fn widened(&self, powers: [Option<(usize, usize)>; 2]) -> Result<Self> {
         let wide = |axis: usize| {
             let (cells, spacing) = (self.shape[axis], self.spacing()[axis]);
-            levels[axis].map_or((cells, self.size[axis]), |level| {
-                let cells = cells + 2 * cells.div_ceil(2);
-                (cells, (level as f64).exp2() * spacing * cells as f64)
+            powers[axis].map_or((cells, self.size[axis]), |(wider, larger)| {
+                let added = (((1 << wider) - 1) * cells).div_ceil(2 << larger);
+                // The same parity, so that centres coincide where cells are as large.
+                let cells = cells.div_ceil(1 << larger) + 2 * added;
+                (cells, (larger as f64).exp2() * spacing * cells as f64)
             })
         };
         let [(nx, lx), (ny, ly)] = [wide(0), wide(1)];

@@ -1,35 +1,54 @@
-//! Extremes beyond the grid, for those that lie on its border.
+//! Extremes beyond the grid.
 //!
 //! Where the largest value at a depth lies on the border of the grid, the plane is evaluated again on wider grids, each twice
-//! as wide as the last, until it lies within. Beyond the grid, the load is far: its cells are taken as uniform, and from the
-//! second grid on they are merged into larger ones of the same force and moments. The method was derived here.
+//! as wide as the last, until it lies within. Below layers that bend, a larger value may lie farther out than one within the
+//! grid: there wider grids are searched in any case, as far as the layers bend. Beyond the grid, the load is far: its cells
+//! are taken as uniform, and merged into larger ones of the same force and moments. The method was derived here.
 
 use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
 use super::field::{Largest, Peak, Tensor};
+use super::half_space::HalfSpacePlan;
 use super::options::StressProgress;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::STRESSES;
 use crate::compliance::response::interior::Place;
+use crate::compliance::response::substrate_material;
 use crate::error::Result;
-use crate::model::body::HalfSpace;
+use crate::model::body::{HalfSpace, Layer};
 use crate::model::grid::Grid;
 
-/// Growth of a value from one grid to the next, as a part of it, below which the place does not matter: a stress that
-/// rises to its residual value at infinity has none. Growth falls at least by half from grid to grid, since stresses approach
-/// their limit at least as fast as the inverse of the distance: as much again is left.
-const NEGLIGIBLE_GROWTH: f64 = 1e-3;
+/// Growth of a value from one grid to the next below which the place does not matter, as a part of the value, and of the
+/// largest stress at the depth: a stress that rises to its residual value at infinity has no place. Growth falls at least by
+/// half from grid to grid, since stresses approach their limit at least as fast as the inverse of the distance: as much
+/// again is left.
+const NEGLIGIBLE_GROWTH: [f64; 2] = [1e-3, 1e-6];
 
-/// Growth that does not matter, as a part of the largest stress at the depth.
-const NEGLIGIBLE_STRESS: f64 = 1e-6;
+/// Part of the best value of all depths below which one on the border is not followed, if that one is as large a part of the
+/// largest stress: it would have to grow tenfold.
+const LEAST_ON_BORDER: f64 = 0.1;
+
+/// Cells across the grid within, at least, after merging.
+const ACROSS: usize = 32;
+
+/// Cells between the load and the border, at least, after merging: what is left of the load, its third moments, then changes
+/// stresses by some 1e-3 (`tests/stress/beyond.rs`).
+const BETWEEN: usize = 4;
+
+/// Distance from a load at which a plate that it bends on an elastic half-space has its largest moment of the other sign, in
+/// ℓ = (2 D/E')^⅓ of the plate's stiffness D and the half-space's modulus E': the minimum of the radial moment
+/// ∫ k² [J₀(kr) − (1 − ν) J₁(kr)/kr]/(k³ + 1) dk for ν = 0.3, computed here.
+const BENDING: f64 = 2.3;
 
 /// What evaluates a plan beyond its grid.
 #[derive(Debug)]
 pub(super) struct Beyond<'a> {
     plan: &'a StressPlan,
     friction: [f64; 2],
+    /// Number of wider grids that are searched in any case.
+    searched: usize,
     /// Axes along which `wider` are wider than the grid.
     axes: [bool; 2],
     /// Plans on wider grids, made when they are needed.
@@ -38,20 +57,16 @@ pub(super) struct Beyond<'a> {
 
 impl<'a> Beyond<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2]) -> Self {
-        Self { plan, friction, axes: [false; 2], wider: Vec::new() }
-    }
-
-    /// Whether a peak lies on the border of the grid.
-    pub(super) fn is_cut(&self, peak: &Peak) -> bool {
-        let whole = &self.plan.whole;
-        borders(&whole.body, &whole.grid, &[*peak]) != [false; 2]
+        let searched = searched(&plan.whole);
+        Self { plan, friction, searched, axes: [false; 2], wider: Vec::new() }
     }
 
     /// `peaks` at the last of `places`, or larger ones beyond the grid. `of` has the values of a cell, from its stresses at
-    /// `places`, of which the `largest` matters. Where memory does not suffice for a wider grid, the peaks found so far stand.
+    /// `places`, of which the `largest` matters; values that stay below the `best` of other depths do not. Where memory does
+    /// not suffice for a wider grid, the peaks found so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
         &mut self,
-        (mut peaks, largest): ([Peak; N], f64),
+        (mut peaks, largest, best): ([Peak; N], f64, [f64; N]),
         places: &[Place; K],
         residual: &[f64],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
@@ -59,8 +74,15 @@ impl<'a> Beyond<'a> {
     ) -> ControlFlow<(), [Peak; N]> {
         let mut inner = self.plan.whole.grid;
         for level in 0.. {
-            let cut = borders(&self.plan.whole.body, &inner, &peaks);
-            if cut == [false; 2] || !self.has(level, cut, progress)? {
+            let matters = |(peak, best): &(&Peak, f64)| {
+                peak.value >= LEAST_ON_BORDER * best || *best < LEAST_ON_BORDER * largest
+            };
+            let followed = peaks.iter().zip(best).filter(matters).map(|(peak, _)| peak);
+            let axes = match level < self.searched {
+                true => open_axes(&self.plan.whole),
+                false => borders(&self.plan.whole.body, &inner, followed),
+            };
+            if axes == [false; 2] || !self.has(level, axes, progress)? {
                 break;
             }
             let plan = &self.wider[level];
@@ -86,15 +108,16 @@ impl<'a> Beyond<'a> {
                     continue;
                 }
                 let growth = found.value - peak.value;
-                let rest = NEGLIGIBLE_GROWTH * found.value.abs();
-                grown |= growth > rest && growth > NEGLIGIBLE_STRESS * largest;
+                let [own, of_largest] = NEGLIGIBLE_GROWTH;
+                let rest = (own * found.value.abs()).max(of_largest * largest);
+                grown |= growth > rest && found.value + growth >= best[k];
                 let between = found.between(grid, |cell| Some(values(cell)[k]));
-                peak.value = found.value;
+                peak.value = found.value + 0.5 * between;
                 peak.position[0] = x[found.cell / y.len()];
                 peak.position[1] = y[found.cell % y.len()];
                 peak.uncertainty = peak.uncertainty.map(|_| 2.0 * rest + between);
             }
-            if !grown {
+            if !grown && level + 1 >= self.searched {
                 break;
             }
             inner = *grid;
@@ -106,10 +129,10 @@ impl<'a> Beyond<'a> {
     fn has(
         &mut self,
         level: usize,
-        cut: [bool; 2],
+        asked: [bool; 2],
         progress: &mut StressProgress,
     ) -> ControlFlow<(), bool> {
-        let axes = [0, 1].map(|axis| self.axes[axis] || cut[axis]);
+        let axes = [0, 1].map(|axis| self.axes[axis] || asked[axis]);
         if axes != self.axes {
             self.wider.clear();
             self.axes = axes;
@@ -125,13 +148,23 @@ impl<'a> Beyond<'a> {
         ControlFlow::Continue(true)
     }
 
+    /// Power of two by which cells are larger along an axis in the first wider grid.
+    fn merged(&self, axis: usize) -> usize {
+        let whole = &self.plan.whole;
+        let cells = (whole.gap(axis) / BETWEEN).min(whole.grid.shape()[axis] / ACROSS);
+        cells.checked_ilog2().unwrap_or(0) as usize
+    }
+
     /// The plan on a grid about 2^(`level` + 1) times as wide.
     fn widened(&self, level: usize, progress: &mut StressProgress) -> Result<Option<StressPlan>> {
         let whole = &self.plan.whole;
         // Along x, larger cells might reach beyond a free end.
-        let ended = whole.body.ends() != [None; 2];
-        let levels = [if ended { 0 } else { level }, level];
-        let grid = whole.grid.widened([0, 1].map(|k| self.axes[k].then_some(levels[k])))?;
+        let has_ends = whole.body.ends() != [None; 2];
+        let powers = |axis: usize| {
+            let merged = if has_ends && axis == 0 { 0 } else { level + self.merged(axis) };
+            self.axes[axis].then_some((level + 1, merged))
+        };
+        let grid = whole.grid.widened([0, 1].map(powers))?;
         let moved = |field: &[f64]| moved(field, &whole.grid, &grid);
         let pressure = moved(&whole.pressure);
         let sign = self.plan.sliding.sign;
@@ -172,8 +205,36 @@ impl<'a> Beyond<'a> {
     }
 }
 
+/// Axes along which a grid can be wider and the body goes on.
+fn open_axes(whole: &HalfSpacePlan) -> [bool; 2] {
+    let grid = &whole.grid;
+    let goes_on = [whole.body.ends() == [None; 2], true];
+    [0, 1].map(|axis| goes_on[axis] && grid.shape()[axis] > 1 && !grid.is_periodic()[axis])
+}
+
+/// Number of wider grids that hold all places where layers that bend may have their largest stresses; none where that is
+/// within the grid, and for a body with free ends, whose wider grids take long. All layers together bend less than
+/// one of their thickness and of the largest modulus on a half-space of the smallest.
+fn searched(whole: &HalfSpacePlan) -> usize {
+    let body = &whole.body;
+    let materials = body.layers().iter().map(Layer::material).chain(substrate_material(body));
+    let moduli = materials.map(|material| material.young() / (1.0 - material.poisson().powi(2)));
+    let (least, most) = moduli.fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(e), b.max(e)));
+    let thickness: f64 = body.layers().iter().map(Layer::thickness).sum();
+    let far = BENDING * thickness * (most / least / 6.0).cbrt();
+    let is_within = |axis: &usize| far < whole.gap(*axis) as f64 * whole.grid.spacing()[*axis];
+    let open = [0, 1].into_iter().filter(|axis| open_axes(whole)[*axis]);
+    let outside: Vec<usize> = open.filter(|axis| !is_within(axis)).collect();
+    let width = outside.iter().map(|axis| whole.grid.size()[*axis]).fold(f64::INFINITY, f64::min);
+    if body.ends() != [None; 2] { 0 } else { (1.0 + 2.0 * far / width).log2().ceil() as usize }
+}
+
 /// Axes along which a peak lies in the outermost cells of `grid`, where neither the grid repeats nor the body ends.
-fn borders(body: &HalfSpace, grid: &Grid, peaks: &[Peak]) -> [bool; 2] {
+fn borders<'a>(
+    body: &HalfSpace,
+    grid: &Grid,
+    peaks: impl Iterator<Item = &'a Peak> + Clone,
+) -> [bool; 2] {
     [0, 1].map(|axis| {
         let (centres, cell) = (grid.coordinates(axis), grid.spacing()[axis]);
         let ends = if axis == 0 { body.ends() } else { [None; 2] };
@@ -185,7 +246,7 @@ fn borders(body: &HalfSpace, grid: &Grid, peaks: &[Peak]) -> [bool; 2] {
                 goes_on && (peak.position[axis] - border).abs() < 0.75 * cell
             })
         };
-        centres.len() > 1 && !grid.is_periodic()[axis] && peaks.iter().any(is_cut)
+        centres.len() > 1 && !grid.is_periodic()[axis] && peaks.clone().any(is_cut)
     })
 }
 

@@ -225,6 +225,12 @@ impl HalfSpacePlan {
         solved.map_or(&self.pressure, |solved| solved.subcell.uniform())
     }
 
+    /// Number of cells between the loaded ones and the border of the grid along an axis.
+    pub(super) fn gap(&self, axis: usize) -> usize {
+        let count = self.grid.shape()[axis];
+        self.loaded.map_or(count, |ends| ends[axis][0].min(count - 1 - ends[axis][1]))
+    }
+
     /// Half the width of the cells with a pressure along their shorter side \[m\]; of the whole grid if there are none.
     /// Along directions that repeat, which have no first cell, the lines with a pressure count.
     pub(super) fn half_width(&self) -> f64 {

@@ -217,7 +217,7 @@ impl StressPlan {
     /// Depths are the faces of the layers, and some 18 inside each, spread over its thickness and over
     /// the width of the contact; a peak inside is then refined by parabolas through three depths
     /// (successive parabolic interpolation). Positions are cell centres, or points at the edge of the contact. Where
-    /// the largest value at a depth lies on the border of the grid, wider grids are searched.
+    /// the largest value at a depth lies on the border of the grid, and as far as layers bend, wider grids are searched.
     ///
     /// # Errors
     /// Bad options, a strength that is not finite and above 0, or too little memory.
@@ -357,19 +357,22 @@ fn layer(
     for place in region {
         evaluated.push((*place, planes.extremes(place)?));
     }
+    let best = [0, 1, 2].map(|which| {
+        evaluated.iter().map(|(_, peaks)| peaks[which].value).fold(f64::NEG_INFINITY, f64::max)
+    });
+    for (place, peaks) in &mut evaluated {
+        *peaks = planes.beyond(*peaks, place, best)?;
+    }
     for which in 0..3 {
-        search_beyond(planes, &mut evaluated, which)?;
         for _ in 0..REFINEMENTS {
             let values = evaluated.iter().map(|(place, peaks)| (*place, peaks[which].value));
             let values: Vec<_> = values.collect();
             let Some(place) = refined_peak(&values) else {
                 break;
             };
-            let mut peaks = planes.extremes(&place)?;
-            if planes.is_cut(&peaks[which]) {
-                peaks[which] = planes.beyond(&peaks, &place, which)?;
-            }
-            evaluated.push((place, peaks));
+            let peaks = planes.extremes(&place)?;
+            let best = [0, 1, 2].map(|k| if k == which { best[k] } else { f64::INFINITY });
+            evaluated.push((place, planes.beyond(peaks, &place, best)?));
             // By the depth in the layer: depths below the surface are equal where a layer is thinner than
             // their rounding.
             evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
@@ -395,29 +398,6 @@ fn layer(
     };
     summary.compare(strengths);
     ControlFlow::Continue(summary)
-}
-
-/// Part of the largest value in a layer below which one on the border is not searched beyond the grid, where that value
-/// matters: most contacts have their largest stresses within the grid, and need no wider one.
-const LEAST_ON_BORDER: f64 = 0.1;
-
-/// Searches one kind of peak beyond the grid, at the depths where it lies on the border.
-fn search_beyond(
-    planes: &mut Planes,
-    evaluated: &mut [(Place, [Peak; 3])],
-    which: usize,
-) -> ControlFlow<()> {
-    let [best, von_mises] = [which, 0].map(|which| {
-        evaluated.iter().map(|(_, peaks)| peaks[which].value).fold(f64::NEG_INFINITY, f64::max)
-    });
-    let matters = best > NEGLIGIBLE_ERROR / UNRESOLVED_EXTREME * von_mises;
-    for (place, peaks) in evaluated {
-        let is_small = matters && peaks[which].value < LEAST_ON_BORDER * best;
-        if !is_small && planes.is_cut(&peaks[which]) {
-            peaks[which] = planes.beyond(peaks, place, which)?;
-        }
-    }
-    ControlFlow::Continue(())
 }
 
 /// Summary of the interface below `layer`, which has the `number`.
@@ -648,7 +628,8 @@ impl<'a, 'b> Planes<'a, 'b> {
             [zz, -zz, xz.hypot(yz)]
         };
         let peaks = self.peaks([tension, compression, shear], place, &[], of);
-        let mut peaks = self.with_beyond(peaks, largest_of(&peaks), &[*place], of)?;
+        let mut peaks =
+            self.with_beyond((peaks, largest_of(&peaks), [f64::NEG_INFINITY; 3]), &[*place], of)?;
         peaks[1].value = -peaks[1].value;
         ControlFlow::Continue(peaks)
     }
@@ -663,7 +644,11 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
         let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
         let peaks = self.peaks([largest], below, &before, of);
-        let [peak] = self.with_beyond(peaks, largest_of(&peaks), &[*above, *below], of)?;
+        let [peak] = self.with_beyond(
+            (peaks, largest_of(&peaks), [f64::NEG_INFINITY; 1]),
+            &[*above, *below],
+            of,
+        )?;
         ControlFlow::Continue(peak)
     }
 
@@ -692,33 +677,31 @@ impl<'a, 'b> Planes<'a, 'b> {
         })
     }
 
-    /// Whether a peak lies on the border of the grid, beyond which it may be larger.
-    fn is_cut(&self, peak: &Peak) -> bool {
-        self.beside.is_none() && self.beyond.is_cut(peak)
+    /// The peaks of [`Planes::extremes`], or larger ones beyond the grid.
+    fn beyond(
+        &mut self,
+        peaks: [Peak; 3],
+        place: &Place,
+        best: [f64; 3],
+    ) -> ControlFlow<(), [Peak; 3]> {
+        self.with_beyond((peaks, largest_of(&peaks), best), &[*place], |tensors: &[Tensor; 1]| {
+            three(&tensors[0])
+        })
     }
 
-    /// One kind of the peaks of [`Planes::extremes`], or a larger one beyond the grid.
-    fn beyond(&mut self, peaks: &[Peak; 3], place: &Place, which: usize) -> ControlFlow<(), Peak> {
-        let of = |tensors: &[Tensor; 1]| [three(&tensors[0])[which]];
-        let [peak] = self.with_beyond([peaks[which]], largest_of(peaks), &[*place], of)?;
-        ControlFlow::Continue(peak)
-    }
-
-    /// The peaks at the last of `places`, or those beyond the grid where they lie on its border and rise farther out.
-    /// `largest` is the largest stress there.
+    /// The peaks at the last of `places`, or larger ones beyond the grid: [`Beyond::peaks`].
     fn with_beyond<const N: usize, const K: usize>(
         &mut self,
-        peaks: [Peak; N],
-        largest: f64,
+        found: ([Peak; N], f64, [f64; N]),
         places: &[Place; K],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
     ) -> ControlFlow<(), [Peak; N]> {
         if self.beside.is_some() {
-            return ControlFlow::Continue(peaks);
+            return ControlFlow::Continue(found.0);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
         let mut told = |_| (self.progress)(part);
-        self.beyond.peaks((peaks, largest), places, self.residual, of, &mut told)
+        self.beyond.peaks(found, places, self.residual, of, &mut told)
     }
 }
 

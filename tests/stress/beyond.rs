@@ -43,11 +43,14 @@ fn peaks(summary: &StressSummary) -> Vec<Peak> {
 }
 
 /// Compares both grids; returns how many peaks lie beyond the narrow one.
-fn check(grid: Grid, axes: [bool; 2], options: &StressOptions) -> Result<usize> {
-    let body = body()?;
-    let wide = wider(&grid, axes, 120)?;
+fn check(
+    body: &HalfSpace,
+    (grid, axes, added): (Grid, [bool; 2], usize),
+    options: &StressOptions,
+) -> Result<usize> {
+    let wide = wider(&grid, axes, added)?;
     let summary = |grid: &Grid, pressure: Array2<f64>| -> Result<_> {
-        let plan = StressPlan::plan(&body, grid, &pressure, None)?;
+        let plan = StressPlan::plan(body, grid, &pressure, None)?;
         Ok(peaks(&plan.summary(&Strengths::default(), options)?))
     };
     let centre = grid.center();
@@ -69,16 +72,34 @@ fn check(grid: Grid, axes: [bool; 2], options: &StressOptions) -> Result<usize> 
 fn extremes_beyond_the_grid_are_those_of_a_wide_grid() -> Result<()> {
     let still = StressOptions::default();
     let rough = sliding(0.3, [0.6, 0.8]);
-    let both = [true, true];
+    let (body, both) = (body()?, [true, true]);
     for (shape, size) in [([40, 40], [2.5, 2.5]), ([41, 52], [2.5, 3.2])] {
         let grid = Grid::new(shape, size)?.centered_at([0.3, -0.2])?;
         for options in [&still, &rough] {
-            assert!(check(grid, both, options)? >= 2);
+            assert!(check(&body, (grid, both, 120), options)? >= 2);
         }
     }
     let line = Grid::line(50, 2.5)?;
-    assert!(check(line, [false, true], &sliding(0.3, [0.0, 1.0]))? >= 1);
+    assert!(check(&body, (line, [false, true], 120), &sliding(0.3, [0.0, 1.0]))? >= 1);
     let repeated = Grid::new([48, 40], [3.0, 2.5])?.periodic([true, false])?;
-    assert!(check(repeated, [false, true], &still)? >= 1);
+    assert!(check(&body, (repeated, [false, true], 120), &still)? >= 1);
+    Ok(())
+}
+
+/// The stress below the load is a local maximum within the grid, and where layers bend the other way, beyond it, is a larger one.
+#[test]
+fn a_local_maximum_within_the_grid_does_not_hide_one_beyond() -> Result<()> {
+    let soft = Elastic::new(1.0, 0.3)?;
+    let stacks: [&[(f64, f64, f64)]; 3] = [
+        &[(1.2, 38.0, 0.41)],
+        &[(0.7, 16.0, 0.02), (2.9, 0.07, 0.42), (0.1, 64.0, 0.45)],
+        &[(2.75, 0.38, 0.21)],
+    ];
+    for stack in stacks {
+        let layer = |(h, e, nu): &(f64, f64, f64)| Layer::new(Elastic::new(*e, *nu)?, *h);
+        let body = HalfSpace::new(soft, stack.iter().map(layer).collect::<Result<Vec<_>>>()?)?;
+        let grid = Grid::new([24, 24], [2.6, 2.6])?;
+        assert!(check(&body, (grid, [true; 2], 90), &StressOptions::default())? >= 1);
+    }
     Ok(())
 }

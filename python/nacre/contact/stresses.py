@@ -768,8 +768,8 @@ class Stressed:
         The pressure varies within cells, as in `stress`.
 
         Extremes may lie beyond the grid: below a stiff coating, or with friction, the largest
-        tension can be outside the contact. Where an extreme is found in the outermost cells, wider
-        grids are searched.
+        tension can be outside the contact. Where an extreme is found in the outermost cells, and as
+        far as layers bend under the load, wider grids are searched.
 
         Examples
         --------
