@@ -1,5 +1,7 @@
 //! Low places of a shape that is tilted: the places where it may touch.
 
+use ndarray::Axis;
+
 use crate::compliance::influence::CellInfluence;
 use crate::contact::automatic::task::{Frame, Task, enclosing};
 use crate::contact::plan::bodies;
@@ -254,24 +256,17 @@ impl Pressed {
         let window = solution.cells_in_contact().unwrap_or([0..0, 0..0]);
         let across = [0, 1].map(|k| window[k].len().div_ceil(BLOCKS).max(1));
         let sides = [0, 1].map(|k| across[k] as f64 * grid.spacing()[k]);
-        let parts = |k: usize| {
-            let range = window[k].clone();
-            range
-                .clone()
-                .step_by(across[k])
-                .map(move |first| first..(first + across[k]).min(range.end))
-        };
-        let low = [0, 1].map(|k| grid.center()[k] - 0.5 * grid.size()[k]);
+        let first = [0, 1].map(|k| {
+            let low = grid.center()[k] - 0.5 * grid.size()[k];
+            low + grid.spacing()[k] * window[k].start as f64 + 0.5 * sides[k]
+        });
         let mut blocks = Vec::new();
-        for x in parts(0) {
-            for y in parts(1) {
+        let loaded = block(pressure, &window);
+        for (i, rows) in loaded.axis_chunks_iter(Axis(0), across[0]).enumerate() {
+            for (j, cells) in rows.axis_chunks_iter(Axis(1), across[1]).enumerate() {
+                let center = [first[0] + i as f64 * sides[0], first[1] + j as f64 * sides[1]];
                 // A block that reaches beyond the contact has no pressure there.
-                let sum = block(pressure, &[x.clone(), y.clone()]).sum();
-                let center = [0, 1].map(|k| {
-                    let first = [x.start, y.start][k] as f64;
-                    low[k] + grid.spacing()[k] * first + 0.5 * sides[k]
-                });
-                blocks.push((center, sum / (across[0] * across[1]) as f64));
+                blocks.push((center, cells.sum() / (across[0] * across[1]) as f64));
             }
         }
         Self { blocks, sides }

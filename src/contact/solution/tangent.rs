@@ -66,10 +66,8 @@ impl Tangent {
             coefficients: solution.coefficients.clone(),
             threads: None,
         };
-        let near = match &setup.coefficients {
-            None => grid.of_offsets(shape),
-            Some(_) => *grid,
-        };
+        let is_given = setup.coefficients.is_some();
+        let near = if is_given { *grid } else { grid.of_offsets(shape) };
         let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?;
         let (coefficients, datum) = operator(&report.body, &setup, &near, &additions, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
