@@ -328,11 +328,17 @@ def _share(error: float, value: float) -> str:
 def _peaks(summary: StressSummary) -> list[list[str]]:
     """Return the rows of the table of a stress summary, the heading first."""
     rows = [["", "largest", "value", "±", "z", "x, y", "safety factor"]]
+    noise = SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
 
     def add(name: str, peak: Peak | None, error: float | None, factor: float | None = None) -> None:
         if peak is None:
             return
         value, (x, y, z) = peak
+        if abs(value) < noise:
+            # What falls to nothing far away has no place.
+            share = written(error, "Pa") if error is not None and error > noise else ""
+            rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
+            return
         share = "" if error is None else _share(error, value)
         place = f"{written(x, 'm', 3)}, {written(y, 'm', 3)}"
         number = "" if factor is None else rounded(factor, 3)

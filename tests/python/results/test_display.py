@@ -174,6 +174,16 @@ def test_a_summary_is_a_table_in_a_notebook() -> None:
         assert f">{written(value, 'Pa')}</td>" in html
 
 
+def test_a_tension_that_falls_to_nothing_is_zero_and_has_no_place() -> None:
+    # The interface is under pressure everywhere: σ_zz rises to 0 far away.
+    summary = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0).stress_summary()
+    tension = summary.interfaces[0].tension[0]
+    assert 0 < abs(tension) < 1e-8 * summary.layers[0].von_mises[0]
+    (line,) = [row for row in str(summary).splitlines() if row.startswith("interfaces[0]")]
+    assert "tension        0 Pa" in line
+    assert "-" not in line
+
+
 def test_results_are_lines_with_prefixes() -> None:
     solution = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0)
     summary = solution.stress_summary()
