@@ -103,3 +103,16 @@ fn a_local_maximum_within_the_grid_does_not_hide_one_beyond() -> Result<()> {
     }
     Ok(())
 }
+
+/// Below layers, tractions pull far behind themselves: on a grid that ends before, the tension is that of a wide one.
+#[test]
+fn the_tension_behind_a_traction_is_found() -> Result<()> {
+    let soft = Elastic::new(1.0, 0.3)?;
+    for (young, friction) in [(1.5, 0.3), (0.3, 0.1)] {
+        let body = HalfSpace::new(soft, [Layer::new(Elastic::new(young, 0.3)?, 2.0)?])?;
+        let grid = Grid::line(64, 3.2)?;
+        let options = sliding(friction, [0.0, 1.0]);
+        assert!(check(&body, (grid, [false, true], 1000), &options)? >= 1);
+    }
+    Ok(())
+}

@@ -334,8 +334,8 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
         if peak is None:
             return
         value, (x, y, z) = peak
-        if abs(value) < noise:
-            # What falls to nothing far away has no place.
+        if name == "tension" and abs(value) < noise:
+            # A tension that falls to nothing far away has no place.
             share = written(error, "Pa") if error is not None and error > noise else ""
             rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
             return
