@@ -75,7 +75,7 @@ pub(super) struct Beyond<'a> {
 
 impl<'a> Beyond<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2]) -> Self {
-        let slides = friction != [0.0; 2] || plan.known.is_some();
+        let slides = friction.iter().any(|f| *f != 0.0) || plan.known.is_some();
         let searched = searched(&plan.whole, slides);
         let grid = &plan.whole.grid;
         let periods = |axis: usize| grid.size()[axis] / grid.size()[1 - axis];
