@@ -204,10 +204,11 @@ impl Grid {
         let wide = |axis: usize| {
             let (cells, spacing) = (self.shape[axis], self.spacing()[axis]);
             powers[axis].map_or((cells, self.size[axis]), |(wider, larger)| {
-                let added = (((1 << wider) - 1) * cells).div_ceil(2 << larger);
+                let [wider, larger] = [wider, larger].map(|power| (power as f64).exp2());
+                let within = (cells as f64 / larger).ceil();
                 // The same parity, so that centres coincide where cells are as large.
-                let cells = cells.div_ceil(1 << larger) + 2 * added;
-                (cells, (larger as f64).exp2() * spacing * cells as f64)
+                let cells = within + 2.0 * (0.5 * (wider - 1.0) / larger * cells as f64).ceil();
+                (cells as usize, larger * spacing * cells)
             })
         };
         let [(nx, lx), (ny, ly)] = [wide(0), wide(1)];

@@ -33,7 +33,7 @@ const LEAST_ON_BORDER: f64 = 0.1;
 /// Cells across the grid within, at least, after merging.
 const ACROSS: usize = 32;
 
-/// Cells between the load and the border, at least, after merging.
+/// Cells between the load and the border, at least, after merging; where there are fewer before, none are merged.
 const BETWEEN: usize = 4;
 
 /// Error of stresses beyond the grid where the load is uniform over cells, and merged so that its third moments differ,
@@ -59,6 +59,12 @@ const BEHIND: f64 = 25.0;
 /// Widest grid, in periods of the other axis, where one repeats: the time for its coefficients grows with that number.
 const PERIODS: f64 = 64.0;
 
+/// Wider grids that are searched in any case, at most: 10⁴ times as wide, where a load on the grid makes 1e-8 of its pressure.
+const FARTHEST: usize = 14;
+
+/// Wider grids at most: 2⁵² times as wide, where the grid is a rounding of the width.
+const WIDEST: usize = 52;
+
 /// What evaluates a plan beyond its grid.
 #[derive(Debug)]
 pub(super) struct Beyond<'a> {
@@ -82,7 +88,7 @@ impl<'a> Beyond<'a> {
         let most = match grid.is_periodic() {
             [true, false] => (PERIODS / periods(1)).log2() as usize,
             [false, true] => (PERIODS / periods(0)).log2() as usize,
-            _ => usize::MAX,
+            _ => WIDEST,
         };
         Self { plan, friction, searched, most, axes: [false; 2], wider: Vec::new() }
     }
@@ -191,14 +197,14 @@ impl<'a> Beyond<'a> {
         cells.checked_ilog2().unwrap_or(0) as usize
     }
 
-    /// The plan on a grid about 2^(`level` + 1) times as wide.
+    /// The plan on the wider grid of this level, about 2^(`level` + 1) times as wide.
     fn widened(&self, level: usize, progress: &mut StressProgress) -> Result<Option<StressPlan>> {
         let whole = &self.plan.whole;
-        // Along x, larger cells might reach beyond a free end.
+        // Along x, larger cells might reach beyond a free end: the grid is twice as wide there, in the same cells.
         let has_ends = whole.body.ends() != [None; 2];
-        let powers = |axis: usize| {
-            let merged = if has_ends && axis == 0 { 0 } else { level + self.merged(axis) };
-            self.axes[axis].then_some((level + 1, merged))
+        let powers = |axis: usize| match has_ends && axis == 0 {
+            true => self.axes[axis].then_some((1, 0)),
+            false => self.axes[axis].then_some((level + 1, level + self.merged(axis))),
         };
         let grid = whole.grid.widened([0, 1].map(powers))?;
         let moved = |field: &[f64]| moved(field, &whole.grid, &grid);
@@ -266,7 +272,8 @@ fn searched(whole: &HalfSpacePlan, slides: bool) -> usize {
         open_axes(whole)[*axis] && far >= whole.gap(*axis) as f64 * grid.spacing()[*axis]
     };
     let widths = [0, 1].into_iter().filter(outside).map(|axis| grid.size()[axis]);
-    (1.0 + 2.0 * far / widths.fold(f64::INFINITY, f64::min)).log2().ceil() as usize
+    let levels = (1.0 + 2.0 * far / widths.fold(f64::INFINITY, f64::min)).log2().ceil();
+    (levels as usize).min(FARTHEST)
 }
 
 /// Axes along which a peak lies in the outermost cells of `grid`, where neither the grid repeats nor the body ends.

@@ -116,3 +116,24 @@ fn the_tension_behind_a_traction_is_found() -> Result<()> {
     }
     Ok(())
 }
+
+/// Layers of any thickness and stiffness end the search, and so does a body that ends on one side of the load.
+#[test]
+fn the_search_ends() -> Result<()> {
+    let base = Elastic::new(1.0, 0.3)?;
+    let grid = Grid::new([16, 16], [2.5, 2.5])?;
+    let summary = |body: HalfSpace, options: &StressOptions| -> Result<StressSummary> {
+        let plan = StressPlan::plan(&body, &grid, &pressure(&grid, [0.0; 2]), None)?;
+        plan.summary(&Strengths::default(), options)
+    };
+    let still = StressOptions::default();
+    for (thickness, young) in [(1e9, 1e9), (1e20, 1e-9), (1e-20, 1e20)] {
+        let layer = Layer::new(Elastic::new(young, 0.3)?, thickness)?;
+        let summary = summary(HalfSpace::new(base, [layer])?, &still)?;
+        assert!(summary.finished);
+        assert!(peaks(&summary).iter().all(|peak| peak.value.is_finite()));
+    }
+    let ended = HalfSpace::from(base).with_ends([Some(-1.25), None])?;
+    assert!(summary(ended, &still)?.finished);
+    Ok(())
+}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Tabular(Result, is_base=True):
+class Tabular(Result, ABC, is_base=True):
     """Base of results that are saved as NetCDF and as a table."""
 
+    @abstractmethod
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the result; needs ``nacre-contact[files]``."""
-        raise NotImplementedError
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a file, whole or not at all.
@@ -58,9 +59,9 @@ class Tabular(Result, is_base=True):
         """
         return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
 
+    @abstractmethod
     def _file_rows(self) -> Iterable[Iterable[Any]]:
         """Return the rows of the table in a ``.csv``, the heading first."""
-        raise NotImplementedError
 
     def _comments(self) -> dict[str, Any]:
         """Return what stands above the table."""
