@@ -1,8 +1,5 @@
 //! Derivatives of the frequency response equal reference values of 50 digits and two exact identities, for any stack.
 
-use std::hint::black_box;
-use std::time::Instant;
-
 use nacre::response::{Asymptotes, Response, asymptote_derivatives, normal_derivatives};
 use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 
@@ -219,23 +216,5 @@ fn long_waves_leave_for_the_derivatives_of_the_limits() -> Result<()> {
             below!((error * theta).abs() / value, 1e-6);
         }
     }
-    Ok(())
-}
-
-/// At most 0.2 µs for a wavenumber and parameter; three times as much in a debug build or on a busy machine is told by
-/// the printed figure alone.
-#[test]
-fn a_derivative_takes_a_fraction_of_a_microsecond() -> Result<()> {
-    let body = stack(Elastic::new(1.0, 0.3)?, [[4.0, 0.25, 1.0]])?;
-    let parameters = body.parameters();
-    let mut out = vec![0.0; parameters.len()];
-    let start = Instant::now();
-    let runs = 20_000;
-    for k in 0..runs {
-        let alpha = 1e-3 + 1e-3 * f64::from(k);
-        black_box(normal_derivatives(black_box(&body), &parameters, alpha, &mut out));
-    }
-    let each = start.elapsed().as_secs_f64() / f64::from(runs) / parameters.len() as f64;
-    below!(each, 20e-6);
     Ok(())
 }

@@ -7,13 +7,11 @@ import hashlib
 import io
 import os
 import runpy
-import signal
 import subprocess
 import sys
-import time
 import warnings
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from unittest import mock
 
 import pytest
@@ -66,10 +64,14 @@ def command(*arguments: object) -> int:
     return error.value.code
 
 
+HANG = 900.0
+"""Time [s] after which a process hangs. No test takes a tenth of it on a busy machine."""
+
+
 def python(*arguments: object, folder: Path | None = None, **options: Any) -> Any:
     """Return a finished process of Python, with its exit code and what it printed."""
     asked = [sys.executable, *map(str, arguments)]
-    options = {"capture_output": True, "text": True, "timeout": 300} | options
+    options = {"capture_output": True, "text": True, "timeout": HANG} | options
     return subprocess.run(asked, cwd=folder, check=False, **options)
 
 
@@ -87,34 +89,41 @@ def printed(program: Path, folder: Path) -> str:
     return output.getvalue()
 
 
-class Interrupted(NamedTuple):
-    """How a process ended that was sent Ctrl-C at a time."""
+INTERRUPTED = """
+import signal, sys, threading
+begin = threading.Event()
 
-    code: int
-    first: str
-    lines: list[str]
-    errors: str
-    sent: float
-    waited: float
+def interrupt():
+    begin.wait()
+    signal.raise_signal(signal.SIGINT)
+
+{setup}
+threading.Thread(target=interrupt, daemon=True).start()
+sys.setswitchinterval(1e6)
+{begin}
+try:
+    {call}
+except KeyboardInterrupt as error:
+    print("interrupted", len(getattr(error, "solutions", None) or []))
+"""
 
 
-def interrupted(*arguments: object, wait: float = 0.0, stream: str = "stdout") -> Interrupted:
-    """Send Ctrl-C to a process of Python `wait` after its first line, the others are `lines`."""
-    asked = [sys.executable, *map(str, arguments)]
-    pipe = subprocess.PIPE
-    with subprocess.Popen(asked, stdout=pipe, stderr=pipe, text=True) as process:
-        try:
-            first = getattr(process, stream).readline()
-            assert first
-            time.sleep(wait)
-            assert process.poll() is None, "it ended before it could be interrupted"
-            sent = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60)
-        finally:
-            process.kill()
-    waited = time.monotonic() - sent
-    return Interrupted(process.returncode, first, out.splitlines(), err, sent, waited)
+def interrupted(setup: str, call: str, at: str = "call") -> int:
+    """
+    Interrupt a call that takes hours by Ctrl-C and return how many solutions it had finished.
+
+    The signal is sent by a thread, which the switch interval keeps waiting until the call lets
+    other threads run; with `at="event"`, until the call, by its progress, has set `begin` too.
+    An interrupt that is not seen is a process that hangs.
+    """
+    begin = "begin.set()" if at == "call" else ""
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(sys.path)
+    }  # `bodies` stands beside this file
+    run = python("-c", INTERRUPTED.format(setup=setup, begin=begin, call=call), env=environment)
+    word, _, count = run.stdout.strip().partition(" ")
+    assert (word, run.returncode) == ("interrupted", 0), run
+    return int(count)
 
 
 RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"

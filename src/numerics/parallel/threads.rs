@@ -325,6 +325,9 @@ mod tests {
     };
     use crate::error::Result;
 
+    /// Time after which a call counts as hanging, on a busy machine too.
+    const HANG: Duration = Duration::from_secs(600);
+
     /// Whether the caller is a thread of a pool.
     fn in_pool() -> bool {
         rayon::current_thread_index().is_some()
@@ -439,7 +442,7 @@ mod tests {
                 }));
             });
             // The time limit makes the test fail where the calls do not end.
-            receiver.recv_timeout(Duration::from_secs(20)).ok()?
+            receiver.recv_timeout(HANG).ok()?
         }
         assert_eq!(nested(Arc::new(Threads::new(Some(2))?), 5), Some(6));
         Ok(())
@@ -451,7 +454,7 @@ mod tests {
         let (sender, receiver) = channel();
         thread::spawn(move || {
             let (started, starts) = channel();
-            let wait = move || starts.recv_timeout(Duration::from_secs(5)).is_ok();
+            let wait = move || starts.recv_timeout(HANG / 2).is_ok();
             let panics = move || {
                 let _ = started.send(());
                 panic!("on purpose");
@@ -460,7 +463,7 @@ mod tests {
             let _ = sender.send(catch_unwind(AssertUnwindSafe(call)).is_err());
         });
         // The time limit makes the test fail where the first half waits forever.
-        assert_eq!(receiver.recv_timeout(Duration::from_secs(20)), Ok(true));
+        assert_eq!(receiver.recv_timeout(HANG), Ok(true));
         Ok(())
     }
 

@@ -4,7 +4,6 @@ import math
 import os
 import re
 import threading
-import time
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +14,7 @@ import pytest
 
 import nacre
 from bodies import BALL, STEEL, coated, quiet
-from support import interrupted, python
+from support import HANG, interrupted, python
 
 COATED = coated(420e9, 40e-6)
 PARABOLOID = nacre.Paraboloid(5e-3, 5e-3)
@@ -392,7 +391,7 @@ def test_solves_of_one_plan_may_wait_for_each_other() -> None:
         def solve(meeting: threading.Barrier = meeting) -> nacre.Solution:
             def wait(report: nacre.types.Report) -> None:
                 if report.iterations == 1:
-                    meeting.wait(timeout=20)  # raises where one of them does not come
+                    meeting.wait(timeout=HANG)  # raises where one of them does not come
 
             return contact.solve(BALL, load=HEAVY, progress=wait)
 
@@ -403,56 +402,44 @@ def test_solves_of_one_plan_may_wait_for_each_other() -> None:
 
 @pytest.mark.slow
 def test_other_threads_run_during_a_solve() -> None:
-    contact = nacre.Contact(COATED, FINE_GRID, threads=1)
-    started = threading.Event()
+    # The solve never ends by itself, since no gap is that small. The other thread, which runs only
+    # where the solve lets it, ends it.
+    script = f"""{SCRIPT}
+import sys, threading
+contact = nacre.Contact(steel, nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4)), threads=1)
+begin, seen = threading.Event(), []
 
-    def work() -> None:
-        started.set()
-        # Goes on to the limit: no gap is that small.
-        contact.solve(
-            BALL,
-            load=LOAD,
-            tolerance=1e-300,
-            max_iterations=100,
-            algorithm="polonsky-keer",
-            check=False,
-        )
+def look():
+    begin.wait()
+    seen.append(True)
 
-    worker = threading.Thread(target=work)
-    worker.start()
-    started.wait()
-    ticks = 0
-    while worker.is_alive():
-        time.sleep(1e-3)
-        ticks += 1
-    assert ticks > 10  # were the interpreter held, this thread would wake once or twice
+threading.Thread(target=look, daemon=True).start()
+sys.setswitchinterval(1e6)
+begin.set()
+contact.solve(
+    sphere, load=250.0, tolerance=1e-300, max_iterations=10**9, algorithm="polonsky-keer",
+    progress=lambda report: not seen, check=False,
+)
+"""
+    assert python("-c", script).returncode == 0
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends a signal to a process")
 @pytest.mark.parametrize(
     "solve",
     [
-        "contact.solve(shape, load=1e4, tolerance=1e-13)",
-        "contact.solve(shape, load=1e4, tolerance=1e-13, algorithm='polonsky-keer')",
-        "contact.solve_many(2 * [{'shape': shape, 'load': 1e4}], tolerance=1e-13)",
+        "contact.solve(sphere, load=250.0, **endless)",
+        "contact.solve(sphere, load=250.0, algorithm='polonsky-keer', **endless)",
+        "contact.solve_many(2 * [{'shape': sphere, 'load': 250.0}], **endless)",
     ],
 )
 def test_ctrl_c_stops_a_solve(solve: str) -> None:
-    # White noise, pressed almost flat: many seconds of iterations on many cells.
-    script = f"""{SCRIPT}
-import numpy as np
-noise = np.random.default_rng(1).standard_normal((1024, 1024))
-shape = nacre.HeightMap(1e-7 * noise, spacing=4e-7)
-contact = nacre.Contact(steel, nacre.Grid(shape=(1024, 1024), size=(1024 * 4e-7, 1024 * 4e-7)))
-print("solving", flush=True)
-try:
-    {solve}
-except KeyboardInterrupt as error:
-    print("interrupted", getattr(error, "solutions", "") or "")
+    # No gap is as small as the tolerance: iterations without end.
+    setup = f"""{SCRIPT}
+contact = nacre.Contact(steel, nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4)))
+endless = dict(tolerance=1e-300, max_iterations=10**12)
 """
-    run = interrupted("-c", script, wait=0.3)
-    assert run.lines == ["interrupted " + ("[None, None]" if "many" in solve else "")]
-    assert run.waited < 2.0
+    assert interrupted(setup, solve) == (2 if "many" in solve else 0)
 
 
 @pytest.mark.slow
@@ -465,11 +452,11 @@ contact = nacre.Contact(steel, nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4)), 
 pressure = contact.solve(sphere, load=250.0).pressure
 child = os.fork()
 if child == 0:
-    signal.alarm(20)
+    signal.alarm(600)  # a child that hangs
     same = (contact.solve(sphere, load=250.0).pressure == pressure).all()
     os._exit(0 if same else 1)
 _, status = os.waitpid(child, 0)
 assert os.waitstatus_to_exitcode(status) == 0, status
 assert (contact.solve(sphere, load=250.0).pressure == pressure).all()
 """
-    assert python("-c", script, timeout=60).returncode == 0
+    assert python("-c", script).returncode == 0

@@ -4,9 +4,6 @@ import csv
 import math
 import os
 import pickle
-import signal
-import threading
-import time
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +14,7 @@ import pytest
 import nacre
 from bodies import BALL, COATED, HARD, ROD, STEEL
 from nacre._tools.units import written
+from support import interrupted
 
 GRID = nacre.Grid(shape=(41, 31), size=(4.1e-4, 3.1e-4))
 
@@ -462,14 +460,17 @@ def test_progress_stops_and_raises(solution: nacre.Solution, planned: bool, tmp_
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_ctrl_c_interrupts_a_plan(solution: nacre.Solution) -> None:
-    plan = solution.stress_plan()
-    timer = threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT))
-    start = time.monotonic()
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        plan.stress(np.linspace(0.0, 1e-3, 20_000), friction=0.3, direction=(1.0, 0.0))
-    assert time.monotonic() - start < 10.0
+def test_ctrl_c_interrupts_a_plan() -> None:
+    # Hundreds of layers make a depth slow.
+    setup = """
+import nacre, numpy as np
+from bodies import BALL, HARD, STEEL
+body = nacre.HalfSpace(STEEL, 300 * [nacre.Layer(HARD, 1e-6)])
+grid = nacre.Grid(shape=(64, 64), size=(3e-4, 3e-4))
+plan = nacre.solve(BALL, body, grid=grid, load=5.0).stress_plan()
+depths = np.linspace(0.0, 1e-3, 10_000)
+"""
+    assert interrupted(setup, "plan.stress(depths, friction=0.3, direction=(1.0, 0.0))") == 0
 
 
 def test_refined_extremes_agree_with_a_finer_grid() -> None:

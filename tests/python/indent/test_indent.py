@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import pickle
-import signal
-import threading
-import time
 from typing import Any
 
 import numpy as np
@@ -182,31 +178,24 @@ def test_bad_input_is_refused(call: str, kind: type[Exception], words: str) -> N
 
 def test_an_interrupt_ends_long_work_at_once() -> None:
     # A contact of 400 thicknesses takes some tenths of a second.
-    film = nacre.Layer(nacre.Elastic(1e9, 0.3), 1e-7)
-    test = Indentation(nacre.HalfSpace(STEEL, [film]), Tip.paraboloid(1.0))
-    sent = []
-
-    def interrupt() -> None:
-        sent.append(time.perf_counter())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    timer = threading.Timer(0.5, interrupt)
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        test.at(radius=np.full(1000, 4e-5))
-    # A fifth of a second is what users are promised; the rest is for a busy machine.
-    assert time.perf_counter() - sent[0] < 1.0
+    setup = """
+import numpy as np
+import nacre
+from nacre.indent import Indentation, Tip
+film = nacre.Layer(nacre.Elastic(1e9, 0.3), 1e-7)
+test = Indentation(nacre.HalfSpace(nacre.Elastic(210e9, 0.3), [film]), Tip.paraboloid(1.0))
+"""
+    assert interrupted(setup, "test.at(radius=np.full(10**5, 4e-5))") == 0
 
 
-# Ten layers make a state slow: each of these takes many seconds.
+# Thousands of layers make a state slow.
 LONG = """
+import numpy as np
 import nacre
 from nacre.indent import Adhesion, Indentation, Tip
-gels = [nacre.Layer(nacre.Elastic((1 + k % 3) * 1e6, 0.4999), 1e-7) for k in range(10)]
+gels = [nacre.Layer(nacre.Elastic((1 + k % 3) * 1e6, 0.4999), 1e-7) for k in range(3000)]
 body = nacre.HalfSpace(nacre.RIGID, gels)
 test = Indentation(body, Tip.paraboloid(1e-3), adhesion=Adhesion.{adhesion})
-print("begun", flush=True)
-test.{call}
 """
 
 
@@ -216,14 +205,11 @@ test.{call}
     [
         ("maugis(0.05, 3e5)", "pull_off()"),
         ("maugis(0.05, 3e5)", "at(load=0.0)"),
-        ("jkr(0.05)", "at(load=1000 * [1e-4])"),
+        ("jkr(0.05)", "at(load=np.full(1000, 1e-4))"),
     ],
 )
 def test_ctrl_c_is_seen_at_once(adhesion: str, call: str) -> None:
-    run = interrupted("-c", LONG.format(adhesion=adhesion, call=call), wait=0.3)
-    assert "KeyboardInterrupt" in run.errors
-    # Signals are seen within 50 ms; the rest is the end of the interpreter on a busy machine.
-    assert run.waited < 2.0
+    assert interrupted(LONG.format(adhesion=adhesion), f"test.{call}") == 0
 
 
 # Tips by slope or half angle, and contacts that are too deep for small slopes.

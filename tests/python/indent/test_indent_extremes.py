@@ -13,6 +13,7 @@ import pytest
 
 import nacre
 from nacre.indent import Adhesion, Indentation, Tip, charts, slope_of
+from support import HANG
 
 EXTREMES = [
     *(0.0, -1.0, 5e-324, -5e-324, 1e-300, 1e-160, 1e-30, 1e30, 1e160, 1e300, -1e300),
@@ -160,7 +161,7 @@ def test_no_number_hangs_panics_or_makes_nan(part: int) -> None:
         cwd=__file__.rpartition("/")[0],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=HANG,
         check=False,
     )
     wrong = [line for line in ran.stdout.splitlines() if line.startswith("WRONG")]

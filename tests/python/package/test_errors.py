@@ -598,7 +598,7 @@ except MemoryError as error:
     print(error)
 """
     # In a process of its own: where memory is not checked, the allocator ends the process.
-    run = support.python("-c", script, timeout=60)
+    run = support.python("-c", script)
     assert run.returncode == 0, run.stderr[:500]
     assert re.search(r"\d+.* cells needs about \d+ MiB, and \d+ MiB are available", run.stdout)
 

@@ -9,7 +9,7 @@ from typing import Any
 import nbformat
 from nbclient import NotebookClient
 
-from support import Patch
+from support import HANG, Patch
 
 CELLS = (
     """\
@@ -40,7 +40,7 @@ def executed(folder: Path, *sources: str) -> Any:
     v4 = nbformat.v4
     notebook = v4.new_notebook(cells=[v4.new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
     resources = {"metadata": {"path": str(folder)}}
-    return NotebookClient(notebook, timeout=120, resources=resources).execute().cells
+    return NotebookClient(notebook, timeout=HANG, resources=resources).execute().cells
 
 
 def test_each_cell_shows_its_picture_and_a_study_nothing_without_widgets(

@@ -26,12 +26,12 @@ import nacre
 import results
 from bodies import BALL, STEEL, quiet
 from nacre.case import Case
-from support import ASKED, python, sealed
+from support import ASKED, HANG, python, sealed
 
 STATE, SEAL = "nacre_solution", 48
 """Attribute of the state in a file, and bytes of the seal after it."""
 COUNT = int(ASKED) if ASKED else 25
-SECONDS = 2.0
+SECONDS = 20.0
 """Most time of the processor for one file of some kilobytes."""
 MEMORY = 100_000_000
 """Most bytes beyond those of the file."""
@@ -185,7 +185,7 @@ def main(name: str, count: int, seed: int, folder: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no measure of the memory")
 def test_a_damaged_file_is_refused_or_read_soon(tmp_path: Path) -> None:
     seed = random.randrange(1 << 30) if ASKED else 1
-    seconds = len(KINDS) * (10 + SECONDS * COUNT)
+    seconds = HANG + len(KINDS) * SECONDS * COUNT
     path = {"PYTHONPATH": os.pathsep.join(sys.path)}  # bodies and support are beside this folder
     done = python(
         *(__file__, COUNT, seed, tmp_path, *KINDS), timeout=seconds, env=os.environ | path

@@ -278,7 +278,7 @@ def test_a_long_run_of_digits_takes_linear_time(text: str, ending: str, tmp_path
     start = time.process_time()
     with pytest.raises(ValueError, match="a\\.") as error:
         nacre.HeightMap.read(path, spacing=1e-6)
-    assert time.process_time() - start < 1  # quadratic time would be minutes
+    assert time.process_time() - start < 20  # of the processor; quadratic work would take minutes
     assert len(str(error.value)) < 500
 
 
