@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import display_units, energy, printable, rounded, symbol, written
+from nacre._tools.units import SI, Within, energy, printable, rounded, symbol, written
 from nacre.results.quantities import CONTACT, FRICTION, Quantity
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def in_si(told: Callable[P, T]) -> Callable[P, T]:
 
     @functools.wraps(told)
     def inside(*args: P.args, **kwargs: P.kwargs) -> T:
-        with display_units("SI"):
+        with Within(SI):
             return told(*args, **kwargs)
 
     return inside
