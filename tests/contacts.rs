@@ -21,6 +21,7 @@ mod contact {
     mod hardness;
     mod invariants;
     mod line;
+    mod matrix;
     mod periodic;
     mod stiffness;
     mod thin_layers;

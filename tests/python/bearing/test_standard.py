@@ -165,6 +165,37 @@ def test_life_has_the_exponents_of_the_standard() -> None:
     assert twice.equivalent_load / once.equivalent_load == pytest.approx(2**1.2, rel=1e-12)
 
 
+def power_mean(loads: Any, power: float) -> Any:
+    """Return the power mean over the elements."""
+    return np.mean(np.asarray(loads) ** power, axis=0) ** (1 / power)
+
+
+@pytest.mark.parametrize("rotating", ["inner", "outer"])
+def test_the_ring_that_rotates_has_the_lower_power_of_the_mean_load(rotating: str) -> None:
+    # ISO/TS 16281:2008, equations (25) to (29) of balls and (61) to (65) of rollers: the ring that
+    # rotates has powers of 3 and 4, the other one 10/3 and 9/2.
+    order = 1 if rotating == "inner" else -1
+    random = np.random.default_rng(5)
+    ball = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    loads = random.uniform(0.0, 500.0, (7, 2)) * [1.0, 2.0]
+    life = reference_life(ball, loads, 1.0, rotating)
+    powers = [3.0, 10 / 3][::order]
+    sums = sum(
+        (power_mean(loads[:, k], powers[k]) / life.capacities[k]) ** (10 / 3) for k in range(2)
+    )
+    assert life.revolutions == pytest.approx(sums**-0.9, rel=1e-12)
+
+    roller = CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
+    loads = random.uniform(0.0, 50.0, (14, 2, 40)) * np.array([1.0, 2.0])[:, None]
+    life = reference_life(roller, loads, 1.0, rotating)
+    powers = [4.0, 4.5][::order]
+    sums = 0.0
+    for k in range(2):
+        lamina = life.capacities[k] * 40 ** (-7 / 9)
+        sums += ((power_mean(loads[:, k], powers[k]) / lamina) ** 4.5).sum()
+    assert life.revolutions == pytest.approx(sums ** (-8 / 9), rel=1e-12)
+
+
 def test_edge_factor_of_the_pressure_is_1_under_hertz() -> None:
     # ISO/TS 16281, eqs 58 and 59, in mm, N and MPa; its constant 271 has three digits: 2e-3.
     bearing = CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)

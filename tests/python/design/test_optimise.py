@@ -9,6 +9,8 @@ from scipy.optimize import minimize
 import nacre
 from bodies import STEEL
 from nacre.design import Optimum, optimise
+from nacre.design.parameters import scales_of
+from nacre.design.problem import Problem
 
 BALL = {"shape": nacre.Sphere(5e-3), "body": STEEL}
 RADIUS: dict[str, Any] = {
@@ -300,3 +302,18 @@ def test_a_roller_with_free_ends_has_an_optimum_between_tilts() -> None:
             {"counterbody.layers[0].thickness": 2e-6},
             **(asked | {"across": 1}),
         )
+
+
+def test_the_slope_of_a_power_mean_over_cases_is_that_of_differences() -> None:
+    # The mean of the approaches' fourth powers under two loads, with respect to the radius.
+    cases = [{"load": 10.0}, {"load": 30.0}]
+    start = {"shape.radius": 5e-3}
+    problem = Problem(BALL, scales_of(start, {}), "approach", cases, [], 4.0)
+    problem.begin(np.array([problem.scales[0].x(5e-3)]), RADIUS["grid"])
+    x = problem.scales[0].x(5e-3)
+    point, above, below = (problem.at(np.array([x + step])) for step in (0.0, 1e-4, -1e-4))
+    slope = (above.value - below.value) / 2e-4
+    assert point.slope[0] == pytest.approx(slope, rel=1e-3)  # cells enter the contact one by one
+    approaches = [nacre.solve(**BALL, **case, grid=RADIUS["grid"]).approach for case in cases]
+    mean = np.mean(np.array(approaches) ** 4) ** 0.25
+    assert point.value * problem.unit == pytest.approx(mean, rel=1e-7)

@@ -4,6 +4,7 @@ import json
 import math
 import pickle
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import nacre
 from bodies import STEEL
 from bodies import coated as coated_body
 from nacre.indent import Curve, Fit, Tip, fit
+from nacre.indent._profile import Estimate, reasons
 from nacre.indent.classical import classical
 from support import DATA
 
@@ -265,3 +267,54 @@ def test_oliver_and_pharrs_bias_at_a_contact_as_wide_as_the_layer(ratio: float, 
     curve = Curve(depth, test.curve(approach=depth).load)
     rows = {row.method: row for row in classical(curve, body, test.tip)}
     assert rows["Oliver and Pharr"].bias == pytest.approx(due, abs=0.01)
+
+
+def test_dimitriadis_modulus_is_that_of_his_series() -> None:
+    # Equations (11) and (12) for a bonded layer with ν = 1/2: the coefficients follow from those of
+    # his Green's function, and the printed last one has the other sign.
+    alpha = -(1.2876 - 1.4678 * 0.5 + 1.3442 * 0.25) / 0.5
+    beta = (0.6387 - 1.0277 * 0.5 + 1.5164 * 0.25) / 0.5
+    coefficients = [
+        1.0,
+        -2 * alpha / math.pi,
+        (2 * alpha / math.pi) ** 2,
+        -8 / math.pi**3 * (alpha**3 + 4 * math.pi**2 / 15 * beta),
+        -16 * alpha / math.pi**4 * (alpha**3 + 3 * math.pi**2 / 5 * beta),
+    ]
+    young, radius, thickness = 20e3, 5e-6, 1.5e-6
+    depth = np.linspace(0.02e-6, 0.5e-6, 40)
+    x = np.sqrt(radius * depth) / thickness
+    series = sum(c * x**k for k, c in enumerate(coefficients))
+    force = 16 / 9 * young * math.sqrt(radius) * depth**1.5 * series
+    gel = nacre.Layer(nacre.Elastic(young, 0.5), thickness)
+    rows = classical(
+        Curve(depth, force), nacre.HalfSpace(nacre.RIGID, [gel]), Tip.paraboloid(radius)
+    )
+    (row,) = (row for row in rows if row.method == "Dimitriadis")
+    # The paper prints four digits of each coefficient.
+    assert row.modulus == pytest.approx(young / 0.75, rel=1e-3)
+
+
+@pytest.mark.parametrize(("apart", "fits"), [(3.83, True), (3.85, False)])
+def test_another_minimum_fits_as_well_up_to_the_95_per_cent_of_one_parameter(
+    apart: float, fits: bool
+) -> None:
+    # χ² of one degree of freedom is below 3.8415 in 95 % of all cases.
+    unknown = SimpleNamespace(
+        name="body.layers[0].material.young", kind="", is_log=True, value=math.exp
+    )
+    model: Any = SimpleNamespace(unknowns=[unknown], names=[unknown.name], low=[-9.0], high=[9.0])
+    one = np.ones((1, 1))
+    best = Estimate(
+        x=np.zeros(1),
+        chi2=7.0,
+        variance=2.0,
+        quantile=1.96,
+        covariance=1e-4 * one,
+        correlation=one,
+        condition=1.0,
+        alone=np.array([0.01]),
+    )
+    minima = [(np.array([1.0]), 7.0 + 2.0 * apart)]
+    told = reasons(model, best, {unknown.name: (-0.0196, 0.0196)}, minima)
+    assert ("another minimum, at 2.718" in "".join(told.values())) == fits
