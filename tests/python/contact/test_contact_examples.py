@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import nacre
+from bodies import quiet
 
 PRINTED: dict[str, Any] = json.loads(
     (Path(__file__).parents[2] / "data" / "friction" / "contact_examples.json").read_text()
@@ -121,3 +122,20 @@ def test_the_creep_curve_of_a_eurosprinter() -> None:
     assert solution.normal.peak_pressure == pytest.approx(printed["peak"], rel=DIGITS)
     assert solution.normal.approach == pytest.approx(printed["approach"], rel=DIGITS)
     assert np.count_nonzero(solution.pressure) == printed["pressed"]
+
+
+def test_a_ball_that_is_pressed_in_35_steps_sticks_and_slips_as_in_contact() -> None:
+    # Spence's problem: a ball of G = 1/2 and ν = 0 on a body that is all but rigid.
+    printed = PRINTED["spence35"]
+    grid = nacre.Grid((45, 45), (9.0, 9.0), (1e-4, 1e-4))
+    bodies = nacre.Elastic(young=1.0, poisson=0.0), nacre.Elastic(young=2e5, poisson=0.0)
+    radius = 0.5 / 0.004116
+    steps = [{"load": (k / 45) ** 3} for k in range(1, 36)]
+    ball, contact = nacre.Paraboloid(radius, radius), nacre.Contact(bodies[0], grid, bodies[1])
+    last = quiet(contact.slide, ball, friction=0.2986, steps=steps)[-1]
+    pressed = last.normal.pressure > 0
+    assert last.normal.approach == pytest.approx(printed["approach"], abs=0.5e-5)
+    assert last.normal.peak_pressure == pytest.approx(printed["peak"], abs=0.5e-5)
+    assert int(pressed.sum()) == printed["pressed"]
+    assert int((pressed & last.stick).sum()) == printed["stick"]
+    assert last.dissipated == pytest.approx(printed["work"], abs=0.5e-8)
