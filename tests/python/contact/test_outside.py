@@ -21,6 +21,8 @@ SUB = 32
 """Points along each side of a cell by which its share of a disc is counted."""
 DISC = 4e-4
 """Error of a disc of such cells 10 mm below it, over the pressure; it falls as 1/z² or faster."""
+QUADRATURE = 2.5e-4
+"""Relative error of ELLEA1's integrals; at the surface they are off by 4e-3."""
 
 
 def half_space(case: dict[str, Any]) -> nacre.HalfSpace:
@@ -76,7 +78,8 @@ def test_shear_strains_between_discs_are_those_of_ellea1() -> None:
     moduli = [ELLEA1["layers"][0][1:]] * 2 + [ELLEA1["layers"][1][1:]] * 2 + [ELLEA1["base"]]
     compliance = np.array([(1 + nu) / young for young, nu in moduli])
     for k, name in enumerate(["xy", "yz", "xz"], 1):
-        bound = 1e6 * compliance * DISC * ELLEA1["pressure"] * (10 / rows[:, 0]) ** 2 + 5e-5
+        bound = 1e6 * compliance * DISC * ELLEA1["pressure"] * (10 / rows[:, 0]) ** 2
+        bound += QUADRATURE * np.abs(rows[:, k]) + 5e-5
         assert (np.abs(-1e6 * compliance * field[name] - rows[:, k]) < bound).all(), name
 
 
