@@ -221,3 +221,16 @@ def test_unloaded_bearing_has_an_infinite_life_in_words() -> None:
     assert life.revolutions == math.inf
     assert life.equivalent_load == 0.0
     assert "infinite: no element is loaded" in str(life)
+
+
+@pytest.mark.parametrize(("count", "ratio"), [(8, 0.4568), (12, 0.555), (16, 0.595)])
+def test_stiffness_across_the_load_over_that_along_it(count: int, ratio: float) -> None:
+    # Without clearance the loads are as cos^(3/2) φ, and their rates as cos^(1/2) φ.
+    bearing = DeepGrooveBall(count=count, diameter=11.5e-3, pitch_diameter=60e-3, clearance=0.0)
+    tangent = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").stiffness()
+    angle = 2 * np.pi * np.arange(count) / count
+    rate = np.sqrt(np.maximum(np.cos(angle), 0.0))
+    closed = (rate @ np.sin(angle) ** 2) / (rate @ np.cos(angle) ** 2)
+    assert closed == pytest.approx(ratio, abs=5e-4)
+    # The approach, 2e-4 of the pitch radius, turns the directions of the loads a little.
+    assert tangent[1, 1] / tangent[0, 0] == pytest.approx(closed, rel=1e-6)

@@ -102,3 +102,29 @@ def test_strains_of_a_road_are_those_of_three_programs() -> None:
             strains.append(-1e6 * (one - poisson * others) / young)
         # The programs differ by one in the fourth digit.
         np.testing.assert_allclose(strains, printed, atol=0.15)
+
+
+# The coated roller of the paper, by a program that shares nothing with nacre.
+
+ROLLER = json.loads((DATA / "coated_roller.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("case", ROLLER["cases"])
+def test_coated_rollers_are_those_of_another_program(case: dict[str, float]) -> None:
+    young, poisson, load = (ROLLER["body"][name] for name in ("young", "poisson", "load"))
+    coat = nacre.Elastic(case["modulus_ratio"] * young, poisson)
+    body = nacre.HalfSpace(nacre.Elastic(young, poisson), [nacre.Layer(coat, case["thickness"])])
+    shape, size = ROLLER["grid"]["shape"], ROLLER["grid"]["size"]
+    solution = nacre.solve(
+        nacre.Roller(
+            ROLLER["roller"]["radius"], ROLLER["roller"]["flat_length"], ROLLER["roller"]["crown"]
+        ),
+        body,
+        grid=nacre.Grid(shape, size),
+        load=load,
+        eccentricity=(case["eccentricity"], None),
+        tolerance=1e-11,
+    )
+    assert solution.peak_pressure == pytest.approx(case["peak"], rel=1e-6)
+    assert solution.approach == pytest.approx(case["approach"], rel=1e-6)
+    assert -solution.tilt[0] == pytest.approx(case["slope"], rel=1e-5, abs=1e-12)
