@@ -185,16 +185,22 @@ class AngularContactBall(_Balls):
         above("contact_angle", self.contact_angle)
         if self.contact_angle >= math.pi / 2:
             raise ValueError(f"contact_angle must be below π/2, got {self.contact_angle!r}")
-        if self.clearance is not None:
+        self._give_way("clearance")
+        super().__post_init__()
+        if vars(self)["clearance"] not in (None, self.play):
             raise ValueError(
                 "clearance must not be given: the contact angle says where balls touch"
             )
-        super().__post_init__()
 
     @property
     def nominal_angle(self) -> float:
         """Nominal contact angle α [rad]."""
         return self.contact_angle
+
+    @property
+    def play(self) -> float:
+        """Diametral clearance of the rings in the middle of each other [m]."""
+        return 2 * self.between * (1 - math.cos(self.contact_angle))
 
     @property
     def free_angle(self) -> float:

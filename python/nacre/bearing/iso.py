@@ -123,11 +123,6 @@ def rating(bearing: Any) -> float:
     return float(bearing.rating_factor * shape * cos**0.7 * bearing.count ** (2 / 3) * size)
 
 
-def capacity_of(bearing: Bearing) -> float:
-    """Return the rating that is given, or that of ISO 281 [N]."""
-    return bearing.capacity or rating(bearing)
-
-
 class Rated(NamedTuple):
     """Reference rating life, and what it is made of."""
 
@@ -227,7 +222,8 @@ def reference_life(
     for the stress at edges; equations 12 to 16 for balls ``(Z, 2)``. The ring that rotates sees the
     loads of all elements of a row; rows survive independently.
     """
-    capacity = capacity_of(bearing)
+    capacity = bearing.capacity
+    assert capacity is not None
     found = capacities(bearing, capacity)
     if bearing.rolls:
         powers, exponent, life = (4.0, 4.5), 4.5, -8 / 9

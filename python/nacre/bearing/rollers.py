@@ -204,13 +204,10 @@ class CylindricalRoller(_Rollers):
 
     def _check_pitch(self) -> None:
         if self.raceway_diameters is None:
-            if self.pitch_diameter is None:
+            if vars(self)["pitch_diameter"] is None:
                 raise ValueError("pitch_diameter or raceway_diameters must be given, got neither")
             above("pitch_diameter", self.pitch_diameter)
         else:
-            given = [n for n in ("pitch_diameter", "clearance") if getattr(self, n) is not None]
-            if given:
-                raise ValueError(f"{given[0]} must not be given beside raceway_diameters")
             both = pair("raceway_diameters", self.raceway_diameters)
             object.__setattr__(self, "raceway_diameters", both)
             for value in both:
@@ -220,6 +217,10 @@ class CylindricalRoller(_Rollers):
                     "raceway_diameters must be (inner, outer), the inner one the smaller, "
                     f"got {both!r}"
                 )
+            for name, follows in (("pitch_diameter", self.pitch), ("clearance", self.play)):
+                self._give_way(name)
+                if vars(self)[name] not in (None, follows):
+                    raise ValueError(f"{name} must not be given beside raceway_diameters")
 
     @property
     def pitch(self) -> float:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import printable, symbol, written
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
-from nacre.bearing.iso import Edge, capacity_of, edge_factors, pressure_factors, reference_life
+from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
 from nacre.bearing.laws import LAMINAE, bodies_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -402,7 +402,7 @@ class BearingSolution(Tabular):
             elif edge == "pressure":
                 factors = self.edge_factors()
         found = reference_life(self.bearing, loads, factors, rotating)
-        capacity = capacity_of(self.bearing)
+        capacity = float(self.bearing.capacity or 0.0)
         return BearingLife(
             found.revolutions, found.equivalent_load, capacity, found.capacities, words
         )

@@ -40,7 +40,7 @@ def _asked(
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        told = given[name]
+        told = (None,) * length if given[name] is None else given[name]
         if isinstance(told, str) or not isinstance(told, Iterable):
             raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
         found = [*told]
@@ -65,16 +65,20 @@ def _asked(
                 f"{words[k]} and {others[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
-    if bearing.aligns and values["moment"] != [None, None]:
+    if bearing.aligns:
+        loads[3:] = [moment or None for moment in loads[3:]]  # it has no moment, which is 0
+    if bearing.aligns and loads[3:] != [None, None]:
         raise ValueError(
-            f"moment must be None: a spherical roller bearing aligns itself and carries none, "
+            f"moment must be None or 0: a spherical roller bearing aligns itself and carries none, "
             f"got {given['moment']!r}"
         )
     axial = not bearing.rolls or bearing.nominal_angle > 0
+    if not axial:
+        loads[2], moved[2] = loads[2] or None, moved[2] or None
     if not axial and (loads[2] is not None or moved[2] is not None):
         name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
         raise ValueError(
-            f"{name} along z must be None: rollers without a contact angle carry none, "
+            f"{name} along z must be None or 0: rollers without a contact angle carry none, "
             f"got {value!r}"
         )
     if bearing.rolls and axial and bearing.rows == 1 and loads[2] is not None:
@@ -250,7 +254,8 @@ def _found(
 
 def _implausible(bearing: Bearing, given: Mapping[str, Any], peaks: Array) -> Iterable[str]:
     """Yield warnings of tilts and pressures that no bearing has."""
-    steepest = max((abs(tilt) for tilt in given["tilt"] if tilt is not None), default=0.0)
+    tilts = () if given["tilt"] is None else given["tilt"]
+    steepest = max((abs(tilt) for tilt in tilts if tilt is not None), default=0.0)
     if steepest > STEEPEST and not bearing.aligns:
         yield f"tilt is a slope: 2' are 5.8e-4; {steepest:g} is far above those of bearings"
     if (peak := float(peaks.max())) > HIGHEST:
