@@ -44,7 +44,7 @@ LARGEST = {
     "profile_radius": 20.0,
     "groove_radius": 20.0,
 }
-"""Lengths that no bearing exceeds [m]: rolls of mills have elements of 0.2 m, slewing rings 15 m."""
+"""Lengths that no bearing exceeds [m]: in mills elements have 0.2 m, slewing rings have 15 m."""
 SOFTEST, SOFTEST_LAYER = 1e9, 1e6
 """Least modulus of an element or a ring, that of soft plastics, and of a layer, of rubber [Pa]."""
 LIGHTEST = 100.0

@@ -130,7 +130,7 @@ class BearingLife(Listed):
     equivalent_load: float
     """Dynamic equivalent reference load [N]."""
     capacity: float
-    """Dynamic load rating C_r of the bearing [N]."""
+    """Dynamic load rating of the bearing [N]: C_r, or C_a of a thrust bearing."""
     ring_capacities: tuple[float, float]
     """Ratings of the contact of one element with inner and outer ring [N]."""
     model: str
