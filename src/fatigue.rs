@@ -63,7 +63,7 @@ pub struct Shakedown {
 /// In a line contact these are all the residual stresses that are in equilibrium. r moves d₁ and d₂ freely, so
 /// that k = R/√2 with the radius R of the smallest ball around the points (d₁, d₂, ±√(d₃² + d₄² + d₅²)), which
 /// mirror each other (derived here). With [`YieldRule::InPlaneTresca`], k is the radius of the smallest circle around the points
-/// (½(σ_yy − σ_zz), ±σ_yz). Melan, Ing.-Arch. 9 (1938) 116, doi:10.1007/BF02084409 (recalled).
+/// (½(σ_yy − σ_zz), ±σ_yz). Melan, Ing.-Arch. 9 (1938) 116, doi:10.1007/BF02084409.
 ///
 /// # Errors
 /// No state, or one that is not finite.

@@ -18,12 +18,15 @@ pub enum CriterionKind {
     /// the difference of the largest and smallest principal value of s − s*. Dang Van, ASTM STP 1191 (1993) 120,
     /// doi:10.1520/STP24799S.
     DangVan,
-    /// R/√2 + a max σ_h ≤ b, with the radius R of that hypersphere. Crossland (1956) (recalled).
+    /// R/√2 + a max σ_h ≤ b, with the radius R of that hypersphere. Crossland (1956); the form of code_aster's
+    /// POST_FATIGUE, which has half of the largest distance of two states for R: the same in proportional loading, up to
+    /// 15 % less else.
     Crossland,
     /// max over all planes of τ_a + k σ_n ≤ f, with the radius τ_a of the smallest circle around the path of the shear
-    /// stress on a plane, and the largest normal stress σ_n there. Findley (1959) (recalled).
+    /// stress on a plane, and the largest normal stress σ_n there. Findley, J. Eng. Ind. 81 (1959) 301.
     Findley,
-    /// τ_a + k σ_n ≤ f on the plane of the largest τ_a. Matake (1977) (recalled).
+    /// τ_a + k σ_n ≤ f on the plane of the largest τ_a, with the sign of σ_n, as in Findley's. Matake, Bull. JSME 20
+    /// (1977) 257 (not read).
     Matake,
 }
 

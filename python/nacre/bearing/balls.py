@@ -10,6 +10,10 @@ from typing import ClassVar
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import RINGS, Ring, above, millimetres, pair
+from nacre.hertz import Ellipse
+
+STATIC = 4.2e9
+"""Pressure of the static rating of ball bearings [Pa], ISO 76:2006."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +24,8 @@ class _Balls(Solvable):
     """Radii of the grooves of inner and outer ring over the diameter of a ball."""
     rating_factor: float = 1.3
     """Factor b_m of ISO 281 for the rating."""
+    shoulder_height: float | None = None
+    """Height of the shoulders above the bottoms of the grooves [m]; None: a usual one."""
 
     rolls: ClassVar[bool] = False
     leans: ClassVar[bool] = False
@@ -31,6 +37,13 @@ class _Balls(Solvable):
         object.__setattr__(self, "osculation", pair("osculation", self.osculation))
         for value in self.osculation:
             above("osculation", value, 0.5)
+        if self.shoulder_height is not None:
+            above("shoulder_height", self.shoulder_height)
+            if self.shoulder_height > self.radius:
+                raise ValueError(
+                    f"shoulder_height must be at most the radius of a ball, "
+                    f"{millimetres(self.radius)}, got {millimetres(self.shoulder_height)}"
+                )
         self._check_room()
 
     @property
@@ -42,6 +55,35 @@ class _Balls(Solvable):
     @abstractmethod
     def free_angle(self) -> float:
         """Contact angle at which the balls touch both rings without load [rad]."""
+
+    @property
+    def shoulders(self) -> tuple[float, float]:
+        """Angles from the bottoms of the grooves of both rings to their shoulders [rad].
+
+        Without `shoulder_height` shoulders are a quarter of the ball's diameter high, so that both
+        leave half of it to the cage; and those of an angular contact bearing hold at least what the
+        contact at its angle is at 4200 MPa, the static rating of ISO 76:2006. None is higher than
+        the middle of the ball, beyond which no ball could enter.
+        """
+        angles = []
+        for ring, f in zip(RINGS, self.osculation, strict=True):
+            height = self.shoulder_height or self.diameter / 4
+            middle, angle = (
+                math.acos(1 - high / (f * self.diameter)) for high in (self.radius, height)
+            )
+            if self.shoulder_height is None and self.nominal_angle:
+                angle = max(angle, self.nominal_angle + self.spread(ring, STATIC))
+            angles.append(min(angle, middle))
+        return angles[0], angles[1]
+
+    def spread(self, ring: Ring, pressure: float) -> float:
+        """Return half of the angle at which the centre of a ball sees its contact [rad]."""
+        number = RINGS.index(ring)
+        along, rolling = self.radii[number]
+        unit = Ellipse(*self.own_radii, self.modulus[number], 1.0, along, rolling)
+        # Both semi-axes and the pressure are as the cube root of the load.
+        half = unit.semi_axes[0] * pressure / unit.peak_pressure
+        return math.asin(min(1.0, half / self.radius))
 
     @property
     def mass(self) -> float:
@@ -99,6 +141,9 @@ class DeepGrooveBall(_Balls):
         Dynamic load rating C_r [N]; by default that of ISO 281.
     rating_factor : float, optional
         Factor b_m of ISO 281.
+    shoulder_height : float, optional
+        Height of the shoulders of both rings above the bottoms of the grooves [m]: where a contact
+        reaches beyond them, a warning says so. By default a quarter of the diameter of a ball.
     density : float, optional
         Density of the balls [kg/m³].
 
@@ -137,6 +182,8 @@ class DeepGrooveBall(_Balls):
 class AngularContactBall(_Balls):
     """Single-row angular contact ball bearing. Positive z presses the inner ring into contact.
 
+    It has one shoulder, and carries thrust along positive z alone.
+
     Parameters
     ----------
     count : int
@@ -146,15 +193,20 @@ class AngularContactBall(_Balls):
     pitch_diameter : float
         Diameter d_m of the circle of the balls' centres [m].
     contact_angle : float
-        Contact angle without load [rad], above 0 and below π/2.
+        Contact angle without load [rad], above 0 and below π/2. Above π/4 the bearing is a thrust
+        bearing of ISO 281: its rating is the axial one, C_a.
     osculation : tuple of float, optional
         Radii of the grooves of inner and outer ring over the diameter of a ball, above 0.5.
     element, inner, outer : HalfSpace or Elastic, optional
         Bodies of balls and rings; steel with E = 210 GPa by default.
     capacity : float, optional
-        Dynamic load rating C_r [N]; by default that of ISO 281.
+        Dynamic load rating [N], C_r or above π/4 C_a; by default that of ISO 281.
     rating_factor : float, optional
         Factor b_m of ISO 281.
+    shoulder_height : float, optional
+        Height of the shoulders of both rings above the bottoms of the grooves [m]: where a contact
+        reaches beyond them, a warning says so. By default a quarter of the diameter of a ball,
+        or as much as the contact at `contact_angle` needs at 4200 MPa, the static rating of ISO 76.
     density : float, optional
         Density of the balls [kg/m³].
 
@@ -185,16 +237,22 @@ class AngularContactBall(_Balls):
         above("contact_angle", self.contact_angle)
         if self.contact_angle >= math.pi / 2:
             raise ValueError(f"contact_angle must be below π/2, got {self.contact_angle!r}")
-        if self.clearance is not None:
+        self._give_way("clearance")
+        super().__post_init__()
+        if vars(self)["clearance"] not in (None, self.play):
             raise ValueError(
                 "clearance must not be given: the contact angle says where balls touch"
             )
-        super().__post_init__()
 
     @property
     def nominal_angle(self) -> float:
         """Nominal contact angle α [rad]."""
         return self.contact_angle
+
+    @property
+    def play(self) -> float:
+        """Diametral clearance of the rings in the middle of each other [m]."""
+        return 2 * self.between * (1 - math.cos(self.contact_angle))
 
     @property
     def free_angle(self) -> float:

@@ -6,22 +6,28 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from nacre.bearing.geometry import Bearing
+from nacre.bearing.iso import rating
 from nacre.bearing.solution import BearingSolution
 from nacre.bearing.solving import solved
 
-Along = Sequence[float | None]
+Along = Sequence[float | None] | None
 
 
 class Solvable(Bearing):
-    """A bearing that can be solved."""
+    """A bearing that can be rated and solved."""
+
+    @property
+    def standard_capacity(self) -> float:
+        """Dynamic load rating of ISO 281 [N], whatever the capacity is."""
+        return rating(self)
 
     def solve(
         self,
         *,
-        force: Along = (None, None, None),
-        displacement: Along = (None, None, None),
-        moment: Along = (None, None),
-        tilt: Along = (None, None),
+        force: Along = None,
+        displacement: Along = None,
+        moment: Along = None,
+        tilt: Along = None,
         rotation: float = 0.0,
         speed: float = 0.0,
         model: Literal["solved", "iso16281"] = "solved",
@@ -41,7 +47,7 @@ class Solvable(Bearing):
         ----------
         force : sequence of float or None, optional
             Forces ``(x, y, z)`` on the inner ring [N]; along an axis with a number the displacement
-            is found.
+            is found. None stands for None along all axes, here and below.
         displacement : sequence of float or None, optional
             Displacements ``(x, y, z)`` of the inner ring against the outer one [m].
         moment : sequence of float or None, optional

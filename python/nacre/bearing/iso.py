@@ -1,8 +1,9 @@
 """Load rating of ISO 281 and reference rating life of ISO/TS 16281; Sjövall's load integrals.
 
-The standards' formulae were taken from public programs that quote them, and checked against
-published ratings and lives. Those of the rating of ball bearings and the edge factor's constant are
-recalled. Inside these functions lengths are in mm and forces in N, as in the standards.
+The standards' formulae were taken from programs and books that quote ISO 281:2007, ISO/TR
+1281-1:2021 and ISO/TS 16281:2008, now ISO 16281:2025, whose equations may have other numbers; and
+compared with printed tables, ratings and lives. Inside these functions lengths are in mm and forces
+in N, as in the standards.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ Edge = Literal["standard", "pressure"] | None
 
 REDUCTION = 0.83
 """Factor λν of ISO 281 for radial roller bearings."""
-BALL = 0.41 * 98.0665 * 0.95
-"""Constant of f_c of ball bearings: 0.41 A_1 λ of ISO/TR 1281-1, as recalled.
-
-With it f_c is that of ISO 281, table 2, to 0.1 %.
-"""
+UNIT = 98.0665
+"""Constant 0.089 A_1 of ISO/TR 1281-1:2021, formulae (15), (20), of balls (N, mm)."""
+GROOVES = {False: ((0.52, 0.52), (0.52, 0.53)), True: ((0.535, 0.535), (0.54, 0.54))}
+"""Grooves over the diameter of a ball for which the tables of ISO 281:2007 have their f_c, and the
+widest for which it holds, by whether the bearing is a thrust one: tables 1, 2 and 4."""
 LARGE_BALL = 25.4
 """Diameter of balls from which ISO 281 has another exponent [mm]."""
 
@@ -76,7 +77,10 @@ def load_integrals(epsilon: float, exponent: float) -> tuple[float, float]:
 
 
 def rating(bearing: Any) -> float:
-    """Dynamic load rating C_r of ISO 281 [N], of steel without layers.
+    """Dynamic load rating of ISO 281 [N], of steel without layers.
+
+    It is the radial rating C_r; of ball bearings with a contact angle above 45°, which are thrust
+    bearings, the axial one C_a.
 
     Parameters
     ----------
@@ -90,7 +94,14 @@ def rating(bearing: Any) -> float:
 
     Notes
     -----
-    The factor f_c of ball bearings, and b_m, are recalled from ISO 281.
+    Balls: ISO 281:2007, formulae (1) and (2), with f_c of ISO/TR 1281-1:2021, formula (15), which
+    is that of table 2 to its last digit; C_a after formulae (18) to (20) of the latter, as a
+    program quotes them. Rollers: ISO 281:2007, formula (13), with f_c of ISO/TR 1281-1:2021,
+    formula (34), which is that of table 7 to 0.13 %. b_m: ISO 281:2007, tables 1 and 6.
+
+    The tables hold for grooves up to 0.52 (inner ring) and 0.53 (outer ring) of the diameter, in
+    thrust bearings 0.54; beyond, f_c falls with the grooves as its formula does (derived: from
+    0.52/0.53 to 0.54/0.54 by 1.22 to 1.27, for which annex C of ISO 281:2007 prints 1.24).
 
     Examples
     --------
@@ -112,20 +123,34 @@ def rating(bearing: Any) -> float:
         shape *= (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
         size = (bearing.rows * bearing.length * 1e3 * cos) ** (7 / 9) * diameter ** (29 / 27)
         return float(bearing.rating_factor * shape * size * bearing.count**0.75)
-    inner, outer = bearing.osculation
-    if inner <= 0.52 and outer <= 0.53:  # one table of f_c holds for all of these: that of 0.52
-        inner = outer = 0.52
-    groove = (inner / outer * (2 * outer - 1) / (2 * inner - 1)) ** 0.41
-    shape = BALL * (1 + (1.04 * ratio**1.72 * groove) ** (10 / 3)) ** -0.3
-    shape *= gamma**0.3 * (1 - gamma) ** 1.39 / (1 + gamma) ** (1 / 3)
-    shape *= (2 * inner / (2 * inner - 1)) ** 0.41
+    thrust = is_thrust(bearing)
+    table, widest = GROOVES[thrust]
+    wider = tuple(map(max, bearing.osculation, widest))
+    shape = _shape(ratio, table, thrust) * _shape(ratio, wider, thrust)
+    shape *= UNIT * gamma**0.3 * (1 - gamma) ** 1.39 / (1 + gamma) ** (1 / 3)
+    shape /= _shape(ratio, widest, thrust)
+    sin = math.sin(bearing.nominal_angle)
+    shape *= 0.9 * (1 - sin / 3) * sin / cos if thrust else 0.41 * 0.95
     size = diameter**1.8 if diameter <= LARGE_BALL else 3.647 * diameter**1.4
     return float(bearing.rating_factor * shape * cos**0.7 * bearing.count ** (2 / 3) * size)
 
 
-def capacity_of(bearing: Bearing) -> float:
-    """Return the rating that is given, or that of ISO 281 [N]."""
-    return bearing.capacity or rating(bearing)
+def is_thrust(bearing: Any) -> bool:
+    """Return whether a bearing is a thrust bearing of ISO 281: of a contact angle above 45°."""
+    return bool(bearing.nominal_angle > math.pi / 4)
+
+
+def _conformity(grooves: tuple[float, float]) -> float:
+    """Return how much better the inner groove fits the ball than the outer one, in f_c."""
+    inner, outer = grooves
+    return float((inner / outer * (2 * outer - 1) / (2 * inner - 1)) ** 0.41)
+
+
+def _shape(ratio: float, grooves: tuple[float, float], thrust: bool) -> float:
+    """Return the part of f_c in which the grooves of a ball bearing are."""
+    inside = (1.0 if thrust else 1.04) * ratio**1.72 * _conformity(grooves)
+    inner = grooves[0]
+    return float((1 + inside ** (10 / 3)) ** -0.3 * (2 * inner / (2 * inner - 1)) ** 0.41)
 
 
 class Rated(NamedTuple):
@@ -142,7 +167,8 @@ class Rated(NamedTuple):
 def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
     """Return the ratings Q_ci and Q_ce of the contacts of an element [N].
 
-    ISO/TS 16281, equations 8 to 11 for balls and 47 to 50 for rollers.
+    ISO/TS 16281:2008, equations (19) and (20) for balls, (21) and (22) for those of thrust
+    bearings, (47) and (48) for rollers.
     """
     gamma, count = bearing.gamma, bearing.count
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
@@ -152,19 +178,19 @@ def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
         factors = ((0.378, share), (0.364, 1 / share))
         power = 2 / 9
     else:
-        inner, outer = bearing.osculation
-        share = 1.044 * ratio**1.72
-        share *= (inner / outer * (2 * outer - 1) / (2 * inner - 1)) ** 0.41
+        thrust = is_thrust(bearing)
+        share = (1.0 if thrust else 1.044) * ratio**1.72 * _conformity(bearing.osculation)
         share **= 10 / 3
-        base = capacity / (count * cos)
-        factors = ((0.407, share), (0.389, 1 / share))
+        base = capacity / (count * (math.sin(bearing.nominal_angle) if thrust else cos))
+        one, other = (1.0, 1.0) if thrust else (0.407, 0.389)
+        factors = ((one, share), (other, 1 / share))
         power = 0.3
     one, other = (base / factor * (1 + inside) ** power for factor, inside in factors)
     return one, other
 
 
 def edge_factors(count: int) -> Array:
-    """Factors of ISO/TS 16281 for the stress at the edges of a roller, its equation 60.
+    """Factors of ISO/TS 16281:2008 for the stress at the edges of a roller, equation (60).
 
     They approximate the pressure over that of Hertz in each lamina, for the standard's profile,
     medium loads and misalignments below 4', and are the same for every bearing and load.
@@ -172,7 +198,7 @@ def edge_factors(count: int) -> Array:
     Parameters
     ----------
     count : int
-        Number of laminae, even.
+        Number of laminae.
 
     Returns
     -------
@@ -185,10 +211,12 @@ def edge_factors(count: int) -> Array:
     >>> round(float(edge_factors(40)[0]), 2), round(float(edge_factors(40)[19]), 3)
     (2.33, 1.003)
     """
-    if isinstance(count, bool) or not isinstance(count, int) or count < 2 or count % 2:
-        raise ValueError(f"count must be an even number of laminae, got {count!r}")
-    k = np.arange(1, count + 1)
-    return 1 - 0.01 / np.log(1.985 * np.abs(2 * k - count - 1) / (2 * count - 2))
+    if isinstance(count, bool) or not isinstance(count, int) or count < 2:
+        raise ValueError(f"count must be a number of laminae of at least 2, got {count!r}")
+    away = np.abs(2 * np.arange(1, count + 1) - count - 1)
+    factors = np.ones(count)  # of the lamina in the middle, the limit
+    factors[away > 0] -= 0.01 / np.log(1.985 * away[away > 0] / (2 * count - 2))
+    return factors
 
 
 def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
@@ -204,8 +232,9 @@ def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
 def pressure_factors(bearing: Any, loads: Array, pressures: Array) -> Array:
     """Return pressures of laminae over those of Hertz under their loads ``(Z, 2, laminae)``.
 
-    ISO/TS 16281, equations 58 and 59, with the moduli of the substrates in place of the standard's
-    constant 271, which is ``√(E/(π (1 − ν²)))`` of its steel. It is 1 where a lamina has no load.
+    ISO/TS 16281:2008, equations (58) and (59), with the moduli of the substrates in place of the
+    standard's constant 271, which is ``√(E/(π (1 − ν²)))`` of its steel: the constant follows from
+    Hertz. It is 1 where a lamina has no load.
     """
     hertz = hertz_pressures(bearing, loads, np.array(bearing.modulus))
     return np.where(loads > 0, pressures / np.where(hertz > 0, hertz, 1.0), 1.0)
@@ -223,11 +252,12 @@ def reference_life(
 ) -> Rated:
     """Return the reference rating life under loads of elements.
 
-    ISO/TS 16281, equations 61 to 65 for the laminae of rollers ``(Z, 2, laminae)``, with factors
-    for the stress at edges; equations 12 to 16 for balls ``(Z, 2)``. The ring that rotates sees the
-    loads of all elements of a row; rows survive independently.
+    ISO/TS 16281:2008, equations (61) to (65) for the laminae of rollers ``(Z, 2, laminae)``, with
+    factors for the stress at edges; (25) to (29) for balls ``(Z, 2)``. The ring that rotates sees
+    the loads of all elements of a row; rows survive independently.
     """
-    capacity = capacity_of(bearing)
+    capacity = bearing.capacity
+    assert capacity is not None
     found = capacities(bearing, capacity)
     if bearing.rolls:
         powers, exponent, life = (4.0, 4.5), 4.5, -8 / 9

@@ -2,9 +2,11 @@
 
 ``ln(1/S) = A N^e ∫ (τ − τ_u)₊^c z^(−h) dV`` says how many of many equal contacts survive N cycles.
 A is not known for coatings, and differs from steel to steel, so that only ratios of lives of equal
-materials mean anything: ``L/L_ref = (I_ref/I)^(1/e)``. The forms and exponents are recalled from
-Lundberg and Palmgren (1947), Ioannides and Harris (1985), whose depth is here z in place of a mean
-weighted by the stress, and Zaretsky (1987).
+materials mean anything: ``L/L_ref = (I_ref/I)^(1/e)``. The forms and exponents are those of
+Lundberg and Palmgren, Acta Polytechnica, Mech. Eng. Ser. 1 (1947) no. 3 and 2 (1952) no. 4;
+Ioannides and Harris (1985), as papers quote them, whose depth is here z in place of a mean weighted
+by the stress; and after Zaretsky, J. Propul. Power 3 (1987) 76, whose exponents were not compared
+with the original.
 """
 
 from __future__ import annotations

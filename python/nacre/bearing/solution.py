@@ -13,7 +13,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import printable, symbol, written
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
-from nacre.bearing.iso import Edge, capacity_of, edge_factors, pressure_factors, reference_life
+from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
 from nacre.bearing.laws import LAMINAE, bodies_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -130,7 +130,7 @@ class BearingLife(Listed):
     equivalent_load: float
     """Dynamic equivalent reference load [N]."""
     capacity: float
-    """Dynamic load rating C_r of the bearing [N]."""
+    """Dynamic load rating of the bearing [N]: C_r, or C_a of a thrust bearing."""
     ring_capacities: tuple[float, float]
     """Ratings of the contact of one element with inner and outer ring [N]."""
     model: str
@@ -402,7 +402,7 @@ class BearingSolution(Tabular):
             elif edge == "pressure":
                 factors = self.edge_factors()
         found = reference_life(self.bearing, loads, factors, rotating)
-        capacity = capacity_of(self.bearing)
+        capacity = float(self.bearing.capacity or 0.0)
         return BearingLife(
             found.revolutions, found.equivalent_load, capacity, found.capacities, words
         )

@@ -14,7 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
-from nacre.bearing.geometry import HIGHEST, Bearing, above, pair
+from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above, pair
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, binned, law
 from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model, carrying
@@ -40,7 +40,7 @@ def _asked(
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        told = given[name]
+        told = (None,) * length if given[name] is None else given[name]
         if isinstance(told, str) or not isinstance(told, Iterable):
             raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
         found = [*told]
@@ -65,27 +65,59 @@ def _asked(
                 f"{words[k]} and {others[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
-    if bearing.aligns and values["moment"] != [None, None]:
+    if bearing.aligns:
+        loads[3:] = [moment or None for moment in loads[3:]]  # it has no moment, which is 0
+    if bearing.aligns and loads[3:] != [None, None]:
         raise ValueError(
-            f"moment must be None: a spherical roller bearing aligns itself and carries none, "
+            f"moment must be None or 0: a spherical roller bearing aligns itself and carries none, "
             f"got {given['moment']!r}"
         )
     axial = not bearing.rolls or bearing.nominal_angle > 0
+    if not axial:
+        loads[2], moved[2] = loads[2] or None, moved[2] or None
     if not axial and (loads[2] is not None or moved[2] is not None):
         name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
         raise ValueError(
-            f"{name} along z must be None: rollers without a contact angle carry none, "
+            f"{name} along z must be None or 0: rollers without a contact angle carry none, "
             f"got {value!r}"
         )
-    if bearing.rolls and axial and bearing.rows == 1 and loads[2] is not None:
-        pushed = math.hypot(*(loads[k] or 0.0 for k in range(2))) * math.tan(bearing.nominal_angle)
-        if loads[2] < pushed:
-            raise ValueError(
-                f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
-                f"the rings apart, got {loads[2]!r}"
-            )
+    if bearing.rows == 1 and loads[2] is not None:
+        _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+
+
+def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
+    """Raise a `ValueError` unless an axial force keeps the rings of a bearing together."""
+    pushed = radial * math.tan(bearing.nominal_angle)
+    if bearing.nominal_angle > 0 and axial < pushed:
+        raise ValueError(
+            f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
+            f"the rings apart, got {axial!r}"
+        )
+
+
+def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: float) -> None:
+    """Raise a `ValueError` where a bearing with a contact angle bears where it has no shoulder.
+
+    A row carries at positive angles towards its own side alone. Balls that nothing but their
+    centrifugal force presses on the outer ring are at its bottom.
+    """
+    if bearing.leans or not bearing.nominal_angle:
+        return
+    angles = problem.kinematics.angles(problem.kinematics.motion @ state.ring, state.own)[:, 0]
+    angles = np.repeat([1.0, -1.0][: bearing.rows], bearing.count) * angles
+    carried = carrying(state.reaction.force[..., 0])[:, 0]
+    least = float(angles[carried].min(initial=math.inf))
+    if least <= tolerance:
+        raise ValueError(
+            f"force or displacement along z must be larger: an element bears at a contact angle "
+            f"of {math.degrees(least):.3g} degrees, where the rings have no shoulder"
+        )
+    if bearing.rows == 1 and problem.free[2]:
+        total = state.wanting + problem.loads
+        slack = tolerance * float(state.reaction.force[..., 0].sum())
+        _check_cone(bearing, math.hypot(*total[:2]), float(total[2]) + slack)
 
 
 def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
@@ -137,11 +169,15 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
         state, done, ended = problem.solve(
             ring, own, rough, 10 * limit if first is None else limit, first
         )
+        if ended == "converged":
+            _check_sides(bearing, problem, state, rough)
         if model == "solved":
             lines = _lines(bearing, problem.law, state)
             contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
             state, done, ended = problem.solve(state.ring, state.own, tolerance, limit, tell)
+            if ended == "converged":
+                _check_sides(bearing, problem, state, tolerance)
     found = _found(bearing, given, problem, state, angles, (done, ended), cells)
     for message in found.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
@@ -220,7 +256,11 @@ def _found(
     normals = kinematics.angles(kinematics.motion @ state.ring, state.own)
     total = state.wanting + problem.loads
     kept = {key: one for key, one in contacts.items() if carrying(loads)[key]}
-    notes = (*_implausible(bearing, given, peaks), *_notes(bearing, given["model"], kept))
+    notes = (
+        *_implausible(bearing, given, peaks),
+        *_beyond_shoulders(bearing, normals, peaks),
+        *_notes(bearing, given["model"], kept),
+    )
     return BearingSolution(
         bearing=bearing,
         model=given["model"],
@@ -250,7 +290,8 @@ def _found(
 
 def _implausible(bearing: Bearing, given: Mapping[str, Any], peaks: Array) -> Iterable[str]:
     """Yield warnings of tilts and pressures that no bearing has."""
-    steepest = max((abs(tilt) for tilt in given["tilt"] if tilt is not None), default=0.0)
+    tilts = () if given["tilt"] is None else given["tilt"]
+    steepest = max((abs(tilt) for tilt in tilts if tilt is not None), default=0.0)
     if steepest > STEEPEST and not bearing.aligns:
         yield f"tilt is a slope: 2' are 5.8e-4; {steepest:g} is far above those of bearings"
     if (peak := float(peaks.max())) > HIGHEST:
@@ -258,6 +299,26 @@ def _implausible(bearing: Bearing, given: Mapping[str, Any], peaks: Array) -> It
             f"the peak pressure is {peak / 1e9:.4g} GPa: above {HIGHEST / 1e9:g} GPa, contacts "
             "are neither elastic nor small"
         )
+
+
+def _beyond_shoulders(bearing: Any, normals: Array, peaks: Array) -> Iterable[str]:
+    """Yield a warning where contacts of balls reach beyond the shoulders of the rings."""
+    if bearing.rolls:
+        return
+    for k, (ring, shoulder) in enumerate(zip(RINGS, bearing.shoulders, strict=True)):
+        reached = (
+            abs(normal) + bearing.spread(ring, peak)
+            for normal, peak in zip(normals[:, k], peaks[:, k], strict=True)
+            if peak > 0
+        )
+        angle = max(reached, default=0.0)
+        if angle > shoulder:
+            yield (
+                f"contacts with the {ring} ring reach {math.degrees(angle):.3g} degrees from the "
+                f"bottom of the groove, beyond its shoulder at {math.degrees(shoulder):.3g}, where "
+                "they are cut off: their pressure and the life are wrong; shoulder_height says how "
+                "high it is"
+            )
 
 
 def _notes(bearing: Bearing, model: Model, contacts: Mapping[Any, Solution]) -> Iterable[str]:

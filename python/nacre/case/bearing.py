@@ -117,8 +117,8 @@ TYPES: dict[str, Any] = {
     "raceway_diameters": Pair | None,
     "osculation": Pair,
     "profile": Annotated[
-        Literal["iso16281", "straight"] | AnyProfile,
-        said('"iso16281", "straight", or a table with the key kind'),
+        Literal["iso16281", "iso16281_cylindrical", "straight"] | AnyProfile,
+        said('"iso16281", "iso16281_cylindrical", "straight", or a table with the key kind'),
     ],
     "raceway_crown": Rings | None,
     "free_ends": bool,

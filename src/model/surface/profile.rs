@@ -314,7 +314,12 @@ impl LogarithmicProfile {
         Self::new(amplitude, length, length * (1.0 - crown.k2), end_factor)
     }
 
-    /// The profile of ISO/TS 16281 and DIN 26281 for a roller of `diameter` D \[m\] and effective `length` \[m\].
+    /// The profile of ISO/TS 16281:2008, now ISO 16281:2025, for a cylindrical roller of `diameter` D \[m\] and effective
+    /// `length` L \[m\].
+    ///
+    /// Its amplitude is 0.00035 D up to L = 2.5 D, and 0.0005 D beyond, where the middle is straight; section 5.2.3 of
+    /// the standard as programs and a manual quote it. A tapered roller has 0.00045 D: `LogarithmicProfile::new(0.00045 *
+    /// diameter, length, 0.0, 1.0)`, as a book quotes the standard.
     ///
     /// # Errors
     /// Unless both are finite and above 0.

@@ -188,10 +188,12 @@ class! {
             Ok(Self(LogarithmicProfile::fujiwara_kawase(length.0, load.0, contact_modulus.0, crown)?))
         }
 
-        /// The profile of ISO/TS 16281, which DIN 26281 has too.
+        /// The profile of cylindrical rollers of ISO/TS 16281:2008, which DIN 26281 has too.
         ///
         /// ``0.00035 D ln(1/(1 - (2x/L)**2))`` for ``L <= 2.5 D``; for longer rollers
-        /// ``0.0005 D ln(1/(1 - u**2))`` over the last 1.25 D at each end.
+        /// ``0.0005 D ln(1/(1 - u**2))`` over the last 1.25 D at each end: section 5.2.3, equations
+        /// (42) to (44), as programs quote them. Tapered rollers have 0.00045 D,
+        /// `nacre.bearing.TaperedRoller`.
         ///
         /// Parameters
         /// ----------

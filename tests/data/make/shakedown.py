@@ -1,7 +1,7 @@
 """Shakedown and first yield under an elliptic pressure with friction: fatigue/shakedown.json.
 
 Plane strain, b = p0 = 1: p = sqrt(1 - y^2) and the traction mu p along y. The stresses of a bare
-body are McEwen's closed form [recalled; the integrals for equal layers agree, to 1e-7]. In a coat
+body are McEwen's closed form (derived; the integrals for equal layers agree, to 1e-7). In a coat
 they are these plus Fourier integrals of what the layers add; in the substrate, Fourier integrals.
 Residual stresses r_yy, r_xx that do not change along y help each depth (Melan). They move freely
 two coordinates of d = [(s_yy + s_xx - 2 s_zz)/sqrt 6, (s_yy - s_xx)/sqrt 2, sqrt 2 s_yz], where

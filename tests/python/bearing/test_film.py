@@ -169,7 +169,7 @@ def test_films_of_constant_viscosity() -> None:
     # The formulae by hand: a circle has R_y/R_x = 1 where k = 1.03, where φ² = 0.36.
     assert _isoviscous(0.0, 1.03) == pytest.approx(128 * 0.36 * (0.060738 + 1.683) ** 2, rel=1e-5)
     assert _isoviscous(1e6, 1.0) == pytest.approx(8.70 * 10**4.02 * 0.376570, rel=1e-5)
-    # Moes' 2.05 M^(-1/5), with the sum of the speeds and three digits; recalled.
+    # Moes' 2.05 M^(-1/5), with the sum of the speeds and three digits.
     assert _isoviscous(100.0, math.inf) == pytest.approx(2.05 * 2**0.6 * 100**0.8, rel=3e-3)
 
 

@@ -22,6 +22,7 @@ from nacre.bearing.iso import pressure_factors, reference_life
 from support import DATA
 
 FOLDER = DATA / "bearing"
+PRINTED = json.loads((DATA / "printed.json").read_text("utf-8"))
 
 
 def rows(name: str) -> list[dict[str, Any]]:
@@ -50,25 +51,73 @@ def test_rating_of_rollers(row: dict[str, Any]) -> None:
     assert rating(bearing) == pytest.approx(row["C_r_bm1_1_N"], rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("gamma", "factor"),
-    # ISO 281, table 2, f_c of deep-groove balls, as recalled; it has three digits, so 0.1 %.
-    [(0.1, 55.5), (0.14, 58.8), (0.2, 59.9), (0.24, 59.0)],
-)
-def test_factor_of_balls_is_that_of_the_table(gamma: float, factor: float) -> None:
+@pytest.mark.parametrize("row", PRINTED["factor_of_balls"]["rows"], ids=lambda row: row["gamma"])
+def test_factor_of_balls_is_that_of_the_table(row: dict[str, float]) -> None:
     bearing = DeepGrooveBall(
-        count=8,
-        diameter=10e-3,
-        pitch_diameter=10e-3 / gamma,
+        count=3, diameter=1e-3, pitch_diameter=1e-3 / row["gamma"], rating_factor=1.0
+    )
+    # Half a unit of the third digit.
+    assert rating(bearing) / 3 ** (2 / 3) == pytest.approx(row["printed"], abs=0.05)
+
+
+@pytest.mark.parametrize("row", PRINTED["factor_of_rollers"]["rows"], ids=lambda row: row["gamma"])
+def test_factor_of_rollers_is_that_of_the_table(row: dict[str, float]) -> None:
+    bearing = CylindricalRoller(
+        count=3,
+        diameter=1e-3,
+        length=1e-3,
+        pitch_diameter=1e-3 / row["gamma"],
         rating_factor=1.0,
     )
-    assert rating(bearing) / (8 ** (2 / 3) * 10**1.8) == pytest.approx(factor, rel=1e-3)
+    # The table is the formula to 0.13 %, and has three digits.
+    assert rating(bearing) / 3**0.75 == pytest.approx(row["printed"], rel=row["tolerance"])
 
 
-def test_rating_of_a_catalogue() -> None:
-    # 6305 of SKF's catalogue, 23.4 kN with b_m = 1.3; catalogues differ by some 5 %.
-    bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
-    assert rating(bearing) == pytest.approx(23.4e3, rel=0.05)
+def test_rating_of_the_example_of_the_standard() -> None:
+    (row,) = PRINTED["rating"]["rows"]
+    diameter = row["D_mm"] / 1e3
+    bearing = AngularContactBall(
+        count=row["Z"],
+        diameter=diameter,
+        pitch_diameter=diameter / row["D_over_dm"],
+        contact_angle=math.radians(row["alpha_deg"]),
+    )
+    assert rating(bearing) == pytest.approx(row["printed"], rel=row["tolerance"])
+
+
+@pytest.mark.parametrize("row", PRINTED["catalogue"]["rows"], ids=lambda row: row["name"])
+def test_rating_of_a_catalogue(row: dict[str, Any]) -> None:
+    bearing = DeepGrooveBall(
+        count=row["Z"], diameter=row["D_mm"] / 1e3, pitch_diameter=row["d_m_mm"] / 1e3
+    )
+    assert rating(bearing) == pytest.approx(row["printed"], rel=row["tolerance"])
+
+
+def test_rating_falls_continuously_beyond_the_grooves_of_the_table() -> None:
+    def rated(gamma: float, *osculation: float) -> float:
+        pitch = 10e-3 / gamma
+        return rating(
+            DeepGrooveBall(count=7, diameter=10e-3, pitch_diameter=pitch, osculation=osculation)
+        )
+
+    def formula(gamma: float, inner: float, outer: float) -> float:
+        """Return f_c of ISO/TR 1281-1:2021, formula (15), over what the grooves leave as it is."""
+        fit = (inner / outer * (2 * outer - 1) / (2 * inner - 1)) ** 0.41
+        inside = 1.04 * ((1 - gamma) / (1 + gamma)) ** 1.72 * fit
+        factor = (2 * inner / (2 * inner - 1)) ** 0.41 * (1 + inside ** (10 / 3)) ** -0.3
+        return float(factor)
+
+    for gamma in (0.05, 0.10, 0.16):
+        table = rated(gamma, 0.52, 0.53)
+        assert rated(gamma, 0.515, 0.505) == table
+        # Steps of 1e-6 of the groove change the rating by some 1e-5.
+        assert rated(gamma, 0.52, 0.530001) == pytest.approx(table, rel=2e-5)
+        assert rated(gamma, 0.520001, 0.51) == pytest.approx(table, rel=2e-5)
+        ratio = formula(gamma, 0.54, 0.54) / formula(gamma, 0.52, 0.53)
+        assert rated(gamma, 0.54, 0.54) / table == pytest.approx(ratio, rel=1e-12)
+    # ISO 281:2007, annex C, converts from 0.52/0.53 to 0.54/0.54 by 1.24, without a γ: the formula
+    # has it at γ = 0.1.
+    assert rated(0.1, 0.52, 0.53) / rated(0.1, 0.54, 0.54) == pytest.approx(1.24, abs=0.005)
 
 
 @pytest.mark.parametrize("row", rows("iso16281_roller"), ids=lambda row: row["name"])
@@ -209,6 +258,13 @@ def test_edge_factors_are_those_of_equation_60() -> None:
     factors = edge_factors(40)
     assert factors[0] == pytest.approx(2.33, abs=0.005)  # as quoted
     np.testing.assert_array_equal(factors, factors[::-1])
+    # The lamina in the middle of an odd number has the limit, 1 for a distance of 0.
+    odd = edge_factors(41)
+    assert odd[20] == 1.0
+    assert odd[0] == pytest.approx(1 - 0.01 / math.log(1.985 / 2), rel=1e-12)
+    for wrong in (1, 40.5, True):
+        with pytest.raises(ValueError, match="count must be a number of laminae of at least 2"):
+            edge_factors(wrong)  # type: ignore[arg-type]
 
 
 def test_unloaded_bearing_has_an_infinite_life_in_words() -> None:

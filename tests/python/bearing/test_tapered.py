@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from pathlib import Path
 from typing import Any
@@ -121,7 +122,8 @@ def test_no_angle_is_a_cylindrical_roller(options: dict[str, Any]) -> None:
     asked: dict[str, Any] = {"force": (3000.0, 200.0, None), "tilt": (1e-4, 3e-4)} | options
     size = SIZE | {"clearance": 5e-6}
     flat = CylindricalRoller(**size).solve(**asked)
-    cone = TaperedRoller(**size, contact_angle=1e-12).solve(**asked)
+    same: Any = "iso16281_cylindrical"
+    cone = TaperedRoller(**size, contact_angle=1e-12, profile=same).solve(**asked)
     bar = 1e-9 * flat.largest_load
     np.testing.assert_allclose(cone.loads, flat.loads, atol=bar)
     np.testing.assert_allclose(cone.displacement, flat.displacement, rtol=1e-9, atol=1e-15)
@@ -191,6 +193,20 @@ def test_rating_is_that_of_iso_281() -> None:
     inner = expected / (0.83 * 0.378 * 17 * math.cos(ANGLE)) * (1 + share) ** (2 / 9)
     outer = expected / (0.83 * 0.364 * 17 * math.cos(ANGLE)) * (1 + 1 / share) ** (2 / 9)
     np.testing.assert_allclose(life.ring_capacities, (inner, outer), rtol=1e-12)
+
+
+def test_profile_of_the_standard_is_that_of_tapered_rollers() -> None:
+    # 0.00045 D ln(1/(1 − (2x/L)²)) at 0.9 of the half-length; 0.00035 D of cylindrical rollers.
+    log = -math.log1p(-(0.9**2))
+    for word, amplitude in (("iso16281", 0.00045), ("iso16281_cylindrical", 0.00035)):
+        bearing = tapered(profile=word)
+        found = bearing._profile().drop_at(0.45 * SIZE["length"])
+        assert found == pytest.approx(amplitude * SIZE["diameter"] * log, rel=1e-12)
+    cylinder = CylindricalRoller(**SIZE)
+    other = dataclasses.replace(cylinder, profile="iso16281_cylindrical")
+    np.testing.assert_array_equal(other.drop("inner"), cylinder.drop("inner"))
+    with pytest.raises(ValueError, match='"iso16281", "iso16281_cylindrical" or None, got'):
+        tapered(profile="iso")
 
 
 def test_pressure_falls_towards_the_thick_end() -> None:

@@ -53,6 +53,24 @@ def given(row: dict[str, Any], times: int) -> Array:
     return synthetic(row["history"], times)
 
 
+PRINTED = json.loads((DATA / "printed.json").read_text(encoding="utf-8"))
+
+
+def test_crossland_is_that_of_another_program() -> None:
+    (row,) = PRINTED["crossland"]["rows"]
+    history = np.zeros((len(row["sigma_xx_MPa"]), 6))
+    history[:, 0], history[:, 3] = row["sigma_xx_MPa"], row["sigma_xy_MPa"]
+    criterion = fatigue.Crossland(row["bending_MPa"], row["torsion_MPa"])
+    found = float(criterion.stress(history)) - criterion.limit
+    assert found == pytest.approx(row["printed"], rel=row["tolerance"])
+
+
+def test_factor_of_dang_van_is_that_of_another_program() -> None:
+    (row,) = PRINTED["dang_van"]["rows"]
+    factor, _ = fatigue.DangVan(row["bending"], row["torsion"]).constants
+    assert factor == pytest.approx(row["printed"], rel=row["tolerance"])
+
+
 HISTORIES = [row for row in ROWS if row["kind"] in ("synthetic", "instants")]
 
 

@@ -12,6 +12,7 @@ import nacre
 from nacre.indent import Indentation, Tip
 from support import DATA
 
+PRINTED = json.loads((DATA / "printed.json").read_text(encoding="utf-8"))
 PUBLISHED = json.loads((DATA / "published.json").read_text(encoding="utf-8"))
 
 
@@ -35,6 +36,15 @@ def test_flat_punch_of_hayes(row: dict[str, list[float]]) -> None:
     assert np.abs(differences).max() <= PUBLISHED["hayes"]["agreement"]
     # Half a unit of the fourth digit at a = h/5: what disagrees at larger a is not the definition.
     assert abs(row["kappa"][0] - found[0]) <= 5e-4
+
+
+@pytest.mark.parametrize("row", PRINTED["punch"]["rows"], ids=lambda row: row["a_over_h"])
+def test_flat_punch_as_programs_quote_it(row: dict[str, float]) -> None:
+    """The numbers of 1972 are low where the layer is thin: by 0.3 % to a = h, 0.9 % to a = 2 h."""
+    a = row["a_over_h"]
+    load = Indentation(layer(0.5), Tip.flat_punch(a)).at(approach=1e-3).load
+    kappa = load * 0.5 / (4 / 3 * a * 1e-3)  # the shear modulus is 1/3
+    assert kappa == pytest.approx(row["printed"], rel=row["tolerance"])
 
 
 @pytest.mark.parametrize("row", PUBLISHED["paraboloids"], ids=["garcia", "dimitriadis"])
