@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre.bearing.laws import Law, Reaction
+from nacre.bearing.geometry import RINGS, laminae_of
+from nacre.bearing.laws import LAMINAE, Law, Reaction
 
 Array = npt.NDArray[np.float64]
 
@@ -26,7 +27,7 @@ It is some 1e5 roundings: what rests in a flat direction stays, and the steps in
 exact to 1e-11 of the stiffest.
 """
 FARTHEST, FARTHER = 2.0, 4.0
-"""Largest step over the largest approach of a contact, as the energy is not quadratic beyond; and
+"""Largest step over the deepest place of a contact, as the energy is not quadratic beyond; and
 the factor by which it grows where a step of this length lowers the energy.
 """
 HALVINGS = 30
@@ -78,12 +79,22 @@ class Rollers:
         self.lengths = np.array([1.0, bearing.length / math.sqrt(12)])
         """A slope times this length moves a lamina as far, in the mean of squares."""
         self.arm, self.outward = bearing.length, bearing.outward
+        self.half = bearing.length / 2
+        drops = np.stack([bearing.drop(ring, LAMINAE) for ring in RINGS])
+        carrying = laminae_of(bearing.length, LAMINAE)[np.isfinite(drops).all(axis=0)]
+        self.ends = float(carrying[0]), float(carrying[-1])
+        """Outermost laminae that can carry, of either contact."""
         self.jacobian = np.zeros((self.count, 2, 2, 4))
         self.jacobian[:, 0, 0] = [1, 0, -1, 0]
         self.jacobian[:, 0, 1] = [0, 1, 0, -1]
         self.jacobian[:, 1, 0] = [0, 0, 1, 0]
         self.jacobian[:, 1, 1] = [0, 0, 0, 1]
         self.curvature = np.zeros((self.count, 2, 4, 4))
+
+    def generators(self) -> Array:
+        """Return the forces ``(5, 2 Z)`` on the ring of unit forces at the ends of all rollers."""
+        approach, slope = self.motion[:, 0], self.motion[:, 1]
+        return np.concatenate([approach + end * slope for end in self.ends]).T
 
     def neutral(self, moved: Array, pressed: float) -> Array:
         """Return positions of elements midway, or on the outer ring to which they are pressed."""
@@ -128,7 +139,17 @@ class Balls:
         else:
             start = (between - bearing.play / 2, 0.0)
         self.start, self.groove = np.array(start), np.array(groove)
-        self.lengths = np.array([1.0, 1.0])
+        self.lengths, self.half = np.array([1.0, 1.0]), 0.0
+        self.both_ways = bearing.nominal_angle == 0
+
+    def generators(self) -> Array:
+        """Return the forces on the ring of unit forces across the axis and along it ``(5, n)``.
+
+        Contact angles follow the load, so that a force of a ball may be of any angle between both.
+        """
+        along = self.motion[:, 1]
+        ways = [self.motion[:, 0], along, -along] if self.both_ways else [self.motion[:, 0], along]
+        return np.concatenate(ways).T
 
     def neutral(self, moved: Array, pressed: float) -> Array:
         """Return positions of balls midway, or on the outer ring to which they are pressed."""
@@ -192,7 +213,12 @@ class Barrels(Balls):
         self.size, self.arm = bearing.pitch, bearing.pitch / 2
         own, along = bearing.outward
         self.outward = np.array(own) * sides, along
-        self.lengths = np.array([1.0, 1.0])
+        self.lengths, self.half = np.array([1.0, 1.0]), 0.0
+        self.normals = normal * sides
+
+    def generators(self) -> Array:
+        """Return the forces on the ring of unit forces along the contacts' normals ``(5, n)``."""
+        return np.einsum("zak,za->kz", self.motion, self.normals)
 
 
 Kinematics = Rollers | Balls
@@ -223,6 +249,8 @@ class State:
     """Gradient ``(5,)`` with the elements moved into equilibrium."""
     back: tuple[Array, Array] = field(repr=False)
     """Steps of the elements ``(Z, 2)``, and their change by the ring's ``(Z, 2, 5)``."""
+    deepest: float
+    """Largest deflection of a contact without its drop [m], at an end of a roller that leans."""
     balance: float = math.inf
     """Largest mismatch, relative."""
 
@@ -275,6 +303,7 @@ class Problem:
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
             np.einsum("zak,za->k", motion, pull) - self.loads - self.thrust * AXIAL,
             (step, follow),
+            float((found.places[..., 0] + np.abs(found.places[..., 1]) * kinematics.half).max()),
         )  # fmt: skip
         state.balance = self.mismatch(state)
         return state
@@ -286,7 +315,7 @@ class Problem:
             float(np.linalg.norm(self.loads[:3])),
             float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
         )
-        pressed = float(state.places[..., 0].max()) > ROUNDING * self.kinematics.size
+        pressed = state.deepest > ROUNDING * self.kinematics.size
         if force == 0.0 or not (pressed or self.loads.any() or self.centrifugal):
             return 0.0
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
@@ -321,7 +350,7 @@ class Problem:
     def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
         """Return Newton's step of the ring and of the elements, and whether it was shortened.
 
-        It goes no farther than `reach` times the largest approach of a contact.
+        It goes no farther than `reach` times the deepest place of a contact.
         """
         free, kinematics = self.free, self.kinematics
         ring = np.zeros(5)
@@ -334,7 +363,7 @@ class Problem:
         step, follow = state.back
         own = step + follow @ ring
         moved = kinematics.motion @ ring
-        farthest = reach * max(float(state.places[..., 0].max()), 0.0)
+        farthest = reach * max(state.deepest, 0.0)
         largest = max(
             float((np.abs(moved) * kinematics.lengths).max()),
             float((np.abs(own) * kinematics.lengths).max()),
@@ -343,14 +372,6 @@ class Problem:
         if shorter:
             ring, own = ring * (farthest / largest), own * (farthest / largest)
         return ring, own, shorter
-
-    def rested(self, state: State, ring: Array) -> Array:
-        """Return the positions of elements; what carries nothing is midway at the next place."""
-        if self.centrifugal > 0:
-            return state.own
-        idle = np.logical_not((state.reaction.force[..., 0] > 0).any(axis=1))
-        neutral = self.kinematics.neutral(self.kinematics.motion @ ring, 0.0)
-        return np.where(np.asarray(idle)[:, None], neutral, state.own)
 
     def solve(
         self,
@@ -372,8 +393,7 @@ class Problem:
             ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
-                moved = state.ring + share * ring_step
-                tried = self.state(moved, self.rested(state, moved) + share * own_step)
+                tried = self.state(state.ring + share * ring_step, state.own + share * own_step)
                 rounding = SLACK * float(np.abs(tried.reaction.energy).sum())
                 if tried.energy <= state.energy or (
                     tried.energy <= state.energy + rounding and tried.balance < state.balance
@@ -381,7 +401,7 @@ class Problem:
                     break
                 share /= 2
             else:
-                break  # nothing lowers the energy any more: rounding is reached
+                return state, done, "no descent"
             if share < 1:
                 reach = max(FARTHEST, share * reach)
             elif shorter:

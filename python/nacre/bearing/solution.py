@@ -82,8 +82,8 @@ class BearingReport(Result):
     (True, True)
     """
 
-    termination: Literal["converged", "iteration limit", "stopped"]
-    """End of the iteration."""
+    termination: Literal["converged", "iteration limit", "no descent", "stopped"]
+    """End of the iteration; "no descent" where no step lowers the energy by more than rounding."""
     iterations: int
     """Newton steps of the ring with solved contacts, or with those of the standard."""
     balance: float

@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
+from nacre.bearing.cone import check_carried
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import HIGHEST, Bearing, above, pair
 from nacre.bearing.iso import hertz_pressures
-from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, binned, law
+from nacre.bearing.laws import LAMINAE, LINE, STANDARD, Hertzian, Slices, Solved, binned, law
 from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model, carrying
 from nacre.contact.solution import Solution
 
@@ -30,6 +31,11 @@ to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured aga
 """
 STEEPEST = 0.02
 """Largest prescribed tilt without a warning: about a degree, where bearings bear minutes."""
+REMEDIES = {
+    "iteration limit": "raise max_iterations or the tolerance",
+    "no descent": "no step lowers the energy by more than rounding: raise the tolerance",
+}
+"""What helps where an iteration ended before the tolerance was met."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
@@ -77,13 +83,6 @@ def _asked(
             f"{name} along z must be None: rollers without a contact angle carry none, "
             f"got {value!r}"
         )
-    if bearing.rolls and axial and bearing.rows == 1 and loads[2] is not None:
-        pushed = math.hypot(*(loads[k] or 0.0 for k in range(2))) * math.tan(bearing.nominal_angle)
-        if loads[2] < pushed:
-            raise ValueError(
-                f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
-                f"the rings apart, got {loads[2]!r}"
-            )
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
 
@@ -120,6 +119,7 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     kinematics = kinematics_of(bearing, angles)
     centrifugal = bearing.mass * bearing.pitch / 2 * given["speed"] ** 2
     problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
+    check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
     limit = given["max_iterations"]
     pressed = _pressed(problem.law, centrifugal)
     with lasting("bearing") as bar:
@@ -141,14 +141,17 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
             lines = _lines(bearing, problem.law, state)
             contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
-            state, done, ended = problem.solve(state.ring, state.own, tolerance, limit, tell)
+            guess, steps = ended, limit if ended == "converged" else 0
+            state, done, ended = problem.solve(state.ring, state.own, tolerance, steps, tell)
+            if ended == "iteration limit" and guess != "converged":
+                ended = guess
     found = _found(bearing, given, problem, state, angles, (done, ended), cells)
     for message in found.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
-    if given["check"] and ended == "iteration limit":
+    if given["check"] and ended in REMEDIES:
         error = core.ConvergenceError(
-            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; raise "
-            "max_iterations or the tolerance"
+            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; "
+            f"{REMEDIES[ended]}"
         )
         error.solution = found
         raise error
@@ -168,14 +171,14 @@ def _pressed(law: Any, force: float) -> float:
 def _lines(bearing: Any, law: Any, state: State) -> Array:
     """Return the expected loads of the contacts by which their grids are chosen."""
     places = state.places
-    if not state.reaction.force.any():
-        # Nothing touches: grids for an approach of a millionth of the diameter.
-        places = np.zeros_like(places)
-        places[..., 0] = 1e-6 * bearing.diameter
     if isinstance(law, Slices):
         lines: Array = law.loads(places).max(-1) * LAMINAE / bearing.length
-        return lines
-    return law(places).force[..., 0]  # type: ignore[no-any-return]
+    else:
+        lines = law(places).force[..., 0]
+    if not lines.any():  # nothing touches: grids for a millionth of the diameter
+        exponent, pieces = (LINE, LAMINAE / bearing.length) if bearing.rolls else (1.5, 1.0)
+        lines = lines + np.ravel(law.spring) * (1e-6 * bearing.diameter) ** exponent * pieces
+    return lines
 
 
 def _found(
