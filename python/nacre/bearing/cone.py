@@ -25,6 +25,8 @@ HALVINGS = 24
 """Halvings of a change of a load: 6e-8 of it is left, less than the digits that are printed."""
 DIGITS = 6
 """Digits of a bound."""
+AXIAL = np.array([0, 0, 1, 0, 0])
+"""Direction of the bearing's axis among those of the ring."""
 WORDS = ("force along x", "force along y", "force along z", "moment about x", "moment about y")
 UNITS = ("N", "N", "N", "N m", "N m")
 
@@ -116,7 +118,7 @@ def check_carried(
     """
     units = np.array([1, 1, 1, 1 / arm, 1 / arm])
     cone = (generators * units[:, None])[free]
-    load = ((loads + [0, 0, thrust, 0, 0]) * units)[free]
+    load = ((loads + thrust * AXIAL) * units)[free]
     if not load.any() or _is_within(cone, load):
         return
     rows = np.flatnonzero(free)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from nacre.bearing.cone import AXIAL
 from nacre.bearing.geometry import RINGS, laminae_of
 from nacre.bearing.laws import LAMINAE, Law, Reaction
 
@@ -36,10 +37,6 @@ ROUNDING = 1e-14
 """Approach over the pitch diameter that is rounding: some 50 units in the last place."""
 SLACK = 1e-8
 """Rounding of the energy, relative, which contacts of a tolerance of 1e-9 have."""
-
-
-AXIAL = np.array([0, 0, 1, 0, 0])
-"""Direction of the bearing's axis among those of the ring."""
 
 
 class Places(NamedTuple):
