@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from nacre.bearing.geometry import Bearing
+from nacre.bearing.geometry import Bearing, Ring
 from nacre.bearing.iso import rating
 from nacre.bearing.solution import BearingSolution
 from nacre.bearing.solving import solved
@@ -30,6 +30,7 @@ class Solvable(Bearing):
         tilt: Along = None,
         rotation: float = 0.0,
         speed: float = 0.0,
+        rotating: Ring = "inner",
         model: Literal["solved", "iso16281"] = "solved",
         cells: tuple[int, int] | None = None,
         tolerance: float = 1e-9,
@@ -52,14 +53,18 @@ class Solvable(Bearing):
             Displacements ``(x, y, z)`` of the inner ring against the outer one [m].
         moment : sequence of float or None, optional
             Moments about x and y on the inner ring [N m]; the tilt about an axis with a number is
-            found.
+            found. They are about the point on the bearing's axis in the plane of the middles of the
+            rollers, or of the centres of the inner groove of balls; so are displacements.
         tilt : sequence of float or None, optional
             Slopes of the inner ring about x and y: tangents of its angles.
         rotation : float, optional
             Angle of element 0 from the x axis [rad].
         speed : float, optional
-            Angular velocity of the elements about the bearing's axis, that of the cage [rad/s]; its
-            centrifugal force presses them on the outer ring.
+            Angular velocity of the ring that rotates, that of the shaft [rad/s]. The elements
+            follow at `cage_speed`, and their centrifugal force presses them on the outer ring;
+            gyroscopic moments are not counted.
+        rotating : {"inner", "outer"}, optional
+            Ring that rotates.
         model : {"solved", "iso16281"}, optional
             Contacts that nacre solves; or those of ISO/TS 16281: 40 laminae of rollers, Hertz's
             ellipses of balls.
@@ -87,8 +92,8 @@ class Solvable(Bearing):
         Raises
         ------
         ValueError
-            If an argument is out of range, a degree of freedom is both loaded and prescribed, or
-            the bearing cannot carry a load along it.
+            If an argument is out of range, a degree of freedom is both loaded and prescribed, the
+            bearing cannot carry a load along it, or no equilibrium carries the loads together.
         ConvergenceError
             If the tolerance was not met; the unfinished solution is its `solution`.
 

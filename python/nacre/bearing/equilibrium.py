@@ -15,7 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre.bearing.laws import Law, Reaction
+from nacre.bearing.cone import AXIAL
+from nacre.bearing.geometry import RINGS, laminae_of
+from nacre.bearing.laws import LAMINAE, Law, Reaction, Solved
 
 Array = npt.NDArray[np.float64]
 
@@ -26,19 +28,19 @@ It is some 1e5 roundings: what rests in a flat direction stays, and the steps in
 exact to 1e-11 of the stiffest.
 """
 FARTHEST, FARTHER = 2.0, 4.0
-"""Largest step over the largest approach of a contact, as the energy is not quadratic beyond; and
+"""Largest step over the deepest place of a contact, as the energy is not quadratic beyond; and
 the factor by which it grows where a step of this length lowers the energy.
 """
 HALVINGS = 30
 """Largest number of times that a step is halved: 1e-9 of it is left."""
+SETTLING = 30
+"""Largest number of steps of the elements at a place of the ring."""
+ELEMENTS = 0.1
+"""Mismatch of elements that have settled, over the tolerance."""
 ROUNDING = 1e-14
 """Approach over the pitch diameter that is rounding: some 50 units in the last place."""
 SLACK = 1e-8
 """Rounding of the energy, relative, which contacts of a tolerance of 1e-9 have."""
-
-
-AXIAL = np.array([0, 0, 1, 0, 0])
-"""Direction of the bearing's axis among those of the ring."""
 
 
 class Places(NamedTuple):
@@ -78,12 +80,22 @@ class Rollers:
         self.lengths = np.array([1.0, bearing.length / math.sqrt(12)])
         """A slope times this length moves a lamina as far, in the mean of squares."""
         self.arm, self.outward = bearing.length, bearing.outward
+        self.half = bearing.length / 2
+        drops = np.stack([bearing.drop(ring, LAMINAE) for ring in RINGS])
+        carrying = laminae_of(bearing.length, LAMINAE)[np.isfinite(drops).all(axis=0)]
+        self.ends = float(carrying[0]), float(carrying[-1])
+        """Outermost laminae that can carry, of either contact."""
         self.jacobian = np.zeros((self.count, 2, 2, 4))
         self.jacobian[:, 0, 0] = [1, 0, -1, 0]
         self.jacobian[:, 0, 1] = [0, 1, 0, -1]
         self.jacobian[:, 1, 0] = [0, 0, 1, 0]
         self.jacobian[:, 1, 1] = [0, 0, 0, 1]
         self.curvature = np.zeros((self.count, 2, 4, 4))
+
+    def generators(self) -> Array:
+        """Return the forces ``(5, 2 Z)`` on the ring of unit forces at the ends of all rollers."""
+        approach, slope = self.motion[:, 0], self.motion[:, 1]
+        return np.concatenate([approach + end * slope for end in self.ends]).T
 
     def neutral(self, moved: Array, pressed: float) -> Array:
         """Return positions of elements midway, or on the outer ring to which they are pressed."""
@@ -128,7 +140,17 @@ class Balls:
         else:
             start = (between - bearing.play / 2, 0.0)
         self.start, self.groove = np.array(start), np.array(groove)
-        self.lengths = np.array([1.0, 1.0])
+        self.lengths, self.half = np.array([1.0, 1.0]), 0.0
+        self.both_ways = bearing.nominal_angle == 0
+
+    def generators(self) -> Array:
+        """Return the forces on the ring of unit forces across the axis and along it ``(5, n)``.
+
+        Contact angles follow the load, so that a force of a ball may be of any angle between both.
+        """
+        along = self.motion[:, 1]
+        ways = [self.motion[:, 0], along, -along] if self.both_ways else [self.motion[:, 0], along]
+        return np.concatenate(ways).T
 
     def neutral(self, moved: Array, pressed: float) -> Array:
         """Return positions of balls midway, or on the outer ring to which they are pressed."""
@@ -192,7 +214,12 @@ class Barrels(Balls):
         self.size, self.arm = bearing.pitch, bearing.pitch / 2
         own, along = bearing.outward
         self.outward = np.array(own) * sides, along
-        self.lengths = np.array([1.0, 1.0])
+        self.lengths, self.half = np.array([1.0, 1.0]), 0.0
+        self.normals = normal * sides
+
+    def generators(self) -> Array:
+        """Return the forces on the ring of unit forces along the contacts' normals ``(5, n)``."""
+        return np.einsum("zak,za->kz", self.motion, self.normals)
 
 
 Kinematics = Rollers | Balls
@@ -223,8 +250,14 @@ class State:
     """Gradient ``(5,)`` with the elements moved into equilibrium."""
     back: tuple[Array, Array] = field(repr=False)
     """Steps of the elements ``(Z, 2)``, and their change by the ring's ``(Z, 2, 5)``."""
+    deepest: float
+    """Largest deflection of a contact without its drop [m], at an end of a roller that leans."""
+    energies: Array
+    """Energies of the elements ``(Z,)``, with that of the centrifugal force."""
     balance: float = math.inf
     """Largest mismatch, relative."""
+    unsettled: float = math.inf
+    """Largest mismatch of an element, relative."""
 
 
 @dataclass
@@ -244,6 +277,8 @@ class Problem:
         own, ring = self.kinematics.outward
         self.outward = np.array(own)
         self.thrust = ring * self.centrifugal * len(self.kinematics.motion)
+        self.settles = not isinstance(self.law, Solved)
+        """Whether elements settle at each place of the ring: contacts that are solved cost more."""
 
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
@@ -268,31 +303,60 @@ class Problem:
         wanting -= self.thrust * AXIAL
         step = -np.einsum("zab,zb->za", inverse, gradient[:, 2:])
         follow = -inverse @ hessian[:, 2:, :2] @ motion
-        energy = float(reaction.energy.sum() - self.loads @ ring) - self.thrust * float(ring[2])
-        energy -= self.centrifugal * float((own * self.outward).sum())
+        energies = reaction.energy.sum(1) - self.centrifugal * (own * self.outward).sum(1)
+        energy = float(energies.sum() - self.loads @ ring) - self.thrust * float(ring[2])
         state = State(
             ring, own, found.places, reaction, energy, wanting, gradient[:, 2:],
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
             np.einsum("zak,za->k", motion, pull) - self.loads - self.thrust * AXIAL,
             (step, follow),
+            float((found.places[..., 0] + np.abs(found.places[..., 1]) * kinematics.half).max()),
+            energies,
         )  # fmt: skip
-        state.balance = self.mismatch(state)
+        state.balance, state.unsettled = self.mismatches(state)
         return state
 
-    def mismatch(self, state: State) -> float:
-        """Return the largest mismatch of forces and moments, relative to those that act."""
+    def mismatches(self, state: State) -> tuple[float, float]:
+        """Return the largest mismatch of forces and moments, relative to those that act.
+
+        The first is that of the ring and of the elements, the second that of the elements.
+        """
         force: float = max(
             float(np.abs(state.reaction.force[..., 0]).sum()) / 2,
             float(np.linalg.norm(self.loads[:3])),
             float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
         )
-        pressed = float(state.places[..., 0].max()) > ROUNDING * self.kinematics.size
+        pressed = state.deepest > ROUNDING * self.kinematics.size
         if force == 0.0 or not (pressed or self.loads.any() or self.centrifugal):
-            return 0.0
+            return 0.0, 0.0
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
         ring = np.abs(state.wanting / arm)[self.free]
-        own = np.abs(state.slack / self.kinematics.lengths)
-        return max(float(ring.max(initial=0.0)), float(own.max(initial=0.0))) / force
+        own = float(np.abs(state.slack / self.kinematics.lengths).max(initial=0.0))
+        return max(float(ring.max(initial=0.0)), own) / force, own / force
+
+    def settled(self, state: State, tolerance: float) -> State:
+        """Return the state with the elements in equilibrium at this place of the ring.
+
+        Each element makes Newton's steps of its own, which are as long as twice the deflections or
+        gaps of its contacts at most, and are made again at a quarter where its energy rises.
+        """
+        lengths, share = self.kinematics.lengths, np.ones(len(state.own))
+        for _ in range(SETTLING):
+            if state.unsettled <= ELEMENTS * tolerance:
+                break
+            deep = (
+                np.abs(state.places[..., 0]) + np.abs(state.places[..., 1]) * self.kinematics.half
+            )
+            size = np.abs(state.back[0] * lengths).max(axis=1)
+            limit = FARTHEST * deep.max(axis=1) / np.where(size > 0, size, 1.0)
+            step = state.back[0] * np.minimum(share, limit)[:, None]
+            tried = self.state(state.ring, state.own + step)
+            lower = tried.energies <= state.energies + FLAT * tried.reaction.energy.sum(1)
+            share = np.where(lower, 1.0, share / 4)
+            if not lower.all():
+                tried = self.state(state.ring, np.where(lower[:, None], tried.own, state.own))
+            state = tried
+        return state
 
     def start(self, given: Array, pressed: float) -> tuple[Array, Array]:
         """Return a first guess: where the energy is least along the direction of the loads."""
@@ -321,36 +385,29 @@ class Problem:
     def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
         """Return Newton's step of the ring and of the elements, and whether it was shortened.
 
-        It goes no farther than `reach` times the largest approach of a contact.
+        The ring goes no farther than `reach` times the deepest place of a contact, nor do the
+        elements where they do not settle afterwards.
         """
         free, kinematics = self.free, self.kinematics
         ring = np.zeros(5)
         if free.any():
             arm = np.array([1, 1, 1, kinematics.arm, kinematics.arm])[free]
             tangent = state.tangent[np.ix_(free, free)] / np.outer(arm, arm)
-            scale = np.trace(tangent) or 1.0
-            tangent = tangent + FLAT * scale * np.eye(len(arm))
-            ring[free] = np.linalg.solve(tangent, -state.condensed[free] / arm) / arm
+            # Where contacts hardly touch, rounding can make an eigenvalue negative.
+            stiffness, ways = np.linalg.eigh((tangent + tangent.T) / 2)
+            least = FLAT * stiffness[-1] if stiffness[-1] > 0 else 1.0
+            pull = ways.T @ (state.condensed[free] / arm)
+            ring[free] = -ways @ (pull / np.maximum(stiffness, least)) / arm
         step, follow = state.back
         own = step + follow @ ring
         moved = kinematics.motion @ ring
-        farthest = reach * max(float(state.places[..., 0].max()), 0.0)
-        largest = max(
-            float((np.abs(moved) * kinematics.lengths).max()),
-            float((np.abs(own) * kinematics.lengths).max()),
-        )
+        farthest = reach * max(state.deepest, 0.0)
+        limited = [moved] if self.settles else [moved, own]
+        largest = max(float((np.abs(way) * kinematics.lengths).max()) for way in limited)
         shorter = largest > farthest > 0
         if shorter:
             ring, own = ring * (farthest / largest), own * (farthest / largest)
         return ring, own, shorter
-
-    def rested(self, state: State, ring: Array) -> Array:
-        """Return the positions of elements; what carries nothing is midway at the next place."""
-        if self.centrifugal > 0:
-            return state.own
-        idle = np.logical_not((state.reaction.force[..., 0] > 0).any(axis=1))
-        neutral = self.kinematics.neutral(self.kinematics.motion @ ring, 0.0)
-        return np.where(np.asarray(idle)[:, None], neutral, state.own)
 
     def solve(
         self,
@@ -361,7 +418,12 @@ class Problem:
         tell: Callable[[int, float], object] | None,
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
-        state, reach = self.state(ring, own), FARTHEST
+
+        def reached(ring: Array, own: Array) -> State:
+            state = self.state(ring, own)
+            return self.settled(state, tolerance) if self.settles else state
+
+        state, reach = reached(ring, own), FARTHEST
         for done in range(max_iterations + 1):
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
@@ -372,8 +434,7 @@ class Problem:
             ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
-                moved = state.ring + share * ring_step
-                tried = self.state(moved, self.rested(state, moved) + share * own_step)
+                tried = reached(state.ring + share * ring_step, state.own + share * own_step)
                 rounding = SLACK * float(np.abs(tried.reaction.energy).sum())
                 if tried.energy <= state.energy or (
                     tried.energy <= state.energy + rounding and tried.balance < state.balance
@@ -381,7 +442,7 @@ class Problem:
                     break
                 share /= 2
             else:
-                break  # nothing lowers the energy any more: rounding is reached
+                return state, done, "no descent"
             if share < 1:
                 reach = max(FARTHEST, share * reach)
             elif shorter:

@@ -320,6 +320,39 @@ class Bearing(ABC):
         cos = math.cos(self.nominal_angle)
         return inner * cos, outer * cos
 
+    def cage_speed(self, speed: float, rotating: Ring = "inner") -> float:
+        """Return the speed of the cage where one ring rotates and the elements roll [rad/s].
+
+        ``ω_c = ω (1 ∓ γ)/2`` with the upper sign where the inner ring rotates, the lower one where
+        the outer one does, and ``γ = D cos α/d_m``: Harris and Kotzalas, Essential Concepts of
+        Bearing Technology (2006), chapter 10, doi:10.1201/9781420006599. Written with the radii of
+        both tracks, ``(1 − γ)/2 = r_i/(r_i + r_e)``, it holds for tapered rollers too, whose γ is
+        ``D cos(α − β)/d_m`` (derived here).
+
+        Parameters
+        ----------
+        speed : float
+            Angular velocity of the ring that rotates [rad/s].
+        rotating : {"inner", "outer"}, optional
+            Ring that rotates; the other one stands still.
+
+        Returns
+        -------
+        float
+            Angular velocity of the elements about the bearing's axis, with the nominal contact
+            angle [rad/s].
+
+        Examples
+        --------
+        >>> from nacre.bearing import CylindricalRoller
+        >>> bearing = CylindricalRoller(
+        ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3
+        ... )
+        >>> round(bearing.cage_speed(100.0), 3), round(bearing.cage_speed(100.0, "outer"), 3)
+        (42.308, 57.692)
+        """
+        return speed * self.tracks[RINGS.index(rotating)] / sum(self.tracks)
+
     @property
     def outward(self) -> tuple[tuple[float, float], float]:
         """Parts of the centrifugal force: on an element's coordinates, and on the ring along z."""

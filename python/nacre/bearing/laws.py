@@ -232,6 +232,21 @@ class Solved:
                 self._widen()
             initial = None
 
+    def coarser(self, ring: int, contact: Solution) -> Solution:
+        """Return a contact on half the cells, under the same load and moment."""
+        body, counterbody = bodies_of(self.bearing, RINGS[ring])
+        cells = contact.grid.shape[0] // 2, contact.grid.shape[1] // 2
+        plan = Contact(body, core.Grid(cells, contact.grid.size), counterbody)
+        moment = contact.moment[0] if self.bearing.leans else None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", core.NacreWarning)
+            return plan.solve(
+                self.shapes[ring],
+                load=contact.load,
+                moment=(moment, None),
+                tolerance=self.tolerance,
+            )
+
     def _within(self, solution: Solution) -> bool:
         """Return whether a contact ends within its grid, but for the ends of a roller."""
         inside = solution.in_contact

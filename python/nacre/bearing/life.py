@@ -481,8 +481,8 @@ def life_ratio(
 ) -> LifeRatio:
     """Life of a contact or of a bearing over that of a reference, by the stress in its volume.
 
-    Of bearings, the rings count: a point of the inner ring, which rotates, sees the loads of all
-    elements, one of the outer ring those of one place. The lengths of the tracks and the number of
+    Of bearings, the rings count: a point of the ring that rotates sees the loads of all elements,
+    one of the other ring those of one place. The lengths of the tracks and the number of
     cycles in a revolution count, too.
 
     Parameters
@@ -572,7 +572,7 @@ def life_ratio(
 
 
 def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float) -> StressVolume:
-    """Return the integral of both rings of a bearing, in revolutions of the inner one.
+    """Return the integral of both rings of a bearing, in revolutions of one against the other.
 
     A ring sees ``Z r/(r_i + r_e)`` cycles in a revolution, r the radius of the other one's track:
     the inner one ``Z (1 + γ)/2``, the outer one ``Z (1 − γ)/2``. Cycles of different loads add up
@@ -597,7 +597,8 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
             if ring == r:
                 found[:, j] = volume.integral, volume.integral * (1 + volume.change)
         rows = found.reshape(2, bearing.rows, bearing.count)
-        means = (rows ** (1 / slope)).mean(2) ** slope if r == 0 else rows.mean(2)
+        turns = RINGS[r] == solution.rotating
+        means = (rows ** (1 / slope)).mean(2) ** slope if turns else rows.mean(2)
         cycles = bearing.count * bearing.tracks[1 - r] / sum(bearing.tracks)
         means = means.sum(1) * cycles**slope * 2 * math.pi * bearing.tracks[r]
         total, changed = total + float(means[0]), changed + float(means[1])

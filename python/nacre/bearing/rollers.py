@@ -20,7 +20,9 @@ Word = Literal["iso16281", "iso16281_cylindrical"]
 Profile = core.LogarithmicProfile | core.SampledProfile | Word | None
 
 SAMPLES = 401
-"""Points of a profile to which the crown of a raceway is added; some 3 for each cell."""
+"""Points of a profile: some 3 for each cell."""
+PARABOLA = 9
+"""Points of a crown, between which cubics are the parabola."""
 TAPERED = 0.00045
 """Amplitude of the profile of tapered rollers over their diameter.
 
@@ -29,6 +31,12 @@ that of ISO/TS 16281:2008, whose text was not seen.
 """
 PLANE = 1e6
 """Radius of a surface that is plane across its profile [m]: it drops by 1e-14 m in 0.1 mm."""
+
+
+def _across_plane(x: Array, drop: Array) -> core.Roller:
+    """Return the drop of a raceway along its axis, plane across it."""
+    profile = core.SampledProfile(x, drop)
+    return core.Roller(radius=PLANE, length=float(x[-1] - x[0]), profile=profile)
 
 
 def _check_angle(angle: float) -> None:
@@ -108,30 +116,28 @@ class _Rollers(Solvable):
         """Return a profile of ISO/TS 16281."""
         return core.LogarithmicProfile.iso16281(self.diameter, self.length)
 
-    def _profile_of(self, ring: Ring) -> core.LogarithmicProfile | core.SampledProfile:
-        """Return the profile of a roller with the crown of a raceway."""
-        profile, crown = self._profile(), self.raceway_crown[RINGS.index(ring)]
-        if crown is None:
-            return profile
-        # Logarithmic profiles have no finite drop at their very ends.
-        x = np.linspace(-0.5, 0.5, SAMPLES) * self.length * (1 - 1 / SAMPLES)
-        drop = profile.drop_at(x) + x**2 / (2 * crown)
-        if not np.isfinite(drop).all():
-            raise ValueError("profile must be at least as long as the roller beside raceway_crown")
-        return core.SampledProfile(x, drop - drop.min())
+    def _crown(self, ring: Ring, x: Array) -> Array:
+        """Return the drop of the crown of a raceway at x along it [m].
+
+        That of a concave one is such that it and the profile together drop by 0 at least.
+        """
+        radius = self.raceway_crown[RINGS.index(ring)]
+        if radius is None:
+            return np.zeros_like(x)
+        along = np.linspace(-0.5, 0.5, SAMPLES) * self.length
+        lowest = float((self._profile().drop_at(along) + along**2 / (2 * radius)).min())
+        return x**2 / (2 * radius) - min(0.0, lowest)
 
     def drop(self, ring: Ring, laminae: int = 40) -> Array:
         """Drop of profile and crown at the middles of laminae [m], infinite beyond the profile."""
         x = laminae_of(self.length, laminae)
-        crown = self.raceway_crown[RINGS.index(ring)]
         profile = self._profile()
-        found = np.asarray(profile.drop_at(x), dtype=np.float64)
-        found = found if crown is None else found + x**2 / (2 * crown)
-        if not np.isfinite(found).any():
+        drops: Array = profile.drop_at(x) + self._crown(ring, x)
+        if not np.isfinite(drops).any():
             raise ValueError(
                 f"profile must cover the roller of {millimetres(self.length)}, got {profile}"
             )
-        return found - min(0.0, float(found.min()))
+        return drops
 
     def shape(self, ring: Ring) -> core.Shape:
         """Return the gap between a roller and a raceway.
@@ -147,13 +153,17 @@ class _Rollers(Solvable):
             Shape for `nacre.solve`: x along the roller, y in the direction of rolling.
         """
         inner, outer = self.raceways
-        return core.Roller(
+        roller = core.Roller(
             radius=self.radius,
             length=self.length,
-            profile=self._profile_of(ring),
+            profile=self._profile(),
             counter_radius=inner if ring == "inner" else -outer,
             apex=self.apex,
         )
+        if self.raceway_crown[RINGS.index(ring)] is None:
+            return roller
+        x = np.linspace(-0.5, 0.5, PARABOLA) * self.length
+        return roller + _across_plane(x, self._crown(ring, x))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -647,11 +657,10 @@ class SphericalRoller(Solvable):
         inner, outer = self.raceways
         x = np.linspace(-0.5, 0.5, SAMPLES) * self.length
         barrel = core.SampledProfile(x, _rise(self.profile_radius, x))
-        groove = core.SampledProfile(x, -_rise(self.grooves[RINGS.index(ring)], x))
         roller = core.Roller(
             radius=self.radius,
             length=self.length,
             profile=barrel,
             counter_radius=inner if ring == "inner" else -outer,
         )
-        return roller + core.Roller(radius=PLANE, length=self.length, profile=groove)
+        return roller + _across_plane(x, -_rise(self.grooves[RINGS.index(ring)], x))

@@ -63,6 +63,13 @@ BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
 
 
+def edge_pressure(pressures: Array) -> Array:
+    """Return the largest pressures of laminae ``(…, laminae)`` in the outer tenths of a roller."""
+    outer = round(EDGE * LAMINAE)
+    ends: Array = np.concatenate([pressures[..., :outer], pressures[..., -outer:]], axis=-1)
+    return ends.max(-1)  # type: ignore[no-any-return]
+
+
 def carrying(loads: Array) -> npt.NDArray[np.bool_]:
     """Return which contacts carry more than rounding."""
     found: npt.NDArray[np.bool_] = loads > ROUNDING * loads.sum()
@@ -82,14 +89,23 @@ class BearingReport(Result):
     (True, True)
     """
 
-    termination: Literal["converged", "iteration limit", "stopped"]
-    """End of the iteration."""
+    termination: Literal["converged", "iteration limit", "no descent", "stopped"]
+    """End of the iteration; "no descent" where no step lowers the energy by more than rounding."""
     iterations: int
     """Newton steps of the ring with solved contacts, or with those of the standard."""
     balance: float
     """Largest mismatch of forces and moments of ring and elements, relative."""
     warnings: tuple[str, ...]
     """Warnings; each was also issued as a `nacre.NacreWarning`."""
+    discretisation: dict[str, float | None] | None = None
+    """Errors due to the size of the cells, estimated; None of the standard's contacts.
+
+    The keys are ``peak_pressure`` and, of rollers, ``edge_pressure`` [Pa]. The most loaded elements
+    are solved again on half the cells, under the same loads and moments. A pressure without a
+    limit, as at sharp ends, has none, `None`; a warning says so.
+    """
+
+    _LATER = ("discretisation",)
 
     @property
     def converged(self) -> bool:
@@ -167,6 +183,7 @@ class BearingSolution(Tabular):
 
     _QUANTITIES = BEARING
     _TITLE = "bearing"
+    _LATER = ("rotating",)
 
     bearing: Bearing
     """Bearing that was solved."""
@@ -175,7 +192,9 @@ class BearingSolution(Tabular):
     rotation: float
     """Angle of element 0 from the x axis [rad]."""
     speed: float
-    """Angular velocity of the elements about the bearing's axis [rad/s]."""
+    """Angular velocity of the ring that rotates [rad/s]."""
+    rotating: Ring
+    """Ring that rotates."""
     displacement: tuple[float, float, float]
     """Displacements of the inner ring against the outer one along x, y and z [m]."""
     tilt: tuple[float, float]
@@ -227,6 +246,11 @@ class BearingSolution(Tabular):
     def edge_pressure(self) -> float:
         """Largest pressure in the outer tenths of a roller [Pa]; NaN of balls."""
         return float(self.edge_pressures.max())
+
+    @property
+    def cage_speed(self) -> float:
+        """Angular velocity of the elements about the bearing's axis [rad/s]."""
+        return self.bearing.cage_speed(self.speed, self.rotating)
 
     @property
     def largest_load(self) -> float:
@@ -355,7 +379,7 @@ class BearingSolution(Tabular):
             )
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
-    def life(self, edge: Edge = "standard", *, rotating: Ring = "inner") -> BearingLife:
+    def life(self, edge: Edge = "standard", *, rotating: Ring | None = None) -> BearingLife:
         """Rate the bearing by ISO/TS 16281: its reference life, in millions of revolutions.
 
         Parameters
@@ -365,7 +389,7 @@ class BearingSolution(Tabular):
             hold for its profile, medium loads and tilts below 4', and which barrels have not; the
             solved pressure over that of Hertz; or none. Balls have none.
         rotating : {"inner", "outer"}, optional
-            Ring that rotates against the load.
+            Ring that rotates against the load; by default the one that rotates in `solve`.
 
         Returns
         -------
@@ -390,6 +414,7 @@ class BearingSolution(Tabular):
         """
         if edge not in EDGES:
             raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
+        rotating = self.rotating if rotating is None else rotating
         if rotating not in RINGS:
             raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
         words = "ISO/TS 16281, 90 % reliability, a model"
@@ -488,7 +513,9 @@ class BearingSolution(Tabular):
     def _comments(self) -> dict[str, Any]:
         found = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
-        return {"model": self.model, **found, **notes}
+        errors = self.report.discretisation or {}
+        known = {f"{name}_discretisation": error for name, error in errors.items() if error}
+        return {"model": self.model, **found, **known, **notes}
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""
@@ -518,9 +545,10 @@ class BearingSolution(Tabular):
             values = [self._rounded(row.name, value) for value in row.of(self)]
             rows.append((row.label, display.pair(values, row.si())))
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
-            value = getattr(self, name)
-            if not math.isnan(value):
-                rows.append((kinds[name].label, written(value, kinds[name].si())))
+            if not math.isnan(getattr(self, name)):
+                rows.append((kinds[name].label, display.estimated(self, name, kinds[name].si())))
+        if self.speed:
+            rows.append((kinds["cage_speed"].label, written(self.cage_speed, "rad/s")))
         report = self.report
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
         return [
@@ -570,11 +598,11 @@ class BearingSolution(Tabular):
 
     @classmethod
     def _names(cls) -> list[str]:
-        words = ["bearing", "model", "rotation", "speed", *VECTORS]
+        words = ["bearing", "model", "rotation", "speed", "rotating", *VECTORS]
         return [*words, *ARRAYS, "cells", "report"]
 
     def _state(self) -> dict[str, Any]:
-        state = {name: getattr(self, name) for name in ("model", "rotation", "speed")}
+        state = {name: getattr(self, name) for name in ("model", "rotation", "speed", "rotating")}
         state |= {name: list(getattr(self, name)) for name in (*VECTORS,)}
         arrays = {name: getattr(self, name) for name in ARRAYS}
         state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
@@ -587,6 +615,9 @@ class BearingSolution(Tabular):
         with refusing(cls.__name__):
             made = dict(state)
             made["bearing"] = decoded(state["bearing"])
+            if state.get("rotating") is None:  # states of 0.1.0, whose speed is that of the cage
+                made["rotating"] = "inner"
+                made["speed"] = state["speed"] / made["bearing"].cage_speed(1.0)
             for name in VECTORS:
                 made[name] = tuple(map(float, state[name]))
             for name in ARRAYS:
@@ -602,6 +633,8 @@ class BearingSolution(Tabular):
         """Raise a `ValueError` unless all fields fit each other."""
         if not isinstance(self.bearing, Bearing):
             raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
+        if self.rotating not in RINGS:
+            raise ValueError(f'rotating must be "inner" or "outer", got {self.rotating!r}')
         if self.model not in ("solved", "iso16281"):
             raise ValueError(f"model must be one of nacre's, got {self.model!r}")
         count = self.bearing.elements

@@ -13,11 +13,12 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
+from nacre.bearing.cone import check_carried
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above, pair
 from nacre.bearing.iso import hertz_pressures
-from nacre.bearing.laws import LAMINAE, STANDARD, Hertzian, Slices, Solved, binned, law
-from nacre.bearing.solution import EDGE, BearingReport, BearingSolution, Model, carrying
+from nacre.bearing.laws import LAMINAE, LINE, STANDARD, Hertzian, Slices, Solved, binned, law
+from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -29,7 +30,17 @@ With these the load of a ball at a given approach is right to 1e-4, the peak pre
 to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured against twice as many.
 """
 STEEPEST = 0.02
-"""Largest prescribed tilt without a warning: about a degree, where bearings bear minutes."""
+"""Largest tilt without a warning: about a degree, where bearings bear minutes."""
+UNKNOWN_RATE = 0.75
+"""Power of the size of the cells with which errors fall, where one change shows none: as that of a
+contact's own estimate."""
+SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
+"""Warnings of contacts whose pressure has no limit on ever finer cells."""
+REMEDIES = {
+    "iteration limit": "raise max_iterations or the tolerance",
+    "no descent": "no step lowers the energy by more than rounding: raise the tolerance",
+}
+"""What helps where an iteration ended before the tolerance was met."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
@@ -81,7 +92,7 @@ def _asked(
             f"{name} along z must be None or 0: rollers without a contact angle carry none, "
             f"got {value!r}"
         )
-    if bearing.rows == 1 and loads[2] is not None:
+    if bearing.rows == 1 and not bearing.leans and loads[2] is not None:
         _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
@@ -126,6 +137,8 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     model, cells, tolerance = given["model"], given["cells"], given["tolerance"]
     for name in ("rotation", "speed"):
         above(name, given[name], -math.inf)
+    if given["rotating"] not in RINGS:
+        raise ValueError(f'rotating must be "inner" or "outer", got {given["rotating"]!r}')
     for name in ("max_iterations", "threads"):
         value = given[name]
         if name == "threads" and value is None:
@@ -150,8 +163,10 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     angles = given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
     angles = np.tile(angles, bearing.rows)
     kinematics = kinematics_of(bearing, angles)
-    centrifugal = bearing.mass * bearing.pitch / 2 * given["speed"] ** 2
+    cage = bearing.cage_speed(given["speed"], given["rotating"])
+    centrifugal = bearing.mass * bearing.pitch / 2 * cage**2
     problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
+    check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
     limit = given["max_iterations"]
     pressed = _pressed(problem.law, centrifugal)
     with lasting("bearing") as bar:
@@ -175,16 +190,19 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
             lines = _lines(bearing, problem.law, state)
             contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
-            state, done, ended = problem.solve(state.ring, state.own, tolerance, limit, tell)
+            guess, steps = ended, limit if ended == "converged" else 0
+            state, done, ended = problem.solve(state.ring, state.own, tolerance, steps, tell)
+            if ended == "iteration limit" and guess != "converged":
+                ended = guess
             if ended == "converged":
                 _check_sides(bearing, problem, state, tolerance)
     found = _found(bearing, given, problem, state, angles, (done, ended), cells)
     for message in found.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
-    if given["check"] and ended == "iteration limit":
+    if given["check"] and ended in REMEDIES:
         error = core.ConvergenceError(
-            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; raise "
-            "max_iterations or the tolerance"
+            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; "
+            f"{REMEDIES[ended]}"
         )
         error.solution = found
         raise error
@@ -204,14 +222,14 @@ def _pressed(law: Any, force: float) -> float:
 def _lines(bearing: Any, law: Any, state: State) -> Array:
     """Return the expected loads of the contacts by which their grids are chosen."""
     places = state.places
-    if not state.reaction.force.any():
-        # Nothing touches: grids for an approach of a millionth of the diameter.
-        places = np.zeros_like(places)
-        places[..., 0] = 1e-6 * bearing.diameter
     if isinstance(law, Slices):
         lines: Array = law.loads(places).max(-1) * LAMINAE / bearing.length
-        return lines
-    return law(places).force[..., 0]  # type: ignore[no-any-return]
+    else:
+        lines = law(places).force[..., 0]
+    if not lines.any():  # nothing touches: grids for a millionth of the diameter
+        exponent, pieces = (LINE, LAMINAE / bearing.length) if bearing.rolls else (1.5, 1.0)
+        lines = lines + np.ravel(law.spring) * (1e-6 * bearing.diameter) ** exponent * pieces
+    return lines
 
 
 def _found(
@@ -248,24 +266,25 @@ def _found(
     else:
         assert isinstance(problem.law, Hertzian)
         peaks = problem.law.pressures(loads)
-    edges = np.full(loads.shape, np.nan)
-    if pressures is not None:
-        outer = round(EDGE * LAMINAE)
-        edges = np.maximum(pressures[..., :outer].max(-1), pressures[..., -outer:].max(-1))
+    edges = np.full(loads.shape, np.nan) if pressures is None else edge_pressure(pressures)
     kinematics = problem.kinematics
     normals = kinematics.angles(kinematics.motion @ state.ring, state.own)
     total = state.wanting + problem.loads
     kept = {key: one for key, one in contacts.items() if carrying(loads)[key]}
     notes = (
-        *_implausible(bearing, given, peaks),
+        *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
         *_notes(bearing, given["model"], kept),
     )
+    errors = None
+    if isinstance(problem.law, Solved):
+        errors = _discretisation(problem.law, contacts, peaks, edges)
     return BearingSolution(
         bearing=bearing,
         model=given["model"],
         rotation=float(given["rotation"]),
         speed=float(given["speed"]),
+        rotating=given["rotating"],
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),
@@ -283,17 +302,45 @@ def _found(
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
         cells=None if sizes is None else cells,
-        report=BearingReport(ended[1], ended[0], state.balance, notes),  # type: ignore[arg-type]
+        report=BearingReport(ended[1], ended[0], state.balance, notes, errors),  # type: ignore[arg-type]
         _contacts=dict(contacts),
     )
 
 
-def _implausible(bearing: Bearing, given: Mapping[str, Any], peaks: Array) -> Iterable[str]:
+def _discretisation(
+    law: Solved, contacts: Mapping[tuple[int, int], Solution], peaks: Array, edges: Array
+) -> dict[str, float | None]:
+    """Return the errors of peak and edge pressure due to the size of the cells [Pa].
+
+    Both contacts of the elements with the largest pressures are solved on half the cells under the
+    same load and moment. None where the pressure has no limit.
+    """
+    bearing = law.bearing
+    pressures = [peaks, edges] if bearing.rolls else [peaks]
+    names = ("peak_pressure", "edge_pressure")
+    errors: dict[str, float | None] = dict.fromkeys(names[: len(pressures)], 0.0)
+    heaviest = {int(np.unravel_index(field.argmax(), field.shape)[0]) for field in pressures}
+    for key in [key for key in contacts if key[0] in heaviest]:
+        coarse = law.coarser(key[1], contacts[key])
+        singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)
+        values = [coarse.peak_pressure]
+        if bearing.rolls:
+            values.append(float(edge_pressure(binned(bearing, coarse)[1])))
+        for name, value, field in zip(names, values, pressures, strict=False):
+            known = errors[name]
+            error = abs(value - float(field[key])) / (2**UNKNOWN_RATE - 1)
+            errors[name] = None if singular or known is None else max(known, error)
+    return errors
+
+
+def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[str]:
     """Yield warnings of tilts and pressures that no bearing has."""
-    tilts = () if given["tilt"] is None else given["tilt"]
-    steepest = max((abs(tilt) for tilt in tilts if tilt is not None), default=0.0)
+    steepest = float(np.abs(ring[3:]).max())
     if steepest > STEEPEST and not bearing.aligns:
-        yield f"tilt is a slope: 2' are 5.8e-4; {steepest:g} is far above those of bearings"
+        yield (
+            f"the tilt of the ring, a slope, is {steepest:.4g}: far above those of bearings, "
+            "2' are 5.8e-4"
+        )
     if (peak := float(peaks.max())) > HIGHEST:
         yield (
             f"the peak pressure is {peak / 1e9:.4g} GPa: above {HIGHEST / 1e9:g} GPa, contacts "

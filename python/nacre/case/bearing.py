@@ -68,6 +68,7 @@ class BearingSolve(Table):
     tilt: About | None = Field(None, description=SOLVE["tilt"])
     rotation: Number = Field(0.0, description=SOLVE["rotation"])
     speed: Number = Field(0.0, description=SOLVE["speed"])
+    rotating: Ring = Field("inner", description=SOLVE["rotating"])
     model: Literal["solved", "iso16281"] = Field("solved", description=SOLVE["model"])
     cells: Counts | None = Field(None, description=SOLVE["cells"])
     tolerance: Number = Field(1e-9, description=SOLVE["tolerance"])
@@ -81,8 +82,9 @@ class BearingLife(Table):
         "standard",
         description="Edge factors: those of the standard, those of the solved pressure, or none.",
     )
-    rotating: Literal["inner", "outer"] = Field(
-        "inner", description="Ring that rotates against the load."
+    rotating: Ring | None = Field(
+        None,
+        description="Ring that rotates against the load; by default that of `[bearing.solve]`.",
     )
 
     def keywords(self) -> dict[str, Any]:

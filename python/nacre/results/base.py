@@ -119,6 +119,8 @@ def _fitted(kind: Any, value: Any) -> Any:
         kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
         if len(kinds) == len(value):
             return tuple(map(_fitted, kinds, value))
+    if made is dict and isinstance(value, dict):
+        return {_fitted(parts[0], key): _fitted(parts[1], item) for key, item in value.items()}
     if kind is float and type(value) is int:
         return float(value)
     if kind in (bool, int, float, str) and type(value) is kind:

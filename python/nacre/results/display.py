@@ -176,7 +176,7 @@ NORMAL_TEXTS: Texts = {
     "moment": lambda s: _centred(s, "moment", "N" if s.report.grid.is_line else "N m", s.load),
     "approach": lambda s: _approach(s),
     "tilt": lambda s: f"({s.tilt[0]:.4g}, {s.tilt[1]:.4g})",
-    "peak_pressure": lambda s: _estimated(s, "peak_pressure", "Pa"),
+    "peak_pressure": lambda s: estimated(s, "peak_pressure", "Pa"),
     "peak_position": lambda s: _centred(s, "peak_position", "m"),
     "contact_extent": _extent,
     "contact_share": _contact_share,
@@ -463,7 +463,7 @@ def drawn(draw: Callable[[], Any]) -> bytes | None:
     return file.getvalue()
 
 
-def _estimated(solution: Solution, name: str, unit: str) -> str:
+def estimated(solution: Any, name: str, unit: str) -> str:
     """Return a number, with the discretisation error where it is estimated."""
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
@@ -478,7 +478,7 @@ def _approach(solution: Solution) -> str:
     report = solution.report
     repeats = (True, False) if report.grid.is_line else report.grid.periodic
     if sum(repeats) != 1 or all(map(_is_held, (report.body, report.counterbody))):
-        return _estimated(solution, "approach", "m")
+        return estimated(solution, "approach", "m")
     datum = report.grid.size[repeats.index(False)]
     return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
 

@@ -88,6 +88,8 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
 
 ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
+ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
+"""The same of a bearing."""
 ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
@@ -150,15 +152,22 @@ def plain(
             raise ValueError(f"the output {output} is not one of {words}")
         value = getattr(solution, output) if isinstance(output, str) else output(solution)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
+    if not hasattr(solution, "tip"):
+        estimates = solution.report.discretisation or {}
+        for name, quantity in errors(outputs, outputs, ESTIMATED_OF_RINGS).items():
+            estimate = estimates.get(quantity)
+            found[name] = np.nan if estimate is None else float(estimate)
     return found
 
 
-def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str]:
+def errors(
+    outputs: Mapping[str, Output], taken: Iterable[str], estimated: Sequence[str] = ESTIMATED
+) -> dict[str, str]:
     """Return the names of the errors of outputs, each with the quantity that has this error."""
     return {
         name + ERROR: output
         for name, output in outputs.items()
-        if isinstance(output, str) and output in ESTIMATED and name + ERROR not in taken
+        if isinstance(output, str) and output in estimated and name + ERROR not in taken
     }
 
 

@@ -274,6 +274,7 @@ BEARING = (
     Quantity("edge_pressure", "largest pressure in outer tenths", "Pa", label="edge pressure"),
     Quantity("reference_life", "life of ISO/TS 16281, million revolutions"),
     Quantity("loaded", "number of loaded elements"),
+    Quantity("cage_speed", "speed of the elements about the axis", "rad/s", label="cage speed"),
     Quantity("angles", "angles of the elements", "rad", dims=("element",)),
     Quantity("approaches", "approaches of the contacts", "m", dims=PER_CONTACT),
     Quantity("loads", "forces of the contacts", "N", None, PER_CONTACT, "load"),

@@ -53,8 +53,8 @@ ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
 """Arguments of `nacre.indent.solve`."""
 BEARING = frozenset(
-    "bearing force displacement moment tilt rotation speed model cells tolerance max_iterations "
-    "threads".split()
+    "bearing force displacement moment tilt rotation speed rotating model cells tolerance "
+    "max_iterations threads".split()
 )
 """Arguments of the solve of a bearing, and the bearing."""
 
@@ -146,7 +146,8 @@ def sweep(
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
         holds the reason; ``warnings`` holds the warnings of each solve. Beside peak pressure,
-        approach and load stand their errors due to the size of the cells, such as
+        approach and load, and of bearings peak and edge pressure, stand their errors due to the
+        size of the cells, such as
         ``peak_pressure_discretisation``: the estimates of `Report.discretisation`, NaN where there
         is none. The executor does not change a bit.
 

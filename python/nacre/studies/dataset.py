@@ -11,7 +11,15 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import symbol, system
 from nacre.results import quantities
-from nacre.results.outputs import AXES, ERROR, RING_AXES, Output, errors
+from nacre.results.outputs import (
+    AXES,
+    ERROR,
+    ESTIMATED,
+    ESTIMATED_OF_RINGS,
+    RING_AXES,
+    Output,
+    errors,
+)
 from nacre.studies.journal import Record
 
 if TYPE_CHECKING:
@@ -97,9 +105,8 @@ def assembled(
         if isinstance(output, str) and output in units:
             dataset[name].attrs["units"] = symbol(units[output])
     taken = {*outputs, *map(str, dataset.coords)}
-    for name, quantity in (
-        {} if kinds["indents"] or kinds["bears"] else errors(outputs, taken)
-    ).items():
+    estimated = ESTIMATED_OF_RINGS if kinds["bears"] else () if kinds["indents"] else ESTIMATED
+    for name, quantity in errors(outputs, taken, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
