@@ -12,7 +12,7 @@ import numpy as np
 import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre import fatigue
-from nacre.indent import Adhesion, Curve, Fit, Indentation, Tip, fit
+from nacre.indent import Adhesion, Curve, Fit, Indentation, OliverPharr, Tip, fit, oliver_pharr
 from nacre.results.listed import Listed
 from nacre.results.quantities import AXIS, Quantity
 
@@ -36,6 +36,13 @@ def fitted() -> Fit:
     curves = [Curve(depth, load * part, name=f"A{k}") for k, part in enumerate(noise)]
     free, nuisance = ["body.layers[0].material.young"], ["contact_point"]
     return fit(curves, FILM, ROUND, free, nuisance=nuisance, profile=False)
+
+
+def unloaded() -> OliverPharr:
+    depth = np.linspace(500e-9, 302e-9, 50)
+    noise = 1e-5 * np.random.default_rng(3).standard_normal(depth.size)
+    force = 10e-3 * ((depth - 300e-9) / 200e-9) ** 1.35 + noise
+    return oliver_pharr(Curve(depth, force), Tip.berkovich())
 
 
 NORMAL: dict[str, Callable[[], nacre.Solution]] = {
@@ -125,6 +132,7 @@ LISTED: dict[str, Callable[[], Any]] = {
     "shakedown map": lambda: fatigue.shakedown_map(
         LINE.solve(ROD, load=1e4), friction=[0.0, 0.1], depths=[0.0, 1e-5]
     ),
+    "unloading": unloaded,
     "tried": lambda: Tried((1.0, -2.0), 1e-9 / 3, 3, "x", ("a", "b"), False),
 }
 FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}

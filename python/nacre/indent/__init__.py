@@ -18,7 +18,7 @@ from nacre._core import Adhesion, Tip, slope_of
 from nacre.indent import charts
 from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
 from nacre.indent.classical import Classical, classical, tabor_parameter
-from nacre.indent.curves import Curve, read
+from nacre.indent.curves import Curve, Drift, read
 from nacre.indent.fit import Fit, fit
 from nacre.indent.solution import (
     Indentation,
@@ -29,17 +29,20 @@ from nacre.indent.solution import (
     StateDerivative,
     solve,
 )
+from nacre.indent.unloading import OliverPharr, oliver_pharr
 
 __all__ = [
     "Adhesion",
     "Classical",
     "ContactPoint",
     "Curve",
+    "Drift",
     "Fit",
     "IndentCurve",
     "IndentSolution",
     "IndentState",
     "Indentation",
+    "OliverPharr",
     "PullOff",
     "StateDerivative",
     "Tip",
@@ -48,6 +51,7 @@ __all__ = [
     "classical",
     "contact_point",
     "fit",
+    "oliver_pharr",
     "read",
     "slope_of",
     "solve",

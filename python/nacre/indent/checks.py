@@ -10,16 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]
 
-SURE = 6.0
-"""Standard deviations of the noise that the largest of a hundred thousand normal values exceeds
-once in ten thousand curves."""
-SPAN = 10.0
-"""Standard deviations between the largest and the smallest of a hundred thousand normal values,
-9 on average, and some to be safe."""
 RISE = 5.0
 """Standard errors between mean forces of shallow and deep points that are a contact. In 2000 random
 curves each, noise alone passed in 1, 19 and no curves of 50, 12 and 200 points; a force of ten
@@ -113,7 +108,7 @@ def check(curve: Curve, *, stacklevel: int = 2) -> None:
             stacklevel,
         )
         return
-    noise = _noise(force)
+    noise = noise_of(force)
     if not _rises(depth, force, noise):
         raise ValueError(
             f"force must rise with depth above its noise, got a range of {np.ptp(force):.4g} with "
@@ -126,22 +121,13 @@ def check(curve: Curve, *, stacklevel: int = 2) -> None:
         _warn(
             f"{which} falls from index {index} on{name}, at depth {depth[index]:.4g} and force "
             f"{force[index]:.4g}: unloading is mixed in, or points are out of order; "
-            f"curve.loading() is the part up to the largest force",
+            f"curve.loading() is the part that rises to the largest force",
             stacklevel,
         )
 
 
 def _warn(message: str, stacklevel: int) -> None:
     warnings.warn(message, core.NacreWarning, stacklevel=stacklevel + 1)
-
-
-def _noise(values: Array) -> float:
-    """Return the standard deviation of what varies from point to point, robustly.
-
-    Second differences of noise have √6 of its standard deviation; the median of their size is
-    0.6745 standard deviations.
-    """
-    return float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * math.sqrt(6.0))
 
 
 def _is_shuffled(depth: Array) -> bool:
@@ -165,13 +151,13 @@ def _rises(depth: Array, force: Array, noise: float) -> bool:
 
 def _fall(depth: Array, force: Array) -> tuple[int, str] | None:
     """Return where depth falls, or else force after its largest value, and which of them."""
-    least = max(SPAN * _noise(depth), LEAST_FALL[0] * float(np.ptp(depth)))
+    least = max(SPAN * noise_of(depth), LEAST_FALL[0] * float(np.ptp(depth)))
     highest = np.maximum.accumulate(depth)
     below = np.flatnonzero(highest - depth > least)
     if below.size:
         return int(np.flatnonzero(depth[: below[0]] == highest[below[0]])[-1]), "depth"
     # Before its maximum a force may fall in a loading: snap-in, pop-in.
-    least = max(SPAN * _noise(force), LEAST_FALL[1] * float(np.ptp(force)))
+    least = max(SPAN * noise_of(force), LEAST_FALL[1] * float(np.ptp(force)))
     top = int(np.argmax(force))
     if float(force[top] - force[top:].min()) > least:
         return top, "force"

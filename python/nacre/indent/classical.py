@@ -9,17 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre.indent._segments import SURE, noise_of
 from nacre.indent.curves import Curve
 from nacre.indent.solution import Indentation
+from nacre.indent.unloading import EPSILON, section
 
-__all__ = ["Classical", "classical", "gao_weights", "oliver_pharr", "tabor_parameter"]
+__all__ = ["Classical", "classical", "gao_weights", "tabor_parameter"]
 
 Array = npt.NDArray[np.float64]
 
-EPSILON = 0.75
-"""Factor ε of Oliver and Pharr for paraboloids, which is used for pyramids, too."""
 UPPER = 0.4
 """Share of the largest depth from which on points count for the slope at the largest force."""
+FALLEN, BORNE = 0.02, 5.0
+"""Share of the largest force that counts as none, beside the noise, and how many times that an
+elastic body bears where an unloading curve has it: 10 % of the force of a cone are at 0.3 of its
+depth, where an error of the body's moduli or of a thickness changes this by less than twice."""
 STIFFER = 10.0
 """Ratio of base to layer from which a base counts as rigid for Dimitriadis' series."""
 
@@ -114,7 +118,8 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     Raises
     ------
     ValueError
-        If the curve has no contact.
+        If the curve has no contact, or its force falls to zero where the body would bear some: it
+        is the unloading of an indent that yielded, see `oliver_pharr`.
 
     Notes
     -----
@@ -148,6 +153,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
         raise ValueError(f"curve must have three points in contact, got {int(touching.sum())}")
     order = np.argsort(curve.depth[touching], kind="stable")
     depth, force = curve.depth[touching][order], curve.force[touching][order]
+    _refuse_unloading(depth, force, body, tip)
     unit = Indentation(core.HalfSpace(core.Elastic(1.0, 0.0)), tip)
     bare = np.asarray(unit.curve(approach=depth).load)
     law = {"cone": "Sneddon", "power": "Sneddon", "flat_punch": "Sneddon"}.get(tip.kind, "Hertz")
@@ -155,7 +161,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
         (f"{law}, largest depth", float(force[-1] / bare[-1]), "Hertz 1882, Sneddon 1965"),
         (f"{law}, least squares", float(force @ bare / (bare @ bare)), "Hertz 1882, Sneddon 1965"),
     ]
-    found = oliver_pharr(depth, force, tip)
+    found = _apparent(depth, force, tip)
     if found is not None:
         apparent, radius = found
         rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
@@ -165,7 +171,25 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     return [Classical(name, value, value / true - 1, source) for name, value, source in rows]
 
 
-def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float] | None:
+def _refuse_unloading(depth: Array, force: Array, body: core.HalfSpace, tip: core.Tip) -> None:
+    """Refuse a curve whose force falls to zero at a depth at which the body would bear some."""
+    noise = noise_of(force) if force.size > 3 else 0.0
+    low = max(FALLEN, SURE * noise / float(force.max())) * float(force.max())
+    small = np.flatnonzero(force <= low)
+    if not small.size:
+        return
+    zero = float(depth[small[-1]])
+    elastic = Indentation(body, tip).curve(approach=[zero, float(depth[-1])]).load
+    if elastic[0] > BORNE * low / float(force.max()) * elastic[1]:
+        raise ValueError(
+            f"curve must be elastic, with its zero at the contact: its force falls to "
+            f"{force[small[-1]]:.3g} at the depth {zero:.4g} of {depth[-1]:.4g}, so that it is the "
+            "unloading curve of an indent that yielded, for which oliver_pharr(curve, tip) is, or "
+            "its zero is another, see contact_point"
+        )
+
+
+def _apparent(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float] | None:
     """Return reduced modulus and contact radius at the largest depth.
 
     The slope is that of a parabola of the logarithms, whose points are the deeper ones. None where
@@ -187,24 +211,12 @@ def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, floa
 
 def _radius(tip: core.Tip, depth: float) -> float | None:
     """Return the radius of the tip's section at a depth from its apex."""
-    if tip.kind == "flat_punch":
-        return float(tip.numbers["radius"])
-    if depth <= 0:
+    if depth <= 0 and tip.kind != "flat_punch":
         return None
     if tip.kind in ("paraboloid", "sphere"):
         # The customary form for spheres is that of a paraboloid.
         return math.sqrt(2 * float(tip.numbers["radius"]) * depth)
-    low, high = 1e-3 * depth, 1e3 * depth
-    for _ in range(200):
-        middle = math.sqrt(low * high)
-        try:
-            is_inside = float(tip.gap(middle)) < depth
-        except ValueError:
-            is_inside = False
-        low, high = (middle, high) if is_inside else (low, middle)
-        if high / low < 1 + 1e-12:
-            break
-    return middle
+    return section(tip, depth)
 
 
 def _corrected(

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
+from typing import Any, ClassVar, Literal, NamedTuple, TypedDict, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from nacre._core import plain
 from nacre._tools.units import written
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
+from nacre.indent._segments import arrival, departure, held
 from nacre.indent._text import tables
 
 Array = npt.NDArray[np.float64]
@@ -70,6 +71,8 @@ class Curve:
     force: Array
     time: Array | None
     name: str
+    note: str
+    """What `loading` and `unloading` made of holds; "" where there are none."""
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
@@ -100,7 +103,7 @@ class Curve:
                 raise ValueError(
                     f"time must not fall, got {after:.6g} after {before:.6g} at index {index}"
                 )
-        for attribute, value in ({"time": None} | arrays | {"name": name}).items():
+        for attribute, value in ({"time": None} | arrays | {"name": name, "note": ""}).items():
             object.__setattr__(self, attribute, value)
 
     def __repr__(self) -> str:
@@ -110,7 +113,8 @@ class Curve:
             for values, unit in ((self.depth, "m"), (self.force, "N"))
         )
         name = f" {self.name!r}" if self.name else ""
-        return f"<Curve{name}: {len(self)} points, depth {depth}, force {force}>"
+        note = f"; {self.note}" if self.note else ""
+        return f"<Curve{name}: {len(self)} points, depth {depth}, force {force}{note}>"
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -127,20 +131,103 @@ class Curve:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what pickles and copies are made of; arrays alone would become writable."""
-        return _curve, (self.depth, self.force, self.time, self.name)
+        return _curve, (self.depth, self.force, self.time, self.name, self.note)
 
     def loading(self) -> Curve:
-        """Return the part up to the largest force, with that point.
+        """Return the part in which the force rises to its largest, within the noise.
 
-        A hold at the largest force may lie on both sides. The part before contact is kept, see
-        `between` and `contact_point`.
+        A hold at the largest force is cut, see `hold`; what is before contact is kept, see
+        `between` and `contact_point`, and so are partial unloadings and holds on the way. `note`
+        says so.
         """
-        return self._part(slice(0, int(np.argmax(self.force)) + 1), "up to its largest force")
+        end = arrival(self.force)
+        note = _cut(self, slice(end + 1, departure(self.depth, self.force) + 1), "cut")
+        if (way := held(self.force[end::-1])) is not None:
+            note = _joined(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
+        return self._part(slice(0, end + 1), "up to its largest force", note)
+
+    def hold(self) -> Curve:
+        """Return the hold at the largest force or depth, between `loading` and `unloading`."""
+        last = departure(self.depth, self.force)
+        return self._part(slice(arrival(self.force), last + 1), "in a hold at its largest force")
 
     def unloading(self) -> Curve:
-        """Return the part from the largest force on, with that point."""
-        last = len(self) - 1 - int(np.argmax(self.force[::-1]))
-        return self._part(slice(last, None), "from its largest force on")
+        """Return the part in which the force falls from its largest on, within the noise.
+
+        A hold at the largest force or depth is cut. It ends where a force is held again, see
+        `drift_hold`. `note` says so.
+        """
+        start, drifts = departure(self.depth, self.force), self._drift_hold()
+        note = _cut(self, slice(arrival(self.force), start), "cut")
+        if drifts is not None:
+            note = _joined(note, _cut(self, drifts, "cut with what follows"))
+        end = None if drifts is None else drifts.start
+        return self._part(slice(start, end), "from its largest force on", note)
+
+    def drift_hold(self) -> Curve:
+        """Return the part of the unloading in which the force is held, as to measure drift.
+
+        Instruments do that at a tenth of the largest force. A hold has ten points or more within
+        the noise or 1 % of the force, five times as many as an even ramp has.
+
+        Raises
+        ------
+        ValueError
+            If there is no such part.
+        """
+        if (drifts := self._drift_hold()) is None:
+            raise ValueError("the curve must have a hold during unloading, got none")
+        return self._part(drifts, "in a hold during unloading")
+
+    def _drift_hold(self) -> slice | None:
+        start = departure(self.depth, self.force)
+        found = held(self.force[start:])
+        return None if found is None else slice(start + found.start, start + found.stop)
+
+    def drift(self) -> Drift:
+        """Return the rate at which the depth rises while the force is held.
+
+        Least squares of a line, over the `drift_hold` or, without one, the later half of the
+        `hold`, in which a sample that creeps does so, too.
+
+        Returns
+        -------
+        Drift
+            Rate, its standard error and the number of points; `shifted` takes a drift out.
+
+        Raises
+        ------
+        ValueError
+            If the curve has no time, or no hold.
+
+        Examples
+        --------
+        >>> time = np.arange(120.0)
+        >>> force = np.interp(time, [0, 30, 90, 119], [0.0, 1e-3, 1e-3, 0.0])
+        >>> depth = 100e-9 * force / 1e-3 + 0.05e-9 * time
+        >>> curve = nacre.indent.Curve(depth, force, time=time)
+        >>> print(f"{curve.drift().rate:.3g} m/s")
+        5e-11 m/s
+        >>> curve.loading().note
+        'hold of 59 points at 100 % of the largest force, depth +2.9 nm in 58 s, cut'
+        """
+        if self.time is None:
+            raise ValueError("the curve must have a time for its drift to be known")
+        part = self._drift_hold()
+        if part is None:
+            first, last = arrival(self.force), departure(self.depth, self.force)
+            part = slice((first + last) // 2, last + 1)
+        time, depth = self.time[part], self.depth[part]
+        if time.size < LEAST_POINTS or np.ptp(time) == 0:
+            raise ValueError(
+                f"the curve must have a hold of {LEAST_POINTS} points at different times, got "
+                f"{time.size}"
+            )
+        since = time - time.mean()
+        rate = float(since @ depth / (since @ since))
+        rest = depth - depth.mean() - rate * since
+        error = math.sqrt(float(rest @ rest) / (time.size - 2) / float(since @ since))
+        return Drift(rate, error, time.size)
 
     def between(
         self, low: float = -math.inf, high: float = math.inf, *, by: str = "depth"
@@ -179,7 +266,7 @@ class Curve:
         low, high = low - ROUNDING * abs(low), high + ROUNDING * abs(high)
         return self._part((low <= values) & (values <= high), f"with {by} in the range")
 
-    def shifted(self, *, depth: float = 0.0, force: float = 0.0) -> Curve:
+    def shifted(self, *, depth: float = 0.0, force: float = 0.0, drift: float = 0.0) -> Curve:
         """Return the curve with its zero at this depth and force, which are subtracted.
 
         Parameters
@@ -188,6 +275,8 @@ class Curve:
             Depth of the new zero [m], such as that of `contact_point`.
         force : float
             Force of the new zero [N], such as an offset of the sensor.
+        drift : float
+            Rate at which the depth drifts [m/s], from the first point on, as `drift` has it.
 
         Returns
         -------
@@ -197,7 +286,7 @@ class Curve:
         Raises
         ------
         ValueError
-            If an argument is not finite.
+            If an argument is not finite, or a drift is given without a time.
 
         Examples
         --------
@@ -205,12 +294,19 @@ class Curve:
         >>> curve.shifted(depth=1.0).depth
         array([0., 1., 2.])
         """
-        for name, value in (("depth", depth), ("force", force)):
+        for name, value in (("depth", depth), ("force", force), ("drift", drift)):
             if not math.isfinite(value):
                 raise ValueError(f"{name} must be finite, got {value}")
-        return Curve(self.depth - depth, self.force - force, time=self.time, name=self.name)
+        depths = self.depth - depth
+        if drift:
+            if self.time is None:
+                raise ValueError(f"drift must be 0 for a curve without a time, got {drift}")
+            depths = depths - drift * (self.time - self.time[0])
+        return _curve(depths, self.force - force, self.time, self.name, self.note)
 
-    def _part(self, kept: slice | npt.NDArray[np.bool_], which: str) -> Curve:
+    def _part(
+        self, kept: slice | npt.NDArray[np.bool_], which: str, note: str | None = None
+    ) -> Curve:
         depth = self.depth[kept]
         if depth.size < LEAST_POINTS:
             raise ValueError(
@@ -218,11 +314,45 @@ class Curve:
                 f"{len(self)}"
             )
         time = None if self.time is None else self.time[kept]
-        return Curve(depth, self.force[kept], time=time, name=self.name)
+        return _curve(depth, self.force[kept], time, self.name, note or self.note)
 
 
-def _curve(depth: Array, force: Array, time: Array | None, name: str) -> Curve:
-    return Curve(depth, force, time=time, name=name)
+class Drift(NamedTuple):
+    """The rate at which the depth rises while the force is held."""
+
+    rate: float
+    """Rate [m/s]."""
+    error: float
+    """Standard error by the scatter about a line [m/s]."""
+    points: int
+    """Number of points."""
+
+
+def _curve(depth: Array, force: Array, time: Array | None, name: str, note: str = "") -> Curve:
+    curve = Curve(depth, force, time=time, name=name)
+    object.__setattr__(curve, "note", note)
+    return curve
+
+
+def _joined(*notes: str) -> str:
+    return "; ".join(note for note in notes if note)
+
+
+def _cut(curve: Curve, hold: slice, what: str) -> str:
+    """Return in words what the depth does in a hold, and what became of it; "" without one."""
+    depth, force = curve.depth[hold], curve.force[hold]
+    if depth.size < LEAST_POINTS:
+        return ""
+    share = 100 * float(np.median(force)) / float(curve.force.max())
+    seconds = ""
+    if curve.time is not None:
+        seconds = f" in {written(float(np.ptp(curve.time[hold])), 's')}"
+    creep = written(float(depth[-1] - depth[0]), "m", 2)
+    sign = "" if creep.startswith("-") else "+"
+    return (
+        f"hold of {depth.size} points at {share:.3g} % of the largest force, depth {sign}{creep}"
+        f"{seconds}, {what}"
+    )
 
 
 def _checked(name: str, values: npt.ArrayLike) -> Array:

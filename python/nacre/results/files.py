@@ -158,8 +158,8 @@ def load(path: AnyPath) -> Any:
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
         `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
-        `IndentSolution` or a `Fit` of `nacre.indent`, a `BearingSolution`, `BearingLife`,
-        `StressVolume`, `LifeRatio` or `Film` of `nacre.bearing`.
+        `IndentSolution`, a `Fit` or an `OliverPharr` of `nacre.indent`, a `BearingSolution`,
+        `BearingLife`, `StressVolume`, `LifeRatio` or `Film` of `nacre.bearing`.
 
     Raises
     ------
@@ -202,7 +202,7 @@ def _restored(text: str, arrays: Mapping[str, Array]) -> Any:
     kind = result_class(state.get("kind", "Solution"))
     with refusing(kind.__name__):
         several = isinstance(state.get("steps"), list) and bool(state["steps"])
-        for row in kind._QUANTITIES:
+        for row in (row for row in kind._QUANTITIES if row.dims):  # numbers are no arrays
             if row.name in arrays and several:
                 for step, values in zip(state["steps"], arrays[row.name], strict=True):
                     row.put(step, values)

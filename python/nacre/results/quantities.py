@@ -262,6 +262,28 @@ FIT = (
 )
 """Quantities at the points of the curves of a fit."""
 
+UNLOADING = (
+    Quantity("hardness", "hardness", "Pa", label="hardness"),
+    Quantity("hardness_error", "its standard error", "Pa", label="±"),
+    Quantity("reduced_modulus", "reduced modulus, with the tip", "Pa", label="reduced modulus"),
+    Quantity("reduced_modulus_error", "its standard error", "Pa", label="±"),
+    Quantity("modulus", "E/(1 − ν²) of the sample", "Pa", label="modulus E/(1 − ν²)"),
+    Quantity("modulus_error", "its standard error", "Pa", label="±"),
+    Quantity("stiffness", "slope at the largest depth", "N/m", label="slope"),
+    Quantity("stiffness_error", "its standard error", "N/m", label="±"),
+    Quantity("power", "power of the unloading", label="power m"),
+    Quantity("power_error", "its standard error", label="±"),
+    Quantity("final_depth", "depth at which the law has no force", "m", label="final depth"),
+    Quantity("largest_depth", "largest depth", "m", label="largest depth"),
+    Quantity("largest_force", "force of the law there", "N", label="largest force"),
+    Quantity("contact_depth", "depth of contact", "m", label="contact depth"),
+    Quantity("area", "area of the tip's section there", "m²", label="area"),
+    Quantity("epsilon", "factor ε of the depth of contact", label="ε"),
+    Quantity("beta", "factor β of the modulus", label="β"),
+    Quantity("points", "number of points of the fit", label="points"),
+)
+"""Quantities of an unloading curve."""
+
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
 """Dimensions of numbers of each contact of a bearing, and of its laminae."""
 BEARING = (

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
+from nacre._tools.progress import lasting
 from nacre._tools.typing import AnyPath, Pair, Topography
 from nacre.surfaces import heights as _heights
 from nacre.surfaces.heights import LEAST_MEASURED, METRES, Heights, without_sentinels
+from nacre.surfaces.missing import harmonic
 
 Array = npt.NDArray[np.float64]
 
@@ -111,9 +113,10 @@ def read_map(
         spacing = sides[0] * factor, sides[1] * factor
     is_known = unit is not None or found.unit is not None
     _check_size(name, heights, spacing, is_known, given is not None)
-    heights = _filled(name, heights)
+    wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
+    heights = _filled(name, heights, detrend, wraps)
     try:
-        return core.HeightMap(_without_trend(heights, detrend), spacing, periodic=periodic)
+        return core.HeightMap(heights - _trend(heights, detrend), spacing, periodic=periodic)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from error
 
@@ -198,8 +201,11 @@ def _span(heights: Array) -> float:
     return float(np.ptp(measured)) if measured.size else 0.0
 
 
-def _filled(name: str, heights: Array) -> Array:
-    """Return heights whose missing points are filled harmonically, without new peaks or pits."""
+def _filled(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
+    """Return heights whose missing points are filled harmonically, without new peaks or pits.
+
+    Where the surface repeats, its ends are neighbours once it has no trend.
+    """
     missing = ~np.isfinite(heights)
     count = int(missing.sum())
     if count == 0:
@@ -214,48 +220,15 @@ def _filled(name: str, heights: Array) -> Array:
         core.NacreWarning,
         stacklevel=4,
     )
-    return _harmonic(heights, missing)
+    trend = _trend(heights, detrend if any(wraps) else "none")
+    with lasting(f"filling {count} heights") as tell:
+        return harmonic(heights - trend, wraps, tell or (lambda share: None)) + trend
 
 
-def _harmonic(heights: Array, missing: npt.NDArray[np.bool_]) -> Array:
-    """Solve the discrete Laplace equation over the missing points, by conjugate gradients."""
-    scale = float(np.ptp(heights[~missing])) or 1.0
-    base = float(heights[~missing].mean())
-    known = np.where(missing, 0.0, (heights - base) / scale)
-
-    def neighbours(field: Array) -> Array:
-        total = np.zeros_like(field)
-        total[1:] += field[:-1]
-        total[:-1] += field[1:]
-        total[:, 1:] += field[:, :-1]
-        total[:, :-1] += field[:, 1:]
-        return total
-
-    degree = neighbours(np.ones_like(known))
-
-    def apply(field: Array) -> Array:
-        return np.where(missing, degree * field - neighbours(field), 0.0)
-
-    filled = np.zeros_like(known)
-    residual = np.where(missing, neighbours(known), 0.0)
-    direction, size = residual.copy(), float((residual**2).sum())
-    first = size
-    for _ in range(10 * int(missing.sum())):
-        if size <= 1e-24 * first:
-            break
-        image = apply(direction)
-        step = size / float((direction * image).sum())
-        filled += step * direction
-        residual -= step * image
-        before, size = size, float((residual**2).sum())
-        direction = residual + size / before * direction
-    return np.where(missing, base + scale * filled, heights)
-
-
-def _without_trend(heights: Array, detrend: str) -> Array:
-    """Subtract the mean, the plane or the paraboloid that fits best."""
+def _trend(heights: Array, detrend: str) -> Array:
+    """Return the mean, the plane or the paraboloid that fits measured heights best, or zeros."""
     if detrend == "none":
-        return heights
+        return np.zeros_like(heights)
     x, y = (np.linspace(-1, 1, cells) for cells in heights.shape)
     x, y = np.broadcast_arrays(x[:, np.newaxis], y)
     terms = [np.ones_like(x)]
@@ -264,5 +237,6 @@ def _without_trend(heights: Array, detrend: str) -> Array:
     if detrend == "quadratic":
         terms += [x**2, x * y, y**2]
     basis = np.stack([term.ravel() for term in terms], axis=1)
-    best, *_ = np.linalg.lstsq(basis, heights.ravel())
-    return heights - (basis @ best).reshape(heights.shape)
+    measured = np.isfinite(heights).ravel()
+    best, *_ = np.linalg.lstsq(basis[measured], heights.ravel()[measured])
+    return (basis @ best).reshape(heights.shape)

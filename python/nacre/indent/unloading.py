@@ -1,0 +1,321 @@
+"""Hardness and modulus from the unloading of an indent that yielded, after Oliver and Pharr."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.extras import extra
+from nacre.indent._segments import SPAN, SURE, noise_of
+from nacre.indent.curves import LEAST_POINTS, Curve
+from nacre.results import display
+from nacre.results.listed import Listed
+from nacre.results.quantities import UNLOADING
+
+__all__ = ["OliverPharr", "oliver_pharr", "section"]
+
+Array = npt.NDArray[np.float64]
+
+EPSILON = 0.75
+"""Factor ε of the depth at which a paraboloid's edge is below the surface; used for pyramids, too
+(Oliver and Pharr 1992, doi:10.1557/JMR.1992.1564)."""
+POWERS = 1.0, 2.5
+"""Powers of unloadings: 1 for a flat punch, 2 for a cone, 1.2 to 1.6 measured with a Berkovich tip
+(the same, table I), and half more. Others are no elastic unloading."""
+OFF = 0.02
+"""Share by which the force at the largest depth may differ from the power law: what a modulus to a
+few per cent can bear."""
+
+
+@dataclass(frozen=True, repr=False)
+class OliverPharr(Listed):
+    """Hardness and modulus from an unloading curve.
+
+    Errors are standard errors by the scatter about the power law alone: those of the tip's area,
+    the zero of the depth and the compliance of the machine come in addition.
+    """
+
+    _QUANTITIES = UNLOADING
+    _TITLE = "hardness and modulus from an unloading curve"
+
+    hardness: float
+    """Largest force over area [Pa]."""
+    hardness_error: float
+    """Its standard error [Pa]."""
+    reduced_modulus: float
+    """E_r of the sample and the tip's material together [Pa]."""
+    reduced_modulus_error: float
+    """Its standard error [Pa]."""
+    modulus: float
+    """E/(1 − ν²) of the sample, without the tip's compliance [Pa]."""
+    modulus_error: float
+    """Its standard error [Pa]."""
+    stiffness: float
+    """Slope S of the unloading at the largest depth [N/m]."""
+    stiffness_error: float
+    """Its standard error [N/m]."""
+    power: float
+    """Power m of the law P = a (h − h_p)^m."""
+    power_error: float
+    """Its standard error."""
+    final_depth: float
+    """Depth h_p at which the law has no force [m]."""
+    largest_depth: float
+    """Depth at which the unloading begins [m]."""
+    largest_force: float
+    """Force of the law at the largest depth [N]."""
+    contact_depth: float
+    """Depth of contact h_c [m]."""
+    area: float
+    """Area A(h_c) of the tip's section [m²]."""
+    epsilon: float
+    """Factor ε."""
+    beta: float
+    """Factor β."""
+    points: int
+    """Number of points of the fit."""
+    notes: tuple[str, ...]
+    """What limits the validity. Each but that about films was issued as a warning, too."""
+
+    def __str__(self) -> str:
+        """Return a table."""
+        return display.text(self._rows(), self.notes)
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.notes)
+
+
+ON_FILMS = (
+    "on a film these are numbers of film and substrate together: its own hardness needs contact "
+    "depths below a tenth of its thickness, its modulus still smaller ones"
+)
+"""Note on thin films; the tenth is Bückle's rule (ISO 14577-4 extrapolates to no depth)."""
+
+
+def oliver_pharr(
+    curve: Curve,
+    tip: core.Tip,
+    part: tuple[float, float] = (0.2, 0.98),
+    *,
+    counterbody: core.Elastic | None = None,
+    epsilon: float = EPSILON,
+    beta: float = 1.0,
+) -> OliverPharr:
+    """Hardness and modulus from the unloading of an indent; needs ``nacre-contact[fit]``.
+
+    A power law is fitted to the unloading, and its slope S and force P at the largest depth h give
+    contact depth h_c, hardness H and reduced modulus E_r::
+
+        P = a (h − h_p)^m                     h_c = h − ε P/S
+        H = P/A(h_c)                          E_r = √π/(2 β) S/√A(h_c)
+        1/E_r = (1 − ν²)/E + (1 − ν_i²)/E_i
+
+    Parameters
+    ----------
+    curve : Curve
+        Curve with an unloading, see `Curve.unloading`, whose zero of the depth is the contact.
+    tip : Tip
+        Tip, the area of whose section is A: `Tip.berkovich`, or `Tip.area_function` of a tip that
+        was calibrated.
+    part : tuple of float
+        Shares of the largest force between which points are fitted: the beginning has creep, the
+        end other laws.
+    counterbody : Elastic, optional
+        Material of the tip, such as diamond, ``Elastic(1141e9, 0.07)``; rigid by default.
+    epsilon : float
+        Factor ε: 0.75 for paraboloids and customary for pyramids, 0.72 for cones, 1 for flat
+        punches.
+    beta : float
+        Factor β of tips that are not axisymmetric, 1 in ISO 14577; 1.034 for triangular pyramids
+        by King (1987, doi:10.1016/0020-7683(87)90116-8), 1.05 by Oliver and Pharr (2004).
+
+    Returns
+    -------
+    OliverPharr
+        Numbers with standard errors.
+
+    Raises
+    ------
+    ValueError
+        If the curve has no unloading, too few points in the part, or no contact depth above 0.
+
+    Warns
+    -----
+    NacreWarning
+        If the power is none of an elastic unloading, or the force at the largest depth is not that
+        of the law, as with creep; `OliverPharr.notes` has all of that.
+
+    Notes
+    -----
+    Oliver and Pharr, J. Mater. Res. 7 (1992) 1564-1583, doi:10.1557/JMR.1992.1564, and 19 (2004)
+    3-20, doi:10.1557/jmr.2004.19.1.3. The theory is that of a homogeneous body that sinks in at the
+    edge: material that piles up has a larger area, and both numbers are too large. In a thin film
+    they are those of film and substrate together. Neighbouring residuals that are correlated
+    widen the errors by √((1 + r)/(1 − r)) of their correlation r.
+
+    Examples
+    --------
+    >>> depth = np.linspace(500e-9, 302e-9, 200)
+    >>> force = 10e-3 * ((depth - 300e-9) / 200e-9) ** 1.35
+    >>> curve, tip = nacre.indent.Curve(depth, force), nacre.indent.Tip.berkovich()
+    >>> found = nacre.indent.oliver_pharr(curve, tip)
+    >>> print(f"{found.hardness / 1e9:.2f} GPa, {found.reduced_modulus / 1e9:.1f} GPa")
+    2.70 GPa, 31.1 GPa
+    """
+    low, high = _checked_part(part)
+    for name, factor in (("epsilon", epsilon), ("beta", beta)):
+        if not (isinstance(factor, int | float) and 0 < factor < math.inf):
+            raise ValueError(f"{name} must be positive and finite, got {factor!r}")
+    if counterbody is not None and not isinstance(counterbody, core.Elastic):
+        raise TypeError(f"counterbody must be an Elastic, got {counterbody!r}")
+    if int(np.argmax(curve.force)) > len(curve) - LEAST_POINTS and curve.depth[0] < curve.depth[-1]:
+        raise ValueError(
+            "curve must have an unloading after its largest force, got a loading; one that is "
+            "sorted by depth is Curve(depth[::-1], force[::-1])"
+        )
+    branch = curve.unloading()
+    deepest, size = float(branch.depth.max()), float(branch.force.max())
+    first = int(np.argmax(branch.force <= high * size))
+    below = np.flatnonzero(branch.force[first:] < low * size)
+    chosen = slice(first, first + int(below[0]) if below.size else None)
+    depth, force = branch.depth[chosen], branch.force[chosen]
+    if depth.size <= LEAST_POINTS or np.ptp(depth) == 0:
+        raise ValueError(
+            f"curve must have more than {LEAST_POINTS} points of its unloading between {low:g} and "
+            f"{high:g} of the largest force, got {depth.size}"
+        )
+    law, covariance = _power_law((deepest - depth) / deepest, force / size)
+    units = np.array([size, size / deepest, 1.0])
+    load, slope, power = (float(number) for number in law * units)
+
+    def derived(load: float, slope: float) -> Array:
+        contact = deepest - epsilon * load / slope
+        area = math.pi * section(tip, contact) ** 2
+        reduced = math.sqrt(math.pi / area) * slope / (2 * beta)
+        own = 0.0 if counterbody is None else 1 / counterbody.plane_strain_modulus
+        return np.array([load / area, reduced, 1 / (1 / reduced - own), area, contact])
+
+    if deepest - epsilon * load / slope <= 0:
+        raise ValueError(
+            f"curve must have a contact depth above 0, got {deepest - epsilon * load / slope:.4g} "
+            f"at the largest depth {deepest:.4g}: its depth has another zero"
+        )
+    hardness, reduced, modulus, area, contact = (float(one) for one in derived(load, slope))
+    if not modulus > 0:
+        raise ValueError(
+            f"counterbody must be stiffer than the reduced modulus, {reduced:.4g}, got "
+            f"{counterbody!r}"
+        )
+    # Central differences: small beside the numbers, and large beside their rounding.
+    steps = 1e-5 * np.array([load, slope])
+    rates = np.stack(
+        [
+            (derived(load + one, slope + other) - derived(load - one, slope - other)) / (2 * step)
+            for one, other, step in ((steps[0], 0.0, steps[0]), (0.0, steps[1], steps[1]))
+        ],
+        axis=1,
+    )[:3]
+    covariance = covariance * np.outer(units, units)
+    errors = np.sqrt(np.einsum("ij,jk,ik->i", rates, covariance[:2, :2], rates))
+    notes = _notes(branch, load, slope, power)
+    for note in notes:
+        warnings.warn(note, core.NacreWarning, stacklevel=2)
+    return OliverPharr(
+        hardness=hardness,
+        hardness_error=float(errors[0]),
+        reduced_modulus=reduced,
+        reduced_modulus_error=float(errors[1]),
+        modulus=modulus,
+        modulus_error=float(errors[2]),
+        stiffness=slope,
+        stiffness_error=math.sqrt(float(covariance[1, 1])),
+        power=power,
+        power_error=math.sqrt(float(covariance[2, 2])),
+        final_depth=deepest - power * load / slope,
+        largest_depth=deepest,
+        largest_force=load,
+        contact_depth=contact,
+        area=area,
+        epsilon=float(epsilon),
+        beta=float(beta),
+        points=depth.size,
+        notes=(*notes, ON_FILMS),
+    )
+
+
+def _checked_part(part: tuple[float, float]) -> tuple[float, float]:
+    try:
+        low, high = (float(share) for share in part)
+    except (TypeError, ValueError):
+        raise TypeError(f"part must be two shares of the largest force, got {part!r}") from None
+    if not 0 <= low < high <= 1:
+        raise ValueError(f"part must be two shares, 0 <= low < high <= 1, got {part!r}")
+    return low, high
+
+
+def _power_law(below: Array, force: Array) -> tuple[Array, Array]:
+    """Return P, S and m of P (1 − S x/(m P))^m, over x below the largest depth, with covariance."""
+    with extra("fit"):
+        from scipy.optimize import least_squares
+
+    def law(numbers: Array) -> Array:
+        load, slope, power = numbers
+        return load * np.maximum(1 - slope * below / (power * load), 0.0) ** power - force
+
+    # A line through both ends of the part is less steep, and its force larger, than the law.
+    start = np.array([1.0, float(np.ptp(force) / np.ptp(below)), 1.5])
+    best = least_squares(law, start, x_scale="jac", bounds=([0.1, 0.0, 0.5], [10, np.inf, 10]))
+    rest, rank = best.fun, max(force.size - 3, 1)
+    variance = float(rest @ rest) / rank
+    along = float(rest[1:] @ rest[:-1]) / float(rest @ rest) if variance > 0 else 0.0
+    spread = (1 + along) / (1 - along) if 0 < along < 1 else 1.0
+    return best.x, variance * spread * np.linalg.pinv(best.jac.T @ best.jac)
+
+
+def _notes(branch: Curve, load: float, slope: float, power: float) -> list[str]:
+    notes = []
+    if not POWERS[0] <= power <= POWERS[1]:
+        notes.append(
+            f"the power of the unloading is {power:.3g}, where elastic ones have {POWERS[0]:g} to "
+            f"{POWERS[1]:g}: look at the part, creep and drift"
+        )
+    deepest = int(np.argmax(branch.depth))
+    top = slice(deepest, deepest + LEAST_POINTS)
+    below = float(branch.depth[deepest]) - branch.depth[top]
+    law = load * np.maximum(1 - slope * below / (power * load), 0.0) ** power
+    excess = float(np.mean(branch.force[top] - law)) / load
+    noise = noise_of(branch.force) / load / math.sqrt(LEAST_POINTS)
+    if abs(excess) > OFF + SURE * noise:
+        notes.append(
+            f"the force at the largest depth is {1 + excess:.3g} times that of the power law: the "
+            "sample creeps, or the part begins too low; a longer hold helps"
+        )
+    rises = float(branch.depth.max() - branch.depth[0])
+    if rises > OFF * float(np.ptp(branch.depth)) + SPAN * noise_of(branch.depth):
+        notes.append(
+            f"the depth rises by another {rises:.3g} m after the force began to fall: the sample "
+            "creeps, and the slope is too steep"
+        )
+    return notes
+
+
+def section(tip: core.Tip, depth: float) -> float:
+    """Return the radius of a tip's section at a depth above 0 from its apex."""
+    if tip.kind == "flat_punch":
+        return float(tip.numbers["radius"])
+    low, high = 1e-3 * depth, 1e3 * depth
+    for _ in range(200):
+        middle = math.sqrt(low * high)
+        try:
+            is_inside = float(tip.gap(middle)) < depth
+        except ValueError:
+            is_inside = False
+        low, high = (middle, high) if is_inside else (low, middle)
+        if high / low < 1 + 1e-12:
+            break
+    return middle
