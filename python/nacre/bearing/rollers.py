@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres, pair
+from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres
 
 Array = npt.NDArray[np.float64]
 Profile = core.LogarithmicProfile | core.SampledProfile | Literal["iso16281"] | None
@@ -56,7 +56,6 @@ class _Rollers(Solvable):
             self.profile, core.LogarithmicProfile | core.SampledProfile
         ):
             raise ValueError(f'profile must be a profile, "iso16281" or None, got {self.profile!r}')
-        object.__setattr__(self, "raceway_crown", pair("raceway_crown", self.raceway_crown))
         for radius in self.raceway_crown:
             if radius is not None:
                 above("raceway_crown", radius, -math.inf)
@@ -211,8 +210,7 @@ class CylindricalRoller(_Rollers):
             given = [n for n in ("pitch_diameter", "clearance") if getattr(self, n) is not None]
             if given:
                 raise ValueError(f"{given[0]} must not be given beside raceway_diameters")
-            both = pair("raceway_diameters", self.raceway_diameters)
-            object.__setattr__(self, "raceway_diameters", both)
+            both = self.raceway_diameters
             for value in both:
                 above("raceway_diameters", value)
             if both[0] >= both[1]:
@@ -510,9 +508,9 @@ class SphericalRoller(Solvable):
         super().__post_init__()
         above("length", self.length)
         self._check_given_pitch()
-        if isinstance(self.rows, bool) or self.rows not in (1, 2):
+        if self.rows not in (1, 2):
             raise ValueError(f"rows must be 1 or 2, got {self.rows!r}")
-        if self.contact_angle != 0 or isinstance(self.contact_angle, bool):
+        if self.contact_angle != 0:
             _check_angle(self.contact_angle)
         check_flag("free_ends", self.free_ends)
         above("profile_radius", self.profile_radius)
