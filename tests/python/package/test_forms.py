@@ -14,7 +14,7 @@ import pytest
 import xarray
 
 import nacre
-from bodies import BALL, COATED, ROD, STEEL, quiet
+from bodies import BALL, COATED, STEEL, quiet
 from nacre import bearing, design, fatigue, hertz, indent, rough
 from nacre.indent import charts
 
@@ -22,8 +22,7 @@ Array = npt.NDArray[Any]
 
 GRID = nacre.Grid((16, 20), (3e-4, 3.3e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
-SOLUTION = CONTACT.solve(BALL, load=10.0)
-LINE = nacre.solve(ROD, STEEL, load=1e4, grid=nacre.Grid.line(24, 2e-4))
+SOLUTION = quiet(CONTACT.solve, BALL, load=10.0)
 TIP = indent.Tip.sphere(1e-5)
 STATE = indent.Indentation(STEEL, TIP).at(load=1e-3)
 ROLLERS = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
@@ -59,6 +58,10 @@ def pressed(**given: Any) -> Array:
     return asserted(quiet(nacre.solve, BALL, STEEL, grid=GRID, **({"load": 10.0} | given)))
 
 
+def solved(contact: nacre.Contact, **given: Any) -> Array:
+    return asserted(quiet(contact.solve, BALL, load=10.0, **given))
+
+
 def slid(**given: Any) -> Array:
     found = quiet(
         nacre.slide, BALL, STEEL, grid=GRID, **({"load": 10.0, "tolerance": 1e-4} | given)
@@ -77,7 +80,7 @@ def stressed(**given: Any) -> Array:
 
 
 def summed(**given: Any) -> Array:
-    layered = nacre.solve(BALL, COATED, load=10.0, grid=GRID)
+    layered = quiet(nacre.solve, BALL, COATED, load=10.0, grid=GRID)
     return np.array([row.von_mises[0] for row in quiet(layered.stress_summary, **given).layers])
 
 
@@ -145,13 +148,11 @@ def gradient(output: Any) -> Array:
     return quiet(SOLUTION.gradient, output).gap
 
 
-LAYERED = nacre.HalfSpace(STEEL, [nacre.Layer(STEEL, 1.0)])
-
 MAPS: dict[str, Argument] = {
     "HeightMap": Argument(MAP, surface),
     "Contact(coefficients)": Argument(
         single(nacre.influence_coefficients(STEEL, GRID)),
-        lambda a: asserted(nacre.Contact(STEEL, GRID, coefficients=a).solve(BALL, load=10.0)),
+        lambda a: solved(nacre.Contact(STEEL, GRID, coefficients=a)),
     ),
     "Convolution": Argument(MAP, lambda a: nacre.Convolution(a).apply(MAP)),
     "Convolution.apply": Argument(
@@ -159,15 +160,13 @@ MAPS: dict[str, Argument] = {
     ),
     "solve(hardness)": Argument(MAP * 2e9, lambda a: pressed(hardness=a)),
     "solve(initial)": Argument(MAP, lambda a: pressed(initial=a)),
-    "Contact.solve(hardness)": Argument(
-        MAP * 2e9, lambda a: asserted(CONTACT.solve(BALL, load=10.0, hardness=a))
-    ),
-    "Contact.solve(initial)": Argument(
-        MAP, lambda a: asserted(CONTACT.solve(BALL, load=10.0, initial=a))
-    ),
+    "Contact.solve(hardness)": Argument(MAP * 2e9, lambda a: solved(CONTACT, hardness=a)),
+    "Contact.solve(initial)": Argument(MAP, lambda a: solved(CONTACT, initial=a)),
     "Contact.solve_many(hardness)": Argument(
         MAP * 2e9,
-        lambda a: asserted(CONTACT.solve_many([{"shape": BALL, "load": 10.0}], hardness=a)[0]),
+        lambda a: asserted(
+            quiet(CONTACT.solve_many, [{"shape": BALL, "load": 10.0}], hardness=a)[0]
+        ),
     ),
     "slide(friction)": Argument(MAP, lambda a: slid(friction=a, force=(0.5, 0.0))),
     "Contact.slide(friction)": Argument(
@@ -515,7 +514,7 @@ WRONG: dict[str, tuple[str, str, Callable[[Array], Any]]] = {
     "hardness of a plan": (
         "hardness",
         "above 0",
-        lambda a: CONTACT.solve(BALL, load=10.0, hardness=a),
+        lambda a: solved(CONTACT, hardness=a),
     ),
     "initial": ("initial", "at least 0|negative|below 0", lambda a: pressed(initial=a)),
     "friction": ("friction", "at least 0", lambda a: slid(friction=a)),

@@ -13,15 +13,15 @@ from nacre import bearing, fatigue, indent, rough
 
 GRID = nacre.Grid((16, 20), (3e-4, 3.3e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
-SOLUTION = CONTACT.solve(BALL, load=10.0)
-LAYERED = nacre.solve(BALL, COATED, load=10.0, grid=GRID)
+SOLUTION = quiet(CONTACT.solve, BALL, load=10.0)
+LAYERED = quiet(nacre.solve, BALL, COATED, load=10.0, grid=GRID)
 BALLS: dict[str, Any] = {"count": 9, "diameter": 8e-3, "pitch_diameter": 39e-3}
 ROLLERS: dict[str, Any] = {"count": 14, "diameter": 0.01, "length": 0.009, "pitch_diameter": 0.065}
 BARRELS: dict[str, Any] = {
     **{"count": 16, "diameter": 12e-3, "length": 11e-3, "pitch_diameter": 78e-3},
     **{"contact_angle": 0.2, "profile_radius": 0.04},
 }
-TURNED = bearing.DeepGrooveBall(**BALLS).solve(force=(64.0, 0.0, None), cells=(16, 16))
+TURNED = quiet(bearing.DeepGrooveBall(**BALLS).solve, force=(64.0, 0.0, None), cells=(16, 16))
 
 
 def table(path: Path) -> Path:
@@ -72,15 +72,24 @@ INTEGERS: dict[str, tuple[int, Callable[[Any], Any]]] = {
     "influence_coefficients": (2, lambda n: nacre.influence_coefficients(STEEL, GRID, "plain", n)),
     "solve(max_cells)": (
         4096,
-        lambda n: nacre.solve(BALL, STEEL, load=1.0, max_cells=n, tolerance=1e-2),
+        lambda n: quiet(nacre.solve, BALL, STEEL, load=1.0, max_cells=n, tolerance=1e-2),
     ),
-    "solve(threads)": (1, lambda n: nacre.solve(BALL, STEEL, load=1.0, grid=GRID, threads=n)),
-    "solve(max_iterations)": (99, lambda n: CONTACT.solve(BALL, load=1.0, max_iterations=n)),
+    "solve(threads)": (
+        1,
+        lambda n: quiet(nacre.solve, BALL, STEEL, load=1.0, grid=GRID, threads=n),
+    ),
+    "solve(max_iterations)": (99, lambda n: quiet(CONTACT.solve, BALL, load=1.0, max_iterations=n)),
     "slide(max_convolutions)": (4000, lambda n: frictional(max_convolutions=n)),
     "roll(cells)": (2, lambda n: rolled(cells=n)),
     "creep_coefficients": (8, lambda n: nacre.creep_coefficients(STEEL, None, (1.0, 2.0), cells=n)),
-    "stress(threads)": (1, lambda n: nacre.stress(STEEL, GRID, SOLUTION.pressure, 1e-5, threads=n)),
-    "stress(residual by layer)": (1, lambda n: LAYERED.stress([3e-5], x=0.0, residual={n: 1e8})),
+    "stress(threads)": (
+        1,
+        lambda n: quiet(nacre.stress, STEEL, GRID, SOLUTION.pressure, 1e-5, threads=n),
+    ),
+    "stress(residual by layer)": (
+        1,
+        lambda n: quiet(LAYERED.stress, [3e-5], x=0.0, residual={n: 1e8}),
+    ),
     "gradient(layer)": (
         0,
         lambda n: quiet(LAYERED.gradient, {"stress": "von_mises", "layer": n}).value,
@@ -115,7 +124,7 @@ FILES: dict[str, tuple[int, Callable[[Path, Any], Any]]] = {
 NUMBERS: dict[str, tuple[float, Callable[[Any], Any]]] = {
     "Elastic": (0.25, lambda x: nacre.Elastic(1.0, x)),
     "Sphere": (0.25, nacre.Sphere),
-    "solve(load)": (0.25, lambda x: CONTACT.solve(BALL, load=x).pressure),
+    "solve(load)": (0.25, lambda x: quiet(CONTACT.solve, BALL, load=x).pressure),
     "diameter": (2.0**-7, lambda x: bearing.DeepGrooveBall(**BALLS | {"diameter": x})),
     "clearance": (2.0**-16, lambda x: bearing.DeepGrooveBall(**BALLS, clearance=x)),
     "length": (2.0**-7, lambda x: bearing.CylindricalRoller(**ROLLERS | {"length": x})),
