@@ -95,6 +95,9 @@ def random_surface(
     with surfaces():
         from SurfaceTopography.Generation import fourier_synthesis
 
+    nx, ny = (core.integer("shape", count) for count in core.vector("shape", 2, shape))
+    lx, ly = (core.real("size", side) for side in core.vector("size", 2, size))
+    shape, size, seed = (nx, ny), (lx, ly), core.integer("seed", seed)
     if not 0 < hurst <= 1:
         raise ValueError(f"hurst must be above 0 and at most 1, got {hurst}")
     finest = 2 * max(side / n for side, n in zip(size, shape, strict=True))

@@ -232,7 +232,7 @@ class Bearing(ABC):
         """
         number = RINGS.index(ring)
         found = 1 / self.radius + (1, -1)[number] / self.raceways[number]
-        return np.full(np.shape(x), found)
+        return np.full(core.real_array("x", x).shape, found)
 
     @cached_property
     def modulus(self) -> tuple[float, float]:

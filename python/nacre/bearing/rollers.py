@@ -403,7 +403,7 @@ class TaperedRoller(_Rollers):
         numpy.ndarray
             Curvatures: both radii are proportional to the distance from the apex.
         """
-        return super().curvature(ring) / (1 - np.asarray(x) / self.apex)
+        return super().curvature(ring) / (1 - core.real_array("x", x) / self.apex)
 
     @property
     def mass(self) -> float:
@@ -596,7 +596,7 @@ class SphericalRoller(Solvable):
             Curvatures, with the radius of the raceway in its middle.
         """
         raceway = super().curvature(ring) - 1 / self.radius
-        return 1 / self._own_radius(np.asarray(x)) + raceway
+        return 1 / self._own_radius(core.real_array("x", x)) + raceway
 
     def drop(self, ring: Ring, laminae: int = 40) -> Array:
         """Drop of a roller from the raceway at the middles of laminae [m]."""

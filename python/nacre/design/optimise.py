@@ -195,7 +195,7 @@ def optimise(
         raise ValueError(f"tolerance must be above 0, got {tolerance!r}")
     scales = scales_of(start, bounds or {})
     problem = Problem(build, scales, objective, _cases(cases), _limits(constraints), across)
-    problem.most, problem.tolerance = max_solves, tolerance
+    problem.most, problem.tolerance = core.integer("max_solves", max_solves), tolerance
     if not isinstance(grid, core.Grid | Sequence | None) or grid == ():
         raise TypeError(f"grid must be a Grid or a sequence of them, got {grid!r}")
     grids: Sequence[core.Grid | None] = (

@@ -175,8 +175,9 @@ def information(
         values["body.substrate.young"] = 1.0
     test: Any = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
     rows = []
-    for largest in np.atleast_1d(np.asarray(reach)):
-        depth = float(test.at(radius=float(largest)).approach)
+    points = core.integer("points", points)
+    for largest in np.atleast_1d(core.real_array("reach", reach)).tolist():
+        depth = float(test.at(radius=largest).approach)
         made = test.curve(approach=np.linspace(0.05, 1.0, points) * depth, wrt=list(values))
         slopes = np.asarray(made.derivatives).T
         slopes = slopes * np.array(list(values.values()))[:, None] / made.load
