@@ -3,6 +3,7 @@
 pub(crate) mod ball;
 pub(crate) mod dense;
 pub(crate) mod fft;
+pub(crate) mod layout;
 pub(crate) mod linear_cg;
 pub(crate) mod parallel;
 pub(crate) mod quadrature;

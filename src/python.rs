@@ -27,7 +27,7 @@ mod value;
 #[pymodule(name = "_core")]
 mod core {
     #[pymodule_export]
-    use super::arguments::plain;
+    use super::arguments::{integer, number, plain, py_real_array, vector};
     use super::bodies::{self, PyFree, PyRigid};
     #[pymodule_export]
     use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse, PySpring};

@@ -20,6 +20,7 @@ mod contact {
     mod fuzz;
     mod hardness;
     mod invariants;
+    mod layouts;
     mod line;
     mod matrix;
     mod periodic;

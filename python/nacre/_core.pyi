@@ -51,9 +51,12 @@ __all__ = [
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
+    "integer",
     "layer_values",
     "numbers",
     "plain",
+    "real",
+    "real_array",
     "relative_radii",
     "roll",
     "shakedown",
@@ -65,6 +68,7 @@ __all__ = [
     "stress_summary",
     "stress_under",
     "surface_compliance",
+    "vector",
     "with_value",
 ]
 
@@ -552,23 +556,20 @@ class Tip:
     @staticmethod
     def paraboloid(radius: float) -> Tip: ...
     @staticmethod
-    def cone(slope: float | None = None, *, half_angle: float | None = None) -> Tip: ...
+    def cone(*, slope: float | None = None, half_angle: float | None = None) -> Tip: ...
     @staticmethod
     def flat_punch(radius: float) -> Tip: ...
     @staticmethod
     def power(factor: float, exponent: float) -> Tip: ...
     @staticmethod
     def rounded_cone(
-        slope: float | None = None,
-        radius: float | None = None,
-        *,
-        half_angle: float | None = None,
+        radius: float, *, slope: float | None = None, half_angle: float | None = None
     ) -> Tip: ...
     @staticmethod
     def rounded_punch(flat: float, radius: float) -> Tip: ...
     @staticmethod
     def flat_cone(
-        flat: float, slope: float | None = None, *, half_angle: float | None = None
+        flat: float, *, slope: float | None = None, half_angle: float | None = None
     ) -> Tip: ...
     @staticmethod
     def profile(radii: _Vector, heights: _Vector) -> Tip: ...
@@ -659,6 +660,10 @@ def influence_coefficients(
     body: _Body, grid: Grid, method: _Method, refinement: int | None
 ) -> _Field: ...
 def plain(name: str, value: Any) -> Any: ...
+def real(name: str, value: Any) -> float: ...
+def real_array(name: str, value: Any) -> _Field: ...
+def integer(name: str, value: Any) -> int: ...
+def vector(name: str, length: int, value: Any) -> list[float | None]: ...
 def solve(given: _Given, plan: Plan | None = None) -> Solved: ...
 def slide(
     given: _Given, steps: list[_Given] | None = None, plan: Plan | None = None

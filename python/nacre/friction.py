@@ -188,9 +188,7 @@ def creep_curve(
     with extra("files"):
         import xarray
 
-    values = np.asarray(core.plain("creepages", creepages))
-    if values.dtype.kind not in "biuf":
-        raise TypeError(f"creepages must be real numbers, got {creepages!r}")
+    values = core.real_array("creepages", creepages)
     if values.ndim != 1 or values.size == 0:
         raise ValueError(f"creepages must be a sequence of numbers, got shape {values.shape}")
     for name in ("creepage", "force", "cells", "initial"):

@@ -147,9 +147,7 @@ def solver(
 
 def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     """Return an array of float64."""
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        value = float(value)
-    array = jnp.asarray(value)
+    array = value if isinstance(value, jax.Array) else jnp.asarray(core.real_array(name, value))
     if array.dtype != np.float64 or array.shape != shape:
         raise TypeError(
             f"{name} must be float64 of shape {shape}, got {array.dtype} of shape {array.shape}"

@@ -95,6 +95,9 @@ def random_surface(
     with surfaces():
         from SurfaceTopography.Generation import fourier_synthesis
 
+    nx, ny = (core.integer("shape", count) for count in core.vector("shape", 2, shape))
+    lx, ly = (core.real("size", side) for side in core.vector("size", 2, size))
+    shape, size, seed = (nx, ny), (lx, ly), core.integer("seed", seed)
     if not 0 < hurst <= 1:
         raise ValueError(f"hurst must be above 0 and at most 1, got {hurst}")
     finest = 2 * max(side / n for side, n in zip(size, shape, strict=True))
@@ -302,7 +305,8 @@ def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
     (True, True)
     """
     _check(surface)
-    if not (isinstance(taper, int | float) and 0 < taper <= 0.5):
+    taper = core.real("taper", taper)
+    if not 0 < taper <= 0.5:
         raise ValueError(f"taper must be above 0 and at most 0.5, got {taper!r}")
     mean = surface.heights.mean()
     heights = surface.heights - mean
@@ -358,8 +362,9 @@ def load_curve(
     with extra("files"):
         import xarray
 
-    values = np.asarray(core.plain("pressures", list(pressures)), dtype=np.float64)
-    if values.size == 0 or not (np.isfinite(values).all() and (values > 0).all()):
+    values = core.real_array("pressures", pressures)
+    positive = np.isfinite(values) & (values > 0)
+    if values.ndim != 1 or values.size == 0 or not positive.all():
         raise ValueError(f"pressures must be numbers above 0, at least one, got {pressures!r}")
     if grid is None and not isinstance(shape, core.HeightMap):
         raise ValueError("grid must be given for a shape that is not a map")
@@ -526,7 +531,8 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
     with extra("files"):
         import xarray
 
-    if isinstance(bins, bool) or not isinstance(bins, int) or bins < 1:
+    bins = core.integer("bins", bins)
+    if bins < 1:
         raise ValueError(f"bins must be a whole number of at least 1, got {bins!r}")
     highest = float(values.max()) if values.size and values.max() > 0 else 1.0
     numbers, edges = np.histogram(values, bins, (0.0, highest))

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple, Protocol
 
-import numpy as np
-
 import nacre._core as core
 from nacre._tools.extras import extra
 from nacre._tools.typing import Body
@@ -131,10 +129,11 @@ def solver(
 
 def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     """Return a tensor of float64 on the CPU."""
-    if isinstance(value, int | float | np.number | np.ndarray) and not isinstance(value, bool):
-        value = torch.tensor(float(value) if shape == () else value, dtype=torch.float64)
     if not isinstance(value, torch.Tensor):
-        raise TypeError(f"{name} must be a number or a tensor, got {value!r}")
+        try:
+            value = torch.tensor(core.real_array(name, value), dtype=torch.float64)
+        except TypeError:
+            raise TypeError(f"{name} must be a number or a tensor, got {value!r}") from None
     if value.dtype != torch.float64 or tuple(value.shape) != shape or value.device.type != "cpu":
         raise TypeError(
             f"{name} must be float64 of shape {shape} on the CPU, "

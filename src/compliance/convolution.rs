@@ -12,6 +12,7 @@ use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
 use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
 
 mod addition;
@@ -254,13 +255,12 @@ impl Convolution {
         if let missing @ 1.. = self.transform.missing(&workspace.0.fft) {
             check_memory(self.shape, missing)?;
         }
-        let standard = pressure.as_standard_layout();
-        let input = standard.as_slice().unwrap_or(&[]);
+        let input = slice(pressure);
         if let Some(output) = displacement.as_slice_mut() {
-            self.apply_slices(input, output, workspace);
+            self.apply_slices(&input, output, workspace);
         } else {
             let mut output = vec![0.0; input.len()];
-            self.apply_slices(input, &mut output, workspace);
+            self.apply_slices(&input, &mut output, workspace);
             displacement.iter_mut().zip(output).for_each(|(d, o)| *d = o);
         }
         match displacement.iter().all(|d| d.is_finite()) {

@@ -28,6 +28,7 @@ use crate::contact::start::{checked_gaps, uniform_pressure};
 use crate::error::Result;
 use crate::model::grid::{Grid, full_window, repeating};
 use crate::model::surface::Surface;
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Rows, all, update, update_with_largest};
 
 /// Tolerance on coarser grids, whose results tell the discretisation error. With 1e-4, estimates of peak pressures on hard
@@ -313,7 +314,8 @@ impl<'a> LevelProblem<'a> {
     /// Takes the pressure from cells that cannot touch, and balances it. False where that is impossible.
     fn balance(&self, patch: &mut Patch) -> bool {
         let pressures = patch.values.chunks_exact_mut(patch.window[1].len().max(1));
-        for (p, gaps) in pressures.zip(patch::rows(&self.gap, &patch.window)) {
+        let gap = slice(&self.gap);
+        for (p, gaps) in pressures.zip(patch::rows(&gap, self.shape()[1], &patch.window)) {
             update([gaps], [p], |[h], [p]| ([h.simd_lt(all(f64::INFINITY)) & p], []));
         }
         self.freedoms

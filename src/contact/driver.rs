@@ -14,7 +14,7 @@ use crate::contact::options::{Algorithm, Motion, Options};
 use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
-use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
+use crate::contact::problem::{Problem, Quality, SolutionFields};
 use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
@@ -23,6 +23,7 @@ use crate::contact::start::{
 };
 use crate::error::{Error, Result};
 use crate::model::surface::{Lifted, Surface};
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::Rows;
 
 /// Options of a solve, and the callback that watches it, if there is one: [`Options::watched`].
@@ -173,7 +174,7 @@ impl Contact {
         let elastic = Problem {
             convolution: self.convolution(),
             freedoms: &freedoms,
-            gap: slice(&gap),
+            gap: &slice(&gap),
             bounds: &Bounds::none(columns),
             local: &self.levels[0].local,
         };
@@ -182,15 +183,15 @@ impl Contact {
         }
         let (mut outcome, results) = steps.iterate(&elastic, &gap, &mut fields, tally)?;
         let exceeded = |limits: &Bounds| {
-            let mut cells = slice(&fields.pressure).iter().enumerate();
-            cells.any(|(k, p)| *p > limits.limit(k))
+            let pressures = slice(&fields.pressure);
+            pressures.iter().enumerate().any(|(k, p)| *p > limits.limit(k))
         };
         let stopped = outcome.termination == Termination::Stopped;
         let limits = limits.filter(|limits| !stopped && exceeded(limits));
         let problem = Problem { bounds: limits.as_ref().unwrap_or(elastic.bounds), ..elastic };
         if problem.bounds.is_limited() {
             let g = fields.gap(&problem);
-            let start = yielding_pressure(&problem, slice(&fields.pressure), &g)?;
+            let start = yielding_pressure(&problem, &slice(&fields.pressure), &g)?;
             fields.pressure.fill(0.0);
             outcome = steps.solve_from(start, &problem, &gap, &mut fields, tally)?;
         }

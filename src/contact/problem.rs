@@ -25,6 +25,7 @@ use crate::contact::problem::bounds::{Bounds, is_below, not_allowed, residual};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::Patch;
 use crate::model::grid::{Grid, Window};
+use crate::numerics::layout::{slice, slice_mut};
 use crate::numerics::parallel::{
     Lanes, ONE, Row, Rows, Total, ZERO, all, sum, update, update_with_largest, where_positive,
 };
@@ -367,7 +368,7 @@ impl SolutionFields {
     /// The gap.
     pub(crate) fn gap(&self, problem: &Problem) -> Vec<f64> {
         let mut g = vec![0.0; problem.gap.len()];
-        problem.gap_into(slice(&self.displacement), self.multipliers, &mut g);
+        problem.gap_into(&slice(&self.displacement), self.multipliers, &mut g);
         g
     }
 
@@ -398,7 +399,7 @@ impl SolutionFields {
         let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
         let u = slice_mut(&mut self.displacement);
-        let (multipliers, quality) = problem.judge(p, window, u, near, workspace);
+        let (multipliers, quality) = problem.judge(&p, window, u, near, workspace);
         self.multipliers = multipliers;
         self.quality = Some(quality);
         quality
@@ -408,16 +409,6 @@ impl SolutionFields {
 /// Values in C order as an array.
 pub(crate) fn array(shape: [usize; 2], values: Vec<f64>) -> Array2<f64> {
     Array2::from_shape_vec(shape, values).unwrap_or_else(|_| Array2::zeros(shape))
-}
-
-/// The values of an array that was made in C order.
-pub(crate) fn slice(array: &Array2<f64>) -> &[f64] {
-    array.as_slice().unwrap_or(&[])
-}
-
-/// The values of an array that was made in C order, to be written.
-pub(crate) fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
-    array.as_slice_mut().unwrap_or(&mut [])
 }
 
 /// Local displacements of contacts of any number of cells, to which residual and overlap are compared.

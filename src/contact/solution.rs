@@ -22,6 +22,7 @@ use crate::contact::solver::{Solver, Termination};
 use crate::error::{Error, Result, all_finite, finite, same_shape};
 use crate::model::grid::{Grid, Window, full_window};
 use crate::model::surface::Surface;
+use crate::numerics::layout::{slice, slice_mut};
 use crate::numerics::parallel::{Row, update_with_largest};
 
 /// A solved contact. Arrays are (nx, ny), at cell centres.
@@ -363,15 +364,12 @@ impl Gap {
             Self::Known(gap) => return gap.clone(),
         };
         let mut gap = Array2::zeros(undeformed.dim());
-        // A user may have replaced the displacement.
-        let displacement = displacement.as_standard_layout();
-        let fields = gap.rows_mut().into_iter().zip(displacement.rows());
-        let rows = fields.zip(undeformed.rows()).enumerate();
-        let [x, y] = &freedoms.columns;
-        for ((number, ((g, u), h)), &x) in rows.zip(x) {
-            if let (Some(g), Some(u), Some(h)) = (g.into_slice(), u.to_slice(), h.to_slice()) {
-                multipliers.gap(Row { number, x, y }, [u, h], g);
-            }
+        let (columns, [x, y]) = (undeformed.ncols(), &freedoms.columns);
+        let [u, h] = [slice(displacement), slice(undeformed)];
+        let [u, h] = [&u, &h].map(|values| values.chunks_exact(columns));
+        let rows = slice_mut(&mut gap).chunks_exact_mut(columns).zip(u.zip(h)).enumerate();
+        for ((number, (g, (u, h))), &x) in rows.zip(x) {
+            multipliers.gap(Row { number, x, y }, [u, h], g);
         }
         gap
     }
@@ -519,7 +517,7 @@ impl Carried {
     pub(crate) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
         let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
         let mut carried = Self::default();
-        for (row, x) in rows(pressure, window).zip(x) {
+        for (row, x) in rows(&slice(pressure), grid.shape()[1], window).zip(x) {
             let ([peak], [force, moment]) =
                 update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
             carried.force += force;

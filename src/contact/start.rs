@@ -4,10 +4,11 @@ use std::sync::{Arc, Weak};
 
 use ndarray::{Array2, ArrayRef2};
 
-use crate::contact::problem::{Problem, array, slice};
+use crate::contact::problem::{Problem, array};
 use crate::error::{Error, Result, none_negative, same_shape};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;
+use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::{ONE, Rows, all, sum};
 
 /// Gaps of the shape that was sampled last on one grid, kept while a solution has them.
@@ -35,18 +36,16 @@ impl<'a> Sampled<'a> {
 
 /// Gaps of `shape` on `grid`, finite or +∞.
 pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Result<Array2<f64>> {
-    let gaps = shape.gaps(grid)?;
+    let mut gaps = shape.gaps(grid)?;
     same_shape("shape", &gaps, grid.shape())?;
-    let gaps =
-        if gaps.is_standard_layout() { gaps } else { gaps.as_standard_layout().into_owned() };
-    let lowest = f64::NEG_INFINITY;
-    let [good] = rows
-        .each([slice(&gaps)], [], |_, gaps, []| sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE]));
+    let (values, lowest) = (&*slice_mut(&mut gaps), f64::NEG_INFINITY);
+    let [good] =
+        rows.each([values], [], |_, gaps, []| sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE]));
     // Counts of cells are exact in f64.
-    if good < gaps.len() as f64 {
+    if good < values.len() as f64 {
         let columns = grid.shape()[1];
         let bad = |h: &f64| h.is_nan() || *h <= lowest;
-        let cell = slice(&gaps).iter().position(bad).unwrap_or(0);
+        let cell = values.iter().position(bad).unwrap_or(0);
         return Err(Error::NonFinite { name: "shape", index: [cell / columns, cell % columns] });
     }
     Ok(gaps)

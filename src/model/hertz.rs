@@ -3,7 +3,7 @@
 //! E* is the contact modulus, with 1/E* = Σ (1−ν²)/E over both bodies. All solutions are from
 //! K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), doi:10.1017/CBO9781139171731.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::material::Elastic;
@@ -99,7 +99,11 @@ pub fn relative_radii(
     let found = [1.0 / smaller, 1.0 / larger];
     // Cylinders at a smaller angle than some 1e-8 are parallel but for rounding.
     if smaller > f64::EPSILON * larger && found.iter().all(|radius| radius.is_finite()) {
-        return Ok((found, 0.5 * (0.0 - mixed).atan2(-half)));
+        // The rounding of an angle is no turn, and an axis at −π/2 is one at π/2.
+        let rounding = f64::EPSILON * angle.abs().max(1.0) * (along - across).abs();
+        let mixed = if mixed.abs() > rounding { mixed } else { 0.0 };
+        let turn = 0.5 * (0.0 - mixed).atan2(-half);
+        return Ok((found, if turn > -FRAC_PI_2 { turn } else { FRAC_PI_2 }));
     }
     Err(Error::Inconsistent(
         "radii and counter_radii must be convex together in every direction (parallel cylinders touch along a line)",

@@ -14,6 +14,7 @@ use ndarray::{Array2, Axis};
 
 use crate::error::{Error, Result, finite, refuse_if};
 use crate::model::grid::Grid;
+use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::each_row;
 
 pub use height_map::HeightMap;
@@ -25,13 +26,11 @@ pub use roller::Roller;
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {
     let [nx, ny] = grid.shape();
     let mut values = Array2::zeros((nx, ny));
-    if let Some(values) = values.as_slice_mut() {
-        each_row(values, ny, |i, row| {
-            for (j, cell) in row.iter_mut().enumerate() {
-                *cell = value(i, j);
-            }
-        });
-    }
+    each_row(slice_mut(&mut values), ny, |i, row| {
+        for (j, cell) in row.iter_mut().enumerate() {
+            *cell = value(i, j);
+        }
+    });
     values
 }
 

@@ -11,10 +11,15 @@ use numpy::{
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyComplex, PyDict, PyFloat, PyInt, PyList, PyTuple};
+use pyo3::types::{IntoPyDict, PyBool, PyComplex, PyDict, PyFloat, PyList, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde::de::value::StrDeserializer;
+
+mod labels;
+
+pub(super) use labels::Coordinate;
+use labels::{axes, in_si};
 
 /// A real number from Python, for arguments. An integer beyond the largest f64 becomes infinite, so that
 /// whoever takes the number refuses it by name.
@@ -25,13 +30,17 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Real {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if object.cast_exact::<PyFloat>().is_err() && (is_complex(&object)? || has_unit(&object)?) {
-            return Err(no_real_number(&object));
+        if let Ok(number) = object.cast_exact::<PyFloat>() {
+            return Ok(Self(number.value()));
         }
-        match object.extract::<f64>() {
+        let in_si = if is_bool_or_complex(&object)? { None } else { in_si(&object)? };
+        let Some(number) = in_si else {
+            return Err(no_real_number(&object));
+        };
+        match number.extract::<f64>() {
             Ok(number) => Ok(Self(number)),
             Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
-                let negative = object.lt(0)?;
+                let negative = number.lt(0)?;
                 Ok(Self(if negative { f64::NEG_INFINITY } else { f64::INFINITY }))
             }
             Err(_) => Err(no_real_number(&object)),
@@ -43,13 +52,13 @@ fn no_real_number(object: &Bound<'_, PyAny>) -> PyErr {
     PyTypeError::new_err(format!("expected a real number, got {}", Repr(object)))
 }
 
-/// Whether `object` is a complex number of Python or NumPy, which the latter would make real.
-fn is_complex(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+/// Whether `object` is a bool or a complex number of Python or NumPy, which would be made real.
+fn is_bool_or_complex(object: &Bound<'_, PyAny>) -> PyResult<bool> {
     let Some(dtype) = object.getattr_opt("dtype")? else {
-        return Ok(object.cast::<PyComplex>().is_ok());
+        return Ok(object.cast::<PyBool>().is_ok() || object.cast::<PyComplex>().is_ok());
     };
     match dtype.getattr_opt("kind")? {
-        Some(kind) => kind.eq("c"),
+        Some(kind) => Ok(kind.eq("b")? || kind.eq("c")?),
         None => Ok(false),
     }
 }
@@ -59,7 +68,38 @@ pub(super) fn real(object: &Bound<'_, PyAny>) -> PyResult<f64> {
     Ok(object.extract::<Real>()?.0)
 }
 
-/// Two real numbers from any sequence of Python, for arguments.
+/// Items of a list, a tuple, or an array.
+pub(super) fn listed<'py>(object: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let mut object = plain("sequence", object.clone())?;
+    if !object.is_instance_of::<PyList>() {
+        let array = get_array_module(object.py())?.call_method1("asarray", (&object,))?;
+        if array.getattr("ndim")?.eq(0)? {
+            return Err(PyTypeError::new_err(format!(
+                "expected a sequence, got {}",
+                Repr(&object)
+            )));
+        }
+        object = array.call_method0("tolist")?;
+    }
+    object.try_iter()?.collect()
+}
+
+/// The two items of a list, a tuple, or an array, for arguments.
+pub(super) struct Two<'py>(pub(super) [Bound<'py, PyAny>; 2]);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Two<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let items = listed(&object)?;
+        let count = items.len();
+        items.try_into().map(Self).map_err(|_| {
+            PyValueError::new_err(format!("expected a sequence of length 2 (got {count})"))
+        })
+    }
+}
+
+/// Two real numbers, for arguments.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pair(pub(super) [f64; 2]);
 
@@ -67,14 +107,14 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Pair {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        match object.extract::<[Real; 2]>() {
-            Ok([first, second]) => Ok(Self([first.0, second.0])),
-            Err(error) if error.is_instance_of::<PyValueError>(object.py()) => Err(error),
-            Err(_) => Err(PyTypeError::new_err(format!(
-                "expected a pair of numbers, got {}",
-                Repr(&object)
-            ))),
-        }
+        let two = object.extract::<Two>();
+        let numbers = two.and_then(|Two([x, y])| Ok([real(&x)?, real(&y)?]));
+        numbers.map(Self).map_err(|error| match error.is_instance_of::<PyValueError>(object.py()) {
+            true => error,
+            false => {
+                PyTypeError::new_err(format!("expected a pair of numbers, got {}", Repr(&object)))
+            }
+        })
     }
 }
 
@@ -100,31 +140,6 @@ pub(super) fn items<'py, T: FromPyObjectOwned<'py>>(
         .collect()
 }
 
-/// Units of arrays whose numbers are what is meant.
-const PLAIN_UNITS: [&str; 11] =
-    ["", "1", "dimensionless", "m", "N", "Pa", "s", "N/m", "m/N", "N m", "m²"];
-
-/// Whether `object` carries a unit: of pint, astropy, unyt, quantities or xarray.
-fn has_unit(object: &Bound<'_, PyAny>) -> PyResult<bool> {
-    if object.is_exact_instance_of::<PyInt>() {
-        return Ok(false);
-    }
-    if object.hasattr("magnitude")? || object.hasattr("to_base_units")? {
-        let dimensionless = object.getattr_opt("dimensionless")?;
-        return Ok(!dimensionless.is_some_and(|is| is.is_truthy().unwrap_or(false)));
-    }
-    let unit = match object.getattr_opt("unit")? {
-        Some(unit) if !unit.is_none() => Some(unit),
-        _ => object.getattr_opt("units")?,
-    };
-    match unit {
-        Some(unit) if !unit.is_none() && !unit.is_callable() => {
-            Ok(!PLAIN_UNITS.contains(&unit.str()?.to_str()?))
-        }
-        _ => Ok(false),
-    }
-}
-
 /// Argument as it is, or as an array without labels: one (y, x) of xarray or scipp becomes (x, y). What would be read
 /// with another meaning is refused: masked arrays, numbers with a unit, other labels beside x or y.
 #[pyfunction]
@@ -133,10 +148,9 @@ pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound
         return Ok(value);
     }
     if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
-        for item in value.try_iter()? {
-            plain(name, item?)?;
-        }
-        return Ok(value);
+        let items = value.try_iter()?.map(|item| plain(name, item?));
+        let items = items.collect::<PyResult<Vec<_>>>()?;
+        return Ok(PyList::new(value.py(), items)?.into_any());
     }
     let mask = value.getattr_opt("mask")?;
     if mask.is_some_and(|mask| !mask.is_callable()) && value.hasattr("filled")? {
@@ -144,43 +158,56 @@ pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound
             "{name} must be a real array without a mask: fill the missing values first"
         )));
     }
-    if has_unit(&value)? {
+    let Some(value) = in_si(&value)? else {
         return Err(PyTypeError::new_err(format!(
             "{name} must be a real number or array in SI units, got {:.60} with a unit: convert it, and pass its \
              magnitude",
             Repr(&value).to_string()
         )));
-    }
-    let (Some(axes), Some(values)) = (value.getattr_opt("dims")?, value.getattr_opt("values")?)
-    else {
+    };
+    let Some(axes) = axes(&value)? else {
         return Ok(value);
     };
-    let axes: Vec<String> = axes
-        .try_iter()?
-        .map(|axis| Ok(axis?.str()?.to_string().to_lowercase()))
-        .collect::<PyResult<_>>()?;
-    let axes: Vec<&str> = axes.iter().map(String::as_str).collect();
-    match axes[..] {
-        ["y", "x"] => values.getattr("T"),
-        ["x" | "y"] | ["x", "y"] => Ok(values),
-        _ if axes.contains(&"x") || axes.contains(&"y") => Err(PyValueError::new_err(format!(
+    let held = match value.getattr_opt("data")? {
+        Some(data) => data,
+        None => value.getattr("values")?,
+    };
+    let labelled = held.hasattr("dims")?;
+    // The data may have a unit of its own.
+    let held = plain(name, held)?;
+    if labelled {
+        return Ok(held);
+    }
+    let lower: Vec<String> = axes.iter().map(|axis| axis.to_lowercase()).collect();
+    let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
+    match lower[..] {
+        ["x", "y"] | ["y", "x"] => {
+            for axis in &axes {
+                if let Some(coordinate) = Coordinate::of(&value, axis)? {
+                    coordinate.check_ascending(name)?;
+                }
+            }
+            if lower[0] == "y" { held.getattr("T") } else { Ok(held) }
+        }
+        ["x" | "y"] => Ok(held),
+        _ if lower.contains(&"x") || lower.contains(&"y") => Err(PyValueError::new_err(format!(
             "{name} must have the dimensions x and y, got {}",
-            axes.join(", ")
+            lower.join(", ")
         ))),
-        _ => Ok(values),
+        _ => Ok(held),
     }
 }
 
-/// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride; what [`plain`] refuses
-/// is refused.
+/// Array of f64 in C order with the numbers of `object`, which may have any real dtype, order and stride; what [`plain`]
+/// refuses is refused.
 ///
-/// Complex numbers, objects and text raise a `TypeError` that names the argument.
+/// Complex numbers, objects, text and a single bool raise a `TypeError` that names the argument.
 pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
     let numpy = get_array_module(object.py())?;
     let ragged =
         |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
-    let object = plain(name, object.clone())?;
-    let array = numpy.call_method1("asarray", (object,)).map_err(ragged)?;
+    let array = plain(name, object.clone())?;
+    let array = numpy.call_method1("asarray", (array,)).map_err(ragged)?;
     let dtype = array.getattr("dtype")?;
     let kind: String = dtype.getattr("kind")?.extract()?;
     if !["b", "i", "u", "f"].contains(&kind.as_str()) {
@@ -188,7 +215,14 @@ pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Arra
             "{name} must be a real array, got dtype {dtype}"
         )));
     }
-    let array = array.call_method1("astype", ("float64",))?;
+    if kind == "b" && array.getattr("ndim")?.eq(0)? {
+        return Err(PyTypeError::new_err(format!(
+            "{name} must be a real number, got {}",
+            Repr(&array)
+        )));
+    }
+    let options = [("dtype", "float64"), ("order", "C")].into_py_dict(object.py())?;
+    let array = numpy.call_method("array", (array,), Some(&options))?;
     let array: PyReadonlyArrayDyn<f64> = array.cast::<PyArrayDyn<f64>>()?.readonly();
     Ok(array.as_array().to_owned())
 }
@@ -233,6 +267,33 @@ pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
     Ok(array)
 }
 
+/// The same for Python.
+#[pyfunction(name = "real_array")]
+pub(super) fn py_real_array<'py>(
+    py: Python<'py>,
+    name: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    Ok(real_array(name, value)?.into_pyarray(py))
+}
+
+/// Integer of Python: an integer of Python or NumPy, or a whole real number; no bool.
+#[pyfunction]
+pub(super) fn integer<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let refuse = || PyTypeError::new_err(format!("{name} must be an integer, got {}", Repr(value)));
+    if is_bool_or_complex(value)? {
+        return Err(refuse());
+    }
+    if let Ok(index) = value.call_method0("__index__") {
+        return Ok(index);
+    }
+    let number = real(value).map_err(|_| refuse())?;
+    if number.fract() != 0.0 {
+        return Err(refuse());
+    }
+    PyFloat::new(value.py(), number).call_method0("__int__")
+}
+
 /// Integer that is at least `least`.
 pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyResult<usize> {
     let refuse = || {
@@ -241,10 +302,26 @@ pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyRes
         let asked = if few { &least } else { "an integer that this machine can count to" };
         PyValueError::new_err(format!("{name} must be {asked}, got {value}"))
     };
-    let index = value.call_method0("__index__").map_err(|_| {
-        PyTypeError::new_err(format!("{name} must be an integer, got {}", Repr(value)))
-    })?;
-    index.extract::<usize>().ok().filter(|&n| n >= least).ok_or_else(refuse)
+    integer(name, value)?.extract::<usize>().ok().filter(|&n| n >= least).ok_or_else(refuse)
+}
+
+/// So many numbers, each of which may be `None`.
+#[pyfunction]
+pub(super) fn vector(
+    name: &str,
+    length: usize,
+    value: &Bound<'_, PyAny>,
+) -> PyResult<Vec<Option<f64>>> {
+    let kind = if length == 2 { "a pair of".into() } else { length.to_string() };
+    let text = || format!("{name} must be {kind} numbers or None, got {}", Repr(value));
+    let items = listed(value).map_err(|_| PyTypeError::new_err(text()))?;
+    if items.len() != length {
+        return Err(PyValueError::new_err(text()));
+    }
+    let numbers = items.iter().map(|item| item.extract::<Option<Real>>());
+    let numbers = numbers.collect::<PyResult<Vec<_>>>();
+    let numbers = numbers.map_err(|_| PyTypeError::new_err(text()))?;
+    Ok(numbers.into_iter().map(|number| number.map(|number| number.0)).collect())
 }
 
 /// Pair of numbers, each of which may be `None`; no numbers where `value` is `None`.
@@ -252,13 +329,8 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     let Some(value) = value else {
         return Ok([None; 2]);
     };
-    let pair: [Option<Real>; 2] = value.extract().map_err(|_| {
-        PyTypeError::new_err(format!(
-            "{name} must be a pair of numbers or None, got {}",
-            Repr(value)
-        ))
-    })?;
-    Ok(pair.map(|number| number.map(|number| number.0)))
+    let numbers = vector(name, 2, value)?;
+    Ok([numbers[0], numbers[1]])
 }
 
 /// Pair of truth values; `False` where `value` is `None`.
@@ -266,7 +338,8 @@ pub(super) fn flags(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[b
     let Some(value) = value else {
         return Ok([false; 2]);
     };
-    value.extract().map_err(|_| {
+    let both = value.extract::<Two>();
+    both.and_then(|Two([x, y])| Ok([x.extract()?, y.extract()?])).map_err(|_| {
         PyTypeError::new_err(format!("{name} must be a pair of bools, got {}", Repr(value)))
     })
 }
@@ -277,15 +350,12 @@ pub(super) fn ends(value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2
     Ok([low.filter(|x| *x != f64::NEG_INFINITY), high.filter(|x| *x != f64::INFINITY)])
 }
 
-/// Real number, or `None` where `value` is.
-pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
-    let extract = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
-        Ok(number) => Ok(number.0),
-        Err(_) => {
-            Err(PyTypeError::new_err(format!("{name} must be a real number, got {}", Repr(value))))
-        }
-    };
-    value.map(extract).transpose()
+/// Real number, no bool.
+#[pyfunction(name = "real")]
+pub(super) fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    real(value).map_err(|_| {
+        PyTypeError::new_err(format!("{name} must be a real number, got {}", Repr(value)))
+    })
 }
 
 /// Arguments of a call by name, as a Python function hands them over. `None` stands for what was not given.
@@ -322,7 +392,7 @@ impl<'py> Given<'py> {
 
     /// Real number that may be missing.
     pub(super) fn number(&self, name: &str) -> PyResult<Option<f64>> {
-        number(name, self.get(name)?.as_ref())
+        self.get(name)?.map(|value| number(name, &value)).transpose()
     }
 
     /// Pair of numbers, each of which may be missing.

@@ -416,7 +416,7 @@ impl PyResponse {
                 "{name} must have the shape of the wavenumbers, ({count},), got shape {shape:?}"
             )));
         }
-        Ok(Self(Sampled::new(values.into_raw_vec_and_offset().0, local)?.into()))
+        Ok(Self(Sampled::new(values.into_iter().collect(), local)?.into()))
     }
 
     /// The samples, of which every response of Python is made.

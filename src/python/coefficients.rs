@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arguments::{Real, Repr, count, items, read_only, real_array, real_matrix, shaped};
+use super::arguments::{Real, Repr, count, read_only, real_array, real_matrix, shaped};
 use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, half_space, substrate};
 use super::grid::PyGrid;
@@ -104,11 +104,10 @@ pub(super) fn graded_layers(
     tolerance: Real,
     breakpoints: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<PyLayer>> {
-    let breakpoints: Vec<Real> = match breakpoints {
-        Some(depths) => items("breakpoints", "real numbers", depths)?,
+    let breakpoints: Vec<f64> = match breakpoints {
+        Some(depths) => real_array("breakpoints", depths)?.into_iter().collect(),
         None => Vec::new(),
     };
-    let breakpoints: Vec<f64> = breakpoints.iter().map(|depth| depth.0).collect();
     let mut failure = None;
     let at = |name: &str, property: &Bound<'_, PyAny>, z: f64| -> PyResult<f64> {
         let value = if property.is_callable() { property.call1((z,))? } else { property.clone() };

@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::arguments::{Pair, Real, count, flags, read_only, real};
+use super::arguments::{Pair, Real, Two, count, flags, read_only, real};
 use super::value::{self, Arguments, Value, class};
 use crate::model::grid::Grid;
 
@@ -61,12 +61,13 @@ class! {
         #[new]
         #[pyo3(signature = (shape, size, center=None, periodic=None))]
         fn new(
-            shape: [Bound<'_, PyAny>; 2],
+            shape: Two<'_>,
             size: Pair,
             center: Option<Pair>,
             periodic: Option<&Bound<'_, PyAny>>,
         ) -> PyResult<Self> {
-            let shape = [count("shape", 2, &shape[0])?, count("shape", 2, &shape[1])?];
+            let Two([nx, ny]) = shape;
+            let shape = [count("shape", 2, &nx)?, count("shape", 2, &ny)?];
             let center = center.map_or([0.0; 2], |center| center.0);
             let grid = Grid::new(shape, size.0)?.centered_at(center)?;
             Ok(Self(grid.periodic(flags("periodic", periodic)?)?))

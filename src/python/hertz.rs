@@ -4,7 +4,7 @@ use ndarray::ArrayD;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arguments::{Real, real_array, shaped};
+use super::arguments::{Real, pair, real_array, shaped};
 use super::bodies::PyElastic;
 use crate::model::hertz::{self, Ellipse, Line, Point};
 
@@ -21,11 +21,12 @@ pub(super) fn equivalent_radius(
 /// Principal relative radii of two surfaces in contact, and the angle of the axis of the longer one.
 #[pyfunction]
 pub(super) fn relative_radii(
-    radii: [Option<Real>; 2],
-    counter_radii: [Option<Real>; 2],
+    radii: &Bound<'_, PyAny>,
+    counter_radii: &Bound<'_, PyAny>,
     angle: Real,
 ) -> PyResult<([f64; 2], f64)> {
-    let [radii, counter_radii] = [radii, counter_radii].map(|pair| pair.map(|r| r.map(|r| r.0)));
+    let radii = pair("radii", Some(radii))?;
+    let counter_radii = pair("counter_radii", Some(counter_radii))?;
     Ok(hertz::relative_radii(radii, counter_radii, angle.0)?)
 }
 

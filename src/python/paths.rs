@@ -87,7 +87,11 @@ pub(super) fn with_value<'py>(
         let all = parts.values();
         Ok(if object.hasattr("_arguments")? {
             let (make, _): Reduced = object.call_method0("__reduce__")?.extract()?;
-            make.call1(all.to_tuple())?
+            if make.hasattr("keywords")? {
+                make.call((), Some(&parts))?
+            } else {
+                make.call1(all.to_tuple())?
+            }
         } else if object.cast::<PyDict>().is_ok() {
             parts.into_any()
         } else if object.cast::<PyTuple>().is_ok() {

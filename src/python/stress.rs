@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arguments::{Given, Pair, Real, Repr, real_array, real_matrix};
+use super::arguments::{Given, Pair, Real, Repr, count, listed, real_array, real_matrix};
 use super::background;
 use super::bodies::{PyHalfSpace, half_space};
 use super::data::summary_text;
@@ -187,11 +187,15 @@ pub(super) fn layer_values(
 /// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
 /// have it.
 fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
-    let Some(given) = given.get(name)? else {
+    let Some(mut given) = given.get(name)? else {
         return Ok(Vec::new());
     };
+    // A Series names the layers by its index.
+    if let Some(to_dict) = given.getattr_opt("to_dict")? {
+        given = to_dict.call0()?;
+    }
     let layers = body.layers().len();
-    let count = layers + usize::from(matches!(body.substrate(), Substrate::Elastic(_)));
+    let parts = layers + usize::from(matches!(body.substrate(), Substrate::Elastic(_)));
     let number = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
         Ok(number) => Ok(number.0),
         Err(_) => {
@@ -199,34 +203,36 @@ fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<
         }
     };
     let Ok(mapping) = given.cast::<PyDict>() else {
-        let values: Vec<Option<Real>> = given.extract().map_err(|_| {
-            PyTypeError::new_err(format!(
-                "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
-                Repr(&given)
-            ))
-        })?;
-        if values.len() > count {
+        let items = listed(&given).map(|items| items.into_iter().map(|item| item.extract()));
+        let values: Vec<Option<Real>> =
+            items.and_then(Iterator::collect::<PyResult<_>>).map_err(|_| {
+                PyTypeError::new_err(format!(
+                    "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
+                    Repr(&given)
+                ))
+            })?;
+        if values.len() > parts {
             return Err(PyValueError::new_err(format!(
-                "{name} must hold at most {count} values, one for each layer and the substrate, \
+                "{name} must hold at most {parts} values, one for each layer and the substrate, \
                  got {}",
                 values.len()
             )));
         }
         return Ok(values.iter().map(|value| value.map(|v| v.0)).collect());
     };
-    let mut values = vec![None; count];
+    let mut values = vec![None; parts];
     for (key, value) in mapping {
         let is_meant = |layer: usize| match key.extract::<String>() {
             Ok(word) if layer == layers => word == "substrate",
             Ok(word) => body.layers()[layer].name() == Some(&word),
-            Err(_) => key.extract().is_ok_and(|number: usize| number == layer),
+            Err(_) => count(name, 0, &key).is_ok_and(|number| number == layer),
         };
-        let meant: Vec<_> = (0..count).filter(|layer| is_meant(*layer)).collect();
+        let meant: Vec<_> = (0..parts).filter(|layer| is_meant(*layer)).collect();
         if meant.is_empty() {
             return Err(PyValueError::new_err(format!(
                 "keys of {name} must be \"substrate\" (where it is elastic), numbers of layers from 0 \
                  at the surface to {}, or names of layers ({}), got {}",
-                count - 1,
+                parts - 1,
                 names(body),
                 Repr(&key)
             )));

@@ -2,7 +2,7 @@
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict, PyTuple};
 
 use super::arguments::{array_repr, hash};
 
@@ -57,7 +57,7 @@ pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> 
     Ok(format!("{called}({})", shown.join(", ")))
 }
 
-/// Callable and arguments that make a value again.
+/// Callable and arguments that make a value again; a static method with a name of its own is a `functools.partial`.
 pub(super) type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 /// Pickled form of a value of `class`.
@@ -65,12 +65,18 @@ pub(super) fn reduced<'py>(
     value: &impl Value,
     class: &Bound<'py, PyAny>,
 ) -> PyResult<Reduced<'py>> {
+    let (py, arguments) = (class.py(), value.arguments(class.py())?);
     let make = match value.maker() {
+        Some(name) if !name.starts_with('_') => {
+            let partial = py.import("functools")?.getattr("partial")?;
+            let make = partial.call((class.getattr(name)?,), Some(&arguments.into_py_dict(py)?))?;
+            return Ok((make, PyTuple::empty(py)));
+        }
         Some(name) => class.getattr(name)?,
         None => class.clone(),
     };
-    let arguments = value.arguments(class.py())?.into_iter().map(|(_, argument)| argument);
-    Ok((make, PyTuple::new(class.py(), arguments.collect::<Vec<_>>())?))
+    let arguments = arguments.into_iter().map(|(_, argument)| argument);
+    Ok((make, PyTuple::new(py, arguments.collect::<Vec<_>>())?))
 }
 
 /// Hash of a value, which equal values share.

@@ -95,7 +95,7 @@ INDENT: dict[str, Callable[[], nacre.indent.IndentSolution]] = {
     "maugis": indented(
         load=1e-3, adhesion=Adhesion.maugis(0.05, 1e7), counterbody=nacre.Elastic(70e9, 0.22)
     ),
-    "sharp": indented(load=[1e-3], tip=Tip.cone(0.3)),
+    "sharp": indented(load=[1e-3], tip=Tip.cone(slope=0.3)),
     "rough": indented(load=1e-4, tip=Tip.profile(RADII, np.arange(5.0) ** 2 / 1e7)),
 }
 

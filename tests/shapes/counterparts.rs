@@ -203,6 +203,14 @@ fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
         let both = curvature(one, direction) + curvature(two, direction - angle);
         near!(curvature(radii.map(Some), direction - turn), both, ROUNDING, direction);
     }
+    // An axis along y is at π/2, and never at −π/2, whatever side rounding leaves it on.
+    for n in 1..200 {
+        let [a, b] = [n, 200 - n].map(|n| Some(1e-3 + 4e-5 * f64::from(n)));
+        for angle in [0.5 * PI, -0.5 * PI, PI, -PI, 3.0 * PI] {
+            let (_, turn) = relative_radii([a, b], [b, a], angle)?;
+            assert!(-0.5 * PI < turn && turn <= 0.5 * PI, "{a:?} {b:?} {angle}: {turn}");
+        }
+    }
     // Nearly parallel cylinders keep their digits: R′ R″ = R²/sin²φ.
     let ([longer, shorter], _) = relative_radii(cylinder, cylinder, 1e-5)?;
     near!(longer * shorter, (8e-3 / f64::sin(1e-5)).powi(2), ROUNDING);

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import RINGS, Ring, above, millimetres, pair
+from nacre.bearing.geometry import RINGS, Ring, above, millimetres
 from nacre.hertz import Ellipse
 
 STATIC = 4.2e9
@@ -34,7 +34,6 @@ class _Balls(Solvable):
         """Check the arguments."""
         super().__post_init__()
         self._check_given_pitch()
-        object.__setattr__(self, "osculation", pair("osculation", self.osculation))
         for value in self.osculation:
             above("osculation", value, 0.5)
         if self.shoulder_height is not None:

@@ -218,12 +218,11 @@ def film_thickness(
     """
     if not isinstance(solution, Solution):
         raise TypeError(f"solution must be a Solution, got {solution!r}")
-    above("speed", speed)
-    above("viscosity", viscosity)
-    above("pressure_viscosity", pressure_viscosity)
-    for name, value in (("roughness", roughness), ("radius", radius)):
-        if value is not None:
-            above(name, value)
+    speed = above("speed", speed)
+    viscosity = above("viscosity", viscosity)
+    pressure_viscosity = above("pressure_viscosity", pressure_viscosity)
+    roughness = None if roughness is None else above("roughness", roughness)
+    radius = None if radius is None else above("radius", radius)
     if any(solution.grid.periodic):
         raise ValueError("solution must be one on a grid that is not periodic")
     if not solution.load > 0:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -14,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.arguments import read_fields
 from nacre._tools.typing import Layers
 from nacre._tools.units import system
 from nacre.hertz import contact_modulus
@@ -51,28 +51,19 @@ LIGHTEST = 100.0
 """Least density of an element [kg/m³], a tenth of that of plastics."""
 
 
-def above(name: str, value: Any, least: float = 0.0) -> None:
-    """Raise a `ValueError` unless a value is a finite number above `least`."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{name} must be a number, got {value!r}")
-    if not (math.isfinite(value) and value > least):
+def above(name: str, value: Any, least: float = 0.0) -> float:
+    """Return a finite number above `least`, or raise an error."""
+    number = core.real(name, value)
+    if not (math.isfinite(number) and number > least):
         bound = "" if least == -math.inf else f" and above {least:g}"
         raise ValueError(f"{name} must be finite{bound}, got {value!r}")
+    return number
 
 
 def check_flag(name: str, value: Any) -> None:
     """Raise a `TypeError` unless a value is True or False."""
     if not isinstance(value, bool):
         raise TypeError(f"{name} must be True or False, got {value!r}")
-
-
-def pair(name: str, value: Any) -> tuple[Any, Any]:
-    """Return two values, of the inner and the outer ring."""
-    if isinstance(value, str) or not isinstance(value, Iterable):
-        raise TypeError(f"{name} must be two values, got {value!r}")
-    if len(found := tuple(value)) != 2:
-        raise ValueError(f"{name} must be two values, got {value!r}")
-    return found[0], found[1]
 
 
 def _si() -> str:
@@ -178,8 +169,7 @@ class Bearing(ABC):
 
     def __post_init__(self) -> None:
         """Check what all bearings have in common."""
-        if isinstance(self.count, bool) or not isinstance(self.count, int):
-            raise TypeError(f"count must be an integer, got {self.count!r}")
+        read_fields(self)
         if self.count < 2:
             raise ValueError(f"count must be at least 2, got {self.count}")
         above("diameter", self.diameter)
@@ -381,7 +371,7 @@ class Bearing(ABC):
         """
         number = RINGS.index(ring)
         found = 1 / self.radius + (1, -1)[number] / self.raceways[number]
-        return np.full(np.shape(x), found)
+        return np.full(core.real_array("x", x).shape, found)
 
     @cached_property
     def modulus(self) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+import nacre._core as core
 from nacre.bearing.geometry import RINGS, Bearing, above, laminae_of
 from nacre.bearing.laws import LAMINAE
 
@@ -61,8 +62,7 @@ def load_integrals(epsilon: float, exponent: float) -> tuple[float, float]:
     >>> round(1 / radial, 3), round(axial / radial, 3)
     (4.085, 1.258)
     """
-    above("epsilon", epsilon)
-    above("exponent", exponent)
+    epsilon, exponent = above("epsilon", epsilon), above("exponent", exponent)
     last = math.acos(max(-1.0, 1 - 2 * epsilon))
     # Tanh-sinh quadrature of the half zone: the integrand has a power at its end.
     t = np.linspace(-3.6, 3.6, 289)
@@ -211,7 +211,8 @@ def edge_factors(count: int) -> Array:
     >>> round(float(edge_factors(40)[0]), 2), round(float(edge_factors(40)[19]), 3)
     (2.33, 1.003)
     """
-    if isinstance(count, bool) or not isinstance(count, int) or count < 2:
+    count = core.integer("count", count)
+    if count < 2:
         raise ValueError(f"count must be a number of laminae of at least 2, got {count!r}")
     away = np.abs(2 * np.arange(1, count + 1) - count - 1)
     factors = np.ones(count)  # of the lamina in the middle, the limit

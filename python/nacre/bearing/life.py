@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.arguments import read_fields
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Member
 from nacre.bearing.film import is_line
@@ -95,6 +96,7 @@ class LundbergPalmgren:
 
     def __post_init__(self) -> None:
         """Check the exponents."""
+        read_fields(self)
         for name, least in (("c", 0.0), ("e", 0.0), ("weight", 0.0), ("h", -math.inf)):
             value = getattr(self, name)
             if name != "e" or value is not None:

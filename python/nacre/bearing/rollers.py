@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres, pair
+from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres
 
 Array = npt.NDArray[np.float64]
 Word = Literal["iso16281", "iso16281_cylindrical"]
@@ -73,7 +73,6 @@ class _Rollers(Solvable):
         ):
             named = ", ".join(f'"{word}"' for word in words[:-1])
             raise ValueError(f"profile must be a profile, {named} or None, got {self.profile!r}")
-        object.__setattr__(self, "raceway_crown", pair("raceway_crown", self.raceway_crown))
         for radius in self.raceway_crown:
             if radius is not None:
                 above("raceway_crown", radius, -math.inf)
@@ -231,8 +230,7 @@ class CylindricalRoller(_Rollers):
                 raise ValueError("pitch_diameter or raceway_diameters must be given, got neither")
             above("pitch_diameter", self.pitch_diameter)
         else:
-            both = pair("raceway_diameters", self.raceway_diameters)
-            object.__setattr__(self, "raceway_diameters", both)
+            both = self.raceway_diameters
             for value in both:
                 above("raceway_diameters", value)
             if both[0] >= both[1]:
@@ -441,7 +439,7 @@ class TaperedRoller(_Rollers):
         numpy.ndarray
             Curvatures: both radii are proportional to the distance from the apex.
         """
-        return super().curvature(ring) / (1 - np.asarray(x) / self.apex)
+        return super().curvature(ring) / (1 - core.real_array("x", x) / self.apex)
 
     @property
     def mass(self) -> float:
@@ -546,9 +544,9 @@ class SphericalRoller(Solvable):
         super().__post_init__()
         above("length", self.length)
         self._check_given_pitch()
-        if isinstance(self.rows, bool) or self.rows not in (1, 2):
+        if self.rows not in (1, 2):
             raise ValueError(f"rows must be 1 or 2, got {self.rows!r}")
-        if self.contact_angle != 0 or isinstance(self.contact_angle, bool):
+        if self.contact_angle != 0:
             _check_angle(self.contact_angle)
         check_flag("free_ends", self.free_ends)
         above("profile_radius", self.profile_radius)
@@ -634,7 +632,7 @@ class SphericalRoller(Solvable):
             Curvatures, with the radius of the raceway in its middle.
         """
         raceway = super().curvature(ring) - 1 / self.radius
-        return 1 / self._own_radius(np.asarray(x)) + raceway
+        return 1 / self._own_radius(core.real_array("x", x)) + raceway
 
     def drop(self, ring: Ring, laminae: int = 40) -> Array:
         """Drop of a roller from the raceway at the middles of laminae [m]."""

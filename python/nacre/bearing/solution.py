@@ -323,15 +323,14 @@ class BearingSolution(Tabular):
             raise ValueError('model must be "solved" for a contact, got "iso16281"')
         if ring not in RINGS:
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
-        if isinstance(element, bool) or not isinstance(element, int | np.integer):
-            raise TypeError(f"element must be an integer, got {element!r}")
+        element = core.integer("element", element)
         last = self.bearing.elements - 1
         if not 0 <= element <= last:
             raise ValueError(f"element must be from 0 to {last}, got {element!r}")
         number = RINGS.index(ring)
         if not self.loads[element, number] > 0:
             return None
-        key = int(element), number
+        key = element, number
         if key not in self._contacts:
             body, counterbody = bodies_of(self.bearing, ring)
             size = tuple(self.grid_sizes[key].tolist())

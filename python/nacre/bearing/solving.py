@@ -15,7 +15,7 @@ import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre.bearing.cone import check_carried
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
-from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above, pair
+from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.laws import LAMINAE, LINE, STANDARD, Hertzian, Slices, Solved, binned, law
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
@@ -51,20 +51,9 @@ def _asked(
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        told = (None,) * length if given[name] is None else given[name]
-        if isinstance(told, str) or not isinstance(told, Iterable):
-            raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
-        found = [*told]
-        if len(found) != length:
-            raise ValueError(f"{name} must be {length} numbers or None, got {told!r}")
-        for value in found:
-            if value is not None and (
-                isinstance(value, bool) or not isinstance(value, int | float | np.number)
-            ):
-                raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
-            if value is not None and not math.isfinite(value):
-                raise ValueError(f"{name} must be finite, got {told!r}")
-        values[name] = found
+        values[name] = core.vector(name, length, given[name])
+        if not all(value is None or math.isfinite(value) for value in values[name]):
+            raise ValueError(f"{name} must be finite, got {given[name]!r}")
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
@@ -134,29 +123,27 @@ def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: fl
 def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     """Return the solution of what a user asked of a bearing with these arguments of `solve`."""
     loads, moved, free = _asked(bearing, given)
-    model, cells, tolerance = given["model"], given["cells"], given["tolerance"]
+    model, cells = given["model"], given["cells"]
+    given = {**given}
     for name in ("rotation", "speed"):
-        above(name, given[name], -math.inf)
+        given[name] = above(name, given[name], -math.inf)
     if given["rotating"] not in RINGS:
         raise ValueError(f'rotating must be "inner" or "outer", got {given["rotating"]!r}')
     for name in ("max_iterations", "threads"):
-        value = given[name]
-        if name == "threads" and value is None:
+        if name == "threads" and given[name] is None:
             continue
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise TypeError(f"{name} must be an integer, got {value!r}")
-        if value < 1:
-            raise ValueError(f"{name} must be at least 1, got {value!r}")
+        given[name] = core.integer(name, given[name])
+        if given[name] < 1:
+            raise ValueError(f"{name} must be at least 1, got {given[name]!r}")
     if model not in ("solved", "iso16281"):
         raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
-    above("tolerance", tolerance)
+    tolerance = above("tolerance", given["tolerance"])
     if tolerance >= 1:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
     if cells is None:
         cells = CELLS[bearing.rolls]
-    cells = pair("cells", cells)
-    if any(isinstance(one, bool) or not isinstance(one, int) for one in cells):
-        raise TypeError(f"cells must be two integers, got {cells!r}")
+    one, other = core.vector("cells", 2, cells)
+    cells = core.integer("cells", one), core.integer("cells", other)
     if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
         multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
         raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
@@ -282,8 +269,8 @@ def _found(
     return BearingSolution(
         bearing=bearing,
         model=given["model"],
-        rotation=float(given["rotation"]),
-        speed=float(given["speed"]),
+        rotation=given["rotation"],
+        speed=given["speed"],
         rotating=given["rotating"],
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),

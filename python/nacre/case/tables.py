@@ -8,14 +8,29 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveInt, create_model
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    PositiveInt,
+    create_model,
+)
 
 TWO = Field(min_length=2, max_length=2)
 Number = FiniteFloat
-Count = PositiveInt
+
+
+def _integer(value: Any) -> Any:
+    """Return a whole float as an integer, as calls take it."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+Count = Annotated[PositiveInt, BeforeValidator(_integer)]
 Numbers = list[FiniteFloat]
 Pair = Annotated[Numbers, TWO]
-Counts = Annotated[list[PositiveInt], TWO]
+Counts = Annotated[list[Count], TWO]
 Flags = Annotated[list[bool], TWO]
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import nacre._core as core
 from nacre._tools.typing import Field, Pair
-from nacre.results.base import same
+from nacre.results.base import Fields, same
 
 Output = str | tuple[str, float] | tuple[str, Pair] | dict[str, Any]
 """Output of a contact, as `Solution.gradient` names it."""
@@ -66,7 +66,8 @@ def described(output: Output) -> tuple[str, str]:
     except (TypeError, ValueError):
         raise TypeError(f"output must be a word, a pair or a dict, got {output!r}") from None
     if word == "pressure_norm":
-        return f"pressure_norm {float(value):g}", json.dumps({word: float(value)})
+        power = core.real(word, value)
+        return f"pressure_norm {power:g}", json.dumps({word: power})
     if word in ("pressure", "displacement", "gap"):
         place = _numbers(word, value, 2)
         return f"{word} at {_said(place)}", json.dumps({word: place})
@@ -91,23 +92,25 @@ def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
         raise ValueError('a stress must have exactly one of the keys "at", "layer" and "interface"')
     (key,) = given
     where, side = table[key], table.get("side", "below")
-    sharp = {"sharpness": float(table.get("sharpness", SHARPNESS))}
+    sharp = {"sharpness": core.real("sharpness", table.get("sharpness", SHARPNESS))}
     place: dict[str, Any]
     if key == "at":
         point = _numbers("at", where, 3)
         name, place = f"{word} at {_said(point)}", {"point": [point, side]}
     elif key == "layer":
-        layer = {"layer": int(where), "depths": int(table.get("depths", DEPTHS))}
-        name, place = f"{word} in layer {where}", {"layer": layer | sharp}
+        number = core.integer(key, where)
+        layer = {"layer": number, "depths": core.integer("depths", table.get("depths", DEPTHS))}
+        name, place = f"{word} in layer {number}", {"layer": layer | sharp}
     else:
-        interface = {"interface": int(where), "side": side}
-        name, place = f"{word} at interface {where}", {"interface": interface | sharp}
+        number = core.integer(key, where)
+        interface = {"interface": number, "side": side}
+        name, place = f"{word} at interface {number}", {"interface": interface | sharp}
     direction = table.get("direction")
     stress = {
         "member": table.get("body", "body"),
         "measure": MEASURES[word],
         "place": place,
-        "friction": float(table.get("friction", 0.0)),
+        "friction": core.real("friction", table.get("friction", 0.0)),
         "direction": None if direction is None else _numbers("direction", direction, 2),
     }
     return name, json.dumps({"stress": stress})
@@ -123,13 +126,8 @@ def _said(numbers: list[float]) -> str:
 
 def _numbers(name: str, values: Any, count: int) -> list[float]:
     """Return so many numbers."""
-    try:
-        numbers = [float(value) for value in values]
-    except (TypeError, ValueError):
-        numbers = []
-    if len(numbers) != count:
-        raise TypeError(f"{name} must be {count} numbers, got {values!r}")
-    return numbers
+    numbers = core.vector(name, count, values)
+    return [core.real(name, number) for number in numbers]
 
 
 @dataclass(frozen=True)
@@ -149,7 +147,7 @@ class Made:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Gradient:
+class Gradient(Fields):
     """Derivatives of one output of a solved contact, by the paths of the parameters.
 
     It is a mapping: ``gradient["body.layers[0].material.young"]`` is the derivative per unit of
@@ -251,7 +249,7 @@ class Gradient:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Direction:
+class Direction(Fields):
     """Change of a solved contact along a direction of parameters; `Solution.jvp` makes it.
 
     Examples

@@ -105,7 +105,8 @@ class Differentiable:
             raise TypeError(
                 f"grid must be a Grid, so that cells stay where they are, got {given.get('grid')!r}"
             )
-        if not isinstance(keep, int) or keep < 1:
+        keep = core.integer("keep", keep)
+        if keep < 1:
             raise ValueError(f"keep must be a number of solutions, 1 or more, got {keep!r}")
         self.grid: core.Grid = given["grid"]
         self.cells = self.grid.shape[0] * self.grid.shape[1]

@@ -18,6 +18,7 @@ from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
 from nacre.results import display
+from nacre.results.base import Fields
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +30,7 @@ RESTARTS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class Optimum(Fields):
     """What `nacre.design.optimise` found; `print` shows a report.
 
     Attributes
@@ -194,7 +195,7 @@ def optimise(
         raise ValueError(f"tolerance must be above 0, got {tolerance!r}")
     scales = scales_of(start, bounds or {})
     problem = Problem(build, scales, objective, _cases(cases), _limits(constraints), across)
-    problem.most, problem.tolerance = max_solves, tolerance
+    problem.most, problem.tolerance = core.integer("max_solves", max_solves), tolerance
     if not isinstance(grid, core.Grid | Sequence | None) or grid == ():
         raise TypeError(f"grid must be a Grid or a sequence of them, got {grid!r}")
     grids: Sequence[core.Grid | None] = (
@@ -283,6 +284,6 @@ def _limits(constraints: Any) -> list[tuple[Any, float]]:
     for pair in constraints:
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")
-        if not (isinstance(pair[1], int | float) and 0 < pair[1] < math.inf):
+        if not 0 < core.real(f"the limit of {pair[0]!r}", pair[1]) < math.inf:
             raise ValueError(f"the limit of {pair[0]!r} must be positive, got {pair[1]!r}")
-    return [(output, float(limit)) for output, limit in constraints]
+    return [(output, core.real("limit", limit)) for output, limit in constraints]

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import nacre._core as core
+
 Bounds = Mapping[str, tuple[float | None, float | None]]
 
 REACH = 0.25
@@ -47,7 +49,8 @@ def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
     if unknown := set(bounds) - set(start):
         raise ValueError(f"bounds must be of parameters in start, got {sorted(unknown)}")
     scales = []
-    for name, value in start.items():
+    for name, begun in start.items():
+        value = core.real(f"start[{name!r}]", begun)
         low, high = bounds.get(name, (None, None))
         low, high = (None if b is None or math.isinf(b) else float(b) for b in (low, high))
         if not math.isfinite(value):

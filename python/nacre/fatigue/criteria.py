@@ -75,7 +75,7 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
 
 def _states(history: Any) -> tuple[Array, tuple[int, ...]]:
     """Return a history as ``(n, times, 6)``, and its leading axes."""
-    states = np.asarray(history)
+    states = core.real_array("history", history)
     if states.ndim < 2 or states.shape[-1] != 6:
         raise ValueError(f"history must have the shape (..., times, 6), got {states.shape}")
     axes = states.shape[:-2]
@@ -99,10 +99,7 @@ class Criterion:
         for name in ("bending", "torsion"):
             if (value := getattr(self, name)) is None:
                 raise ValueError(f"{name} must be given: a criterion needs both fatigue limits")
-            try:
-                object.__setattr__(self, name, float(value))
-            except (TypeError, ValueError) as error:
-                raise TypeError(f"{name} must be a real number, got {value!r}") from error
+            object.__setattr__(self, name, core.real(name, value))
         self._told()
 
     def _told(self) -> tuple[float, float]:

@@ -42,14 +42,6 @@ LEVEL = 1e-3
 the top of a parabola a thirtieth of its half-width wide."""
 
 
-def real_array(name: str, given: Any) -> Array:
-    """Return an array of real numbers; a `TypeError` names the argument."""
-    try:
-        return np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} must be real numbers, got {given!r:.100}") from error
-
-
 class Load(NamedTuple):
     """A pressure whose friction has a direction, and its factor in the sum."""
 
@@ -107,12 +99,10 @@ class Rolling:
         self.pressure = np.asarray(normal.pressure)
         self.peak_pressure = normal.peak_pressure
         self.tractions = None if tractions is None else np.asarray(tractions)
-        if x is not None and (self.grid.is_line or real_array("x", x).ndim):
-            raise ValueError(
-                "x must be a number in point contacts, and None in line contacts, whose sections "
-                f"are all alike, got {x!r}"
-            )
-        self.x = None if self.grid.is_line else (self._section() if x is None else float(x))
+        if x is not None and self.grid.is_line:
+            raise ValueError(f"x must be None in line contacts: sections are alike, got {x!r}")
+        section = self._section() if x is None else core.real("x", x)
+        self.x = None if self.grid.is_line else section
         row = 0 if self.x is None else int(np.argmin(np.abs(self.grid.x - self.x)))
         inside = np.flatnonzero(self.pressure[row])
         if not inside.size:

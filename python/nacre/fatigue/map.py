@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import numpy.typing as npt
 
+import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real
 from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import Rule
-from nacre.fatigue.history import real_array
 from nacre.fatigue.summary import (
     ESTIMATE,
     PLASTICITY,
@@ -238,7 +238,7 @@ def shakedown_map(
             "solution must be one without friction, got a FrictionSolution: nacre.fatigue.assess "
             "takes it"
         )
-    coefficients = real_array("friction", friction)
+    coefficients = core.real_array("friction", friction)
     if coefficients.ndim != 1 or not coefficients.size:
         raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
     if not np.isfinite(coefficients).all() or coefficients.min() < 0:

@@ -18,7 +18,7 @@ from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
-from nacre.fatigue.history import Rolling, States, real_array, refined
+from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result
 from nacre.results.listed import Tabular
@@ -569,8 +569,8 @@ def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
 def layer_values(name: str, given: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
     """Return a value for each layer and the substrate, None where it is not known."""
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
-    if isinstance(given, int | float | np.integer | np.floating):
-        return [float(given)] * count
+    if np.ndim(given) == 0 and not isinstance(given, Mapping | None):  # type: ignore[arg-type]
+        return [core.real(name, given)] * count
     found: list[Any] = core.layer_values(body, name, {name: given})
     return found + [None] * (count - len(found))
 
@@ -579,7 +579,7 @@ def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
     """Return depths in their order, checked, or None where they are to be chosen."""
     if depths is None:
         return None
-    found = np.sort(real_array("depths", depths).ravel())
+    found = np.sort(core.real_array("depths", depths).ravel())
     if not found.size or not np.isfinite(found).all() or found[0] < 0:
         raise ValueError(f"depths must be finite and at least 0, one or more, got {depths!r}")
     if not isinstance(body.substrate, core.Elastic) and found[-1] > body.interfaces[-1]:
@@ -710,8 +710,8 @@ def assess(
     for limit in limits:
         if limit is not None and not 0.0 < limit < np.inf:
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
-    slides = real_array("friction", friction)
-    if slides.ndim or not 0.0 <= slides < np.inf:
+    friction = core.real("friction", friction)
+    if not 0.0 <= friction < np.inf:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
     if asked.rolling.known and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")

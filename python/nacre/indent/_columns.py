@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.arguments import name_or_number
 from nacre._tools.text import Column, unit_of
 from nacre.indent._text import Table
 
@@ -158,8 +159,7 @@ def _known(where: str, table: Table, quantity: str) -> int | None:
 
 
 def _asked(where: str, table: Table, quantity: str, asked: str | int) -> int:
-    if isinstance(asked, bool) or not isinstance(asked, str | int):
-        raise TypeError(f"{quantity} must be the name or the number of a column, got {asked!r}")
+    asked = name_or_number(quantity, asked)
     if isinstance(asked, int):
         if 0 <= asked < table.width:
             return asked
@@ -265,8 +265,8 @@ def chosen_tables(
 
     Of several, those without a depth or a force are left out where none is asked for by number.
     """
-    if segment != "all" and (isinstance(segment, bool) or not isinstance(segment, int | None)):
-        raise TypeError(f"segment must be a number or 'all', got {segment!r}")
+    if segment is not None and segment != "all":
+        segment = core.integer("segment", segment)
     if len(found) == 1 and segment in (None, "all"):
         parts = _parts(found[0]) if segment else []
         return dict(enumerate(parts or found))

@@ -125,6 +125,7 @@ class Fit(Tabular):
         list of Classical
             A row for each formula that applies to the tip and the body.
         """
+        curve = core.integer("curve", curve)
         clean = Curve(self.approaches[curve], self.curves[curve].force)
         return classical(clean, self.body, self.tip)
 

@@ -29,10 +29,8 @@ def coated(ratio: float, thickness: float, poisson: float = 0.3) -> core.HalfSpa
 
 def _numbers(name: str, values: npt.ArrayLike, low: float, high: float) -> Array:
     """Return numbers, at least one, or an error unless they lie between two others."""
-    try:
-        numbers = np.atleast_1d(np.asarray(core.plain(name, values), dtype=np.float64))
-    except OverflowError:
-        numbers = np.array([math.inf])
+    read = core.real_array if np.ndim(values) else core.real
+    numbers = np.atleast_1d(read(name, values))
     if (wrong := numbers[~((numbers >= low) & (numbers <= high))]).size:
         raise ValueError(f"{name} must be between {low:g} and {high:g}, got {wrong.flat[0]}")
     return numbers
@@ -177,8 +175,9 @@ def information(
         values["body.substrate.young"] = 1.0
     test: Any = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
     rows = []
-    for largest in np.atleast_1d(np.asarray(reach)):
-        depth = float(test.at(radius=float(largest)).approach)
+    points = core.integer("points", points)
+    for largest in np.atleast_1d(core.real_array("reach", reach)).tolist():
+        depth = float(test.at(radius=largest).approach)
         made = test.curve(approach=np.linspace(0.05, 1.0, points) * depth, wrt=list(values))
         slopes = np.asarray(made.derivatives).T
         slopes = slopes * np.array(list(values.values()))[:, None] / made.load

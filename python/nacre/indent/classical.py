@@ -77,7 +77,7 @@ def tabor_parameter(
     if len(known) != 1:
         raise ValueError(f"exactly one of distance and strength must be given, got {given}")
     for name, value in {"radius": radius, "modulus": modulus, "work": work, **known}.items():
-        if not (isinstance(value, int | float) and 0 < value < math.inf):
+        if not 0 < core.real(name, value) < math.inf:
             raise ValueError(f"{name} must be positive and finite, got {value!r}")
     reach = 16 * work / (9 * math.sqrt(3) * strength) if strength else distance
     assert reach is not None

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, TypedDict, Unpack, overlo
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import plain
+import nacre._core as core
 from nacre._tools.units import written
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._segments import arrival, departure, held
@@ -357,9 +357,7 @@ def _cut(curve: Curve, hold: slice, what: str) -> str:
 
 def _checked(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
-    array = np.asarray(plain(name, values))
-    if array.dtype.kind not in "iuf":
-        raise TypeError(f"{name} must be real numbers, got {array.dtype}")
+    array = core.real_array(name, values)
     if array.ndim != 1:
         raise ValueError(f"{name} must have one dimension, got shape {array.shape}")
     if array.size < LEAST_POINTS:
@@ -367,7 +365,6 @@ def _checked(name: str, values: npt.ArrayLike) -> Array:
     wrong = np.flatnonzero(~np.isfinite(array))
     if wrong.size:
         raise ValueError(f"{name} must be finite, got {array[wrong[0]]} at index {wrong[0]}")
-    array = array.astype(np.float64)
     array.flags.writeable = False
     return array
 

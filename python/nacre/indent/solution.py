@@ -17,6 +17,7 @@ import nacre._core as core
 from nacre._tools.typing import Field, Layers, Matrix, Vector
 from nacre._tools.units import printable, written
 from nacre.results import display
+from nacre.results.base import Fields
 from nacre.results.listed import Tabular
 from nacre.results.quantities import INDENT, units
 from nacre.results.values import decode, encode, refusing
@@ -53,7 +54,7 @@ def holds(*arguments: object) -> bool:
 
 
 @dataclass(frozen=True)
-class StateDerivative:
+class StateDerivative(Fields):
     """Derivatives of contacts of an indentation with respect to one parameter, in their shape.
 
     Examples
@@ -408,7 +409,7 @@ IndentState = IndentSolution
 
 
 @dataclass(frozen=True, eq=False)
-class IndentCurve:
+class IndentCurve(Fields):
     """Loads at approaches, with their derivatives; see `Indentation.curve`."""
 
     approach: Field
@@ -430,7 +431,7 @@ class IndentCurve:
 
 
 @dataclass(frozen=True)
-class PullOff:
+class PullOff(Fields):
     """Last stable state of a tip that is pulled off; see `Indentation.pull_off`."""
 
     load: float

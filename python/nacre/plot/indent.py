@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nacre._core import integer
 from nacre._tools.disk import replacing
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
@@ -45,6 +46,7 @@ def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
     matplotlib.axes.Axes
         The axes of data and model.
     """
+    curve = integer("curve", curve)
     with styled():
         if axes is not None:
             _draw(fit, axes, curve)
@@ -99,6 +101,7 @@ def contacts(solution: IndentSolution, axes: Axes | None = None) -> Axes:
 
 def residuals(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
     """Draw the residuals of a fit over depth; the band is two standard deviations of the noise."""
+    curve = integer("curve", curve)
     with styled():
         axes = axes or new_axes(0.6, 0.25)
         _residuals(fit, axes, curve)

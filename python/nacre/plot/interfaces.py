@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from nacre._core import integer
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
 from nacre.plot.stress import around, body_of, colourbar
@@ -69,6 +70,7 @@ def interface_map(
     >>> plot.interface_map(solution, friction=0.1, direction=(1, 0)).get_xlabel()
     'x [µm]'
     """
+    interface = integer("interface", interface)
     grid = solution.report.grid
     if grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")

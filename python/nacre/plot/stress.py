@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import HalfSpace
+from nacre._core import HalfSpace, integer
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
@@ -97,7 +97,7 @@ def stress_section(
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
     body, bottom = _reach(solution, depth, options)
-    edges = _edges(body, bottom, rows)
+    edges = _edges(body, bottom, integer("rows", rows))
     line: dict[str, Any] = {"y": at} if along == "x" else {"x": at}
     field = solution.stress(0.5 * (edges[1:] + edges[:-1]), **line, **options)
     values = _values(field, quantity)
@@ -201,7 +201,7 @@ def stress_depth(
     for quantity in quantities:
         _check(quantity)
     body, bottom = _reach(solution, depth, options)
-    edges = _edges(body, bottom, points)
+    edges = _edges(body, bottom, integer("points", points))
     planned = {name: options.pop(name) for name in ("body", "threads") if name in options}
     plan = solution.stress_plan(**planned)
     above = plan.stress(edges, x=at[0], y=at[1], side="above", **options)

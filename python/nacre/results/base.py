@@ -128,7 +128,24 @@ def _fitted(kind: Any, value: Any) -> Any:
     raise TypeError(f"{value!r} is no {kind}")
 
 
-class Result:
+class Fields:
+    """Base of what is read by its fields: NumPy makes no array of it."""
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        """Raise a `TypeError` that names a field; arrays of objects hold the whole."""
+        if dtype is not None and np.dtype(dtype) == object:
+            whole = np.empty((), dtype=object)
+            whole[()] = self
+            return whole
+        names = [name for name in dir(self) if not name.startswith("_")]
+        first = min((name for name in names if "pressure" in name), key=len, default=names[0])
+        raise TypeError(
+            f"an array must be made of a field of a {type(self).__name__}, such as {first}, "
+            "got the whole"
+        )
+
+
+class Result(Fields):
     """Base of results: each is a dataclass whose fields are its state."""
 
     _QUANTITIES: ClassVar[tuple[Quantity, ...]] = ()

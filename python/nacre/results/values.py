@@ -50,15 +50,14 @@ MADE: dict[str, Any] = {
 """Static methods that make tips and adhesion, by their names in data."""
 
 
-def _positional(make: Any) -> tuple[str, ...]:
-    """Return the names of positional arguments; those by keyword alone say the same otherwise."""
-    parameters = inspect.signature(make).parameters.values()
-    return tuple(one.name for one in parameters if one.kind is not one.KEYWORD_ONLY)
+def _stored(make: Any) -> tuple[str, ...]:
+    """Return the names of the arguments that are stored: a half angle is stored as its slope."""
+    return tuple(name for name in inspect.signature(make).parameters if name != "half_angle")
 
 
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
-    **{name: (make, _positional(make)) for name, make in MADE.items()},
+    **{name: (make, _stored(make)) for name, make in MADE.items()},
     "Response": (core.Response._of, ("values", "local")),
     "Grid.line": (core.Grid.line, ("cells", "width", "center")),
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
@@ -150,7 +149,8 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"sum": of(arguments["parts"])}
         if "." in arguments:
             return {"shifted": [of(arguments["."]), *arguments["shift"]]}
-        name, maker = type(value).__name__, value.__reduce__()[0].__name__
+        name, make = type(value).__name__, value.__reduce__()[0]
+        maker = getattr(make, "func", make).__name__
         kept = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
         return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": kept}
 

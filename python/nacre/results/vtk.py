@@ -64,7 +64,7 @@ def write_stress(
     if unknown := set(options) - set(OPTIONS):
         known = ", ".join(OPTIONS)
         raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
-    depths = np.asarray(core.plain("depths", depths), dtype=np.float64)
+    depths = core.real_array("depths", depths)
     z, planes = _planes(solution, np.atleast_1d(depths), options)
     shape = (*solution.pressure.shape, z.size)
     points: dict[str, Any] = {

@@ -203,8 +203,8 @@ def sweep(
     assessed = {**(fatigue or {})} if rated else {}
     if unknown := set(assessed) - RATED:
         raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
-    if not isinstance(version, str | int | None):
-        raise TypeError(f"version must be a text or an integer, got {version!r}")
+    if not isinstance(version, str | None):
+        version = core.integer("version", version)
     identity = identified(wanted, asked, assessed, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:

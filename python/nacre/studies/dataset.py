@@ -35,10 +35,12 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
     places: list[xarray.DataArray] = []
     for name, given in parameters.items():
         if isinstance(given, xarray.DataArray):
-            values[name] = [item.item() for item in given.values.ravel()]
+            flat = xarray.DataArray(given.data.ravel(), attrs=given.attrs)
+            numbers = np.asarray(core.plain(name, flat))
+            values[name] = [item.item() for item in numbers]
             dims, shape = given.dims, given.shape
             coordinates |= {str(key): coord for key, coord in given.coords.items()}
-            coordinates[name] = (dims, given.values)
+            coordinates[name] = (dims, numbers.reshape(shape))
         else:
             if isinstance(given, str) or not isinstance(given, Iterable):
                 raise TypeError(f"{name} must be a sequence of values, got {given!r}")
@@ -46,7 +48,8 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
             if isinstance(given, Mapping):
                 labels, values[name] = [str(label) for label in given], list(given.values())
             else:
-                values[name] = [v.item() if isinstance(v, np.generic) else v for v in given]
+                rows = given.to_numpy() if hasattr(given, "to_numpy") else given  # of a table
+                values[name] = [v.item() if isinstance(v, np.generic) else v for v in rows]
                 labels = values[name]
                 kinds = {type(v) for v in labels}
                 if not (kinds <= {int, float} or kinds in ({bool}, {str})):

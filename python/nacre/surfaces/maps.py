@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
+from nacre._tools.arguments import name_or_number
 from nacre._tools.progress import lasting
 from nacre._tools.typing import AnyPath, Pair, Topography
 from nacre.surfaces import heights as _heights
@@ -98,8 +99,8 @@ def read_map(
         raise ValueError(f"detrend must be one of {', '.join(TRENDS)}, got {detrend!r}")
     if unit is not None and unit not in METRES:
         raise ValueError(f"unit must be one of {', '.join(METRES)}, got {unit!r}")
-    if channel is not None and (isinstance(channel, bool) or not isinstance(channel, str | int)):
-        raise TypeError(f"channel must be a name or a number, got {channel!r}")
+    if channel is not None:
+        channel = name_or_number("channel", channel)
     name, found = _found(path, channel)
     heights, sides = found.heights, found.spacing
     if transpose:

@@ -155,8 +155,10 @@ def _column(
         return usual
     if isinstance(asked, str) and names.count(asked) == 1:
         return names.index(asked)
-    if isinstance(asked, int) and not isinstance(asked, bool) and 0 <= asked < table.width:
-        return asked
+    if asked is not None and not isinstance(asked, str):
+        asked = core.integer(keyword, asked)
+        if 0 <= asked < table.width:
+            return asked
     listed = ", ".join(f"{k} {name!r}" for k, name in enumerate(names)) or (
         f"{table.width} columns without names, first {', '.join(f'{v:g}' for v in table.rows[0])}"
     )

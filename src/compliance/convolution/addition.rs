@@ -208,7 +208,6 @@ impl Addition {
         product.fill(ZERO);
         for (b, spectrum) in spectra.chunks_exact(product.len()).enumerate() {
             let matrix = self.spectrum.row(pair(a, b));
-            let matrix = matrix.to_slice().unwrap_or(&[]);
             for ((sum, factor), wave) in product.iter_mut().zip(matrix).zip(spectrum) {
                 *sum += wave * factor;
             }

@@ -59,6 +59,7 @@ use crate::compliance::response::Body;
 use crate::contact::problem::patch::rows;
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::Surface;
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lanes, ONE, update_with_largest, where_positive};
 
 /// Estimated discretisation errors: differences from the limit of ever finer cells.
@@ -241,7 +242,9 @@ impl Unresolved {
         let columns = window[1].len();
         let none = vec![0.0; columns];
         let mut before: &[f64] = &none;
-        for (p, u) in rows(pressure, window).zip(rows(displacement, window)) {
+        let fields = [slice(pressure), slice(displacement)];
+        let [pressures, displacements] = [0, 1].map(|k| rows(&fields[k], grid.shape()[1], window));
+        for (p, u) in pressures.zip(displacements) {
             let ([top, depth], [total, product, touching]) =
                 update_with_largest([p, u], [], |[p, u], []| {
                     let touches = where_positive(p, ONE);

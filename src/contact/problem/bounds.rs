@@ -13,6 +13,7 @@ use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, none_negative, same_shape};
 use crate::model::grid::{Grid, Window};
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lanes, ONE, ZERO, all, where_positive};
 
 /// The bounds 0 ≤ p ≤ H of the cells of a grid or window.
@@ -34,10 +35,7 @@ impl<'a> Bounds<'a> {
     pub(crate) fn of(hardness: &'a Hardness, columns: usize) -> Self {
         let limits = match hardness {
             Hardness::Uniform(limit) => vec![*limit; columns].into(),
-            Hardness::Cells(limits) => match limits.as_slice() {
-                Some(limits) => limits.into(),
-                None => limits.iter().copied().collect(),
-            },
+            Hardness::Cells(limits) => slice(limits),
         };
         Self { limits, columns, is_limited: true }
     }
@@ -158,25 +156,24 @@ impl Hardness {
     }
 
     /// The one number, or those of the cells in C order.
-    fn values(&self) -> &[f64] {
+    fn values(&self) -> Cow<'_, [f64]> {
         match self {
-            Self::Uniform(value) => std::slice::from_ref(value),
-            Self::Cells(values) => values.as_slice().unwrap_or(&[]),
+            Self::Uniform(value) => std::slice::from_ref(value).into(),
+            Self::Cells(values) => slice(values),
         }
     }
 
     /// Hardness of a cell by its number in C order.
     pub(crate) fn at(&self, cell: usize) -> f64 {
-        match self.values() {
-            [uniform] => *uniform,
-            values => values[cell],
+        match self {
+            Self::Uniform(value) => *value,
+            Self::Cells(values) => values[[cell / values.ncols(), cell % values.ncols()]],
         }
     }
 
     /// Largest hardness of the cells that may yield; 0 where none may.
     pub(crate) fn largest(&self) -> f64 {
-        let values = self.values().iter().filter(|value| value.is_finite());
-        values.fold(0.0, |a: f64, b| a.max(*b))
+        self.values().iter().filter(|h| h.is_finite()).fold(0.0, |a, h| a.max(*h))
     }
 }
 

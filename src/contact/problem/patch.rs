@@ -48,20 +48,20 @@ fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> 
     values
 }
 
-/// Rows of a window of an array in C order.
+/// Rows of a window of the values of a grid of `columns` columns.
 pub(crate) fn rows<'a>(
-    array: &'a ArrayRef2<f64>,
+    values: &'a [f64],
+    columns: usize,
     [x, y]: &Window,
 ) -> impl Iterator<Item = &'a [f64]> {
-    let (columns, y) = (array.ncols().max(1), y.clone());
-    let rows = array.as_slice().unwrap_or(&[]).chunks_exact(columns);
-    let rows = rows.skip(x.start).take(x.len());
+    let rows = values.chunks_exact(columns).skip(x.start).take(x.len());
+    let y = y.clone();
     rows.map(move |row| &row[y.clone()])
 }
 
-/// Values of a window of an array, in C order as the array.
+/// Values of a window of an array in C order.
 pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
-    rows(array, window).flatten().copied().collect()
+    block(array, window).iter().copied().collect()
 }
 
 /// The smallest window that holds all cells for which `member` is true; `None` where there is no such cell.

@@ -8,6 +8,7 @@ use crate::compliance::ends::Ends;
 use crate::contact::problem::patch::rows;
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::{Extent, Surface};
+use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest, where_positive};
 
 /// A warning: something about a solution that its user should know.
@@ -375,8 +376,9 @@ impl Outline {
         let (mut cells, mut begun) = (vec![0.0; columns], vec![0.0; columns]);
         let mut highest = vec![0.0; columns];
         let mut gap_before: &[f64] = &vec![0.0; columns];
-        let contact = window[0].clone().zip(rows(pressure, window));
-        for ((i, row), gap) in contact.zip(rows(gap, window)) {
+        let (pressure, gap) = (slice(pressure), slice(gap));
+        let [pressures, gaps] = [&pressure, &gap].map(|values| rows(values, shape[1], window));
+        for ((i, row), gap) in window[0].clone().zip(pressures).zip(gaps) {
             let mut start = 0;
             for run in row.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
                 let end = start + run.len();

@@ -12,10 +12,10 @@
 
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
-use crate::contact::problem::{Multipliers, Problem, Quality};
-use crate::contact::problem::{SolutionFields, slice_mut};
+use crate::contact::problem::{Multipliers, Problem, Quality, SolutionFields};
 use crate::error::{Error, Result};
 use crate::model::grid::full_window;
+use crate::numerics::layout::slice_mut;
 use crate::numerics::linear_cg::Conjugacy;
 use crate::numerics::parallel::dot;
 

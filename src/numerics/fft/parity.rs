@@ -393,6 +393,7 @@ impl PaddedTransform {
 mod tests {
     use super::*;
     use crate::numerics::fft::tests::add_double_sum;
+    use crate::numerics::layout::slice;
     use ndarray::Array2;
 
     /// Convolutions of each parity, and their sum, equal the double sum, for odd and even lengths.
@@ -504,7 +505,7 @@ mod tests {
                 let mut exact = vec![0.0; nx * ny];
                 for &(_, input, k, sign) in terms.iter().filter(|term| term.0 == number) {
                     let kernel = kernel(k);
-                    let values = kernel.as_slice().unwrap_or_default();
+                    let values = &slice(&kernel);
                     add_double_sum(&mut exact, ny, sign, &inputs[input], values, parities[k]);
                 }
                 for (found, exact) in output.iter().zip(exact) {

@@ -1,7 +1,7 @@
 //! `nacre.indent.Tip` and `nacre.indent.slope_of`.
 
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
@@ -87,7 +87,7 @@ class! {
 
         /// Cone whose flanks have this slope against the surface, at most 5, or of this half angle between axis and flank [rad].
         #[staticmethod]
-        #[pyo3(signature = (slope=None, *, half_angle=None))]
+        #[pyo3(signature = (*, slope=None, half_angle=None))]
         fn cone(slope: Option<Real>, half_angle: Option<Real>) -> PyResult<Self> {
             Ok(Self(Tip::cone(sloped(slope, half_angle)?)?))
         }
@@ -106,16 +106,15 @@ class! {
         }
 
         /// Cone of this slope, or half angle [rad], with a paraboloid of this radius [m] at its end, up to where both have the same
-        /// slope. The radius must be given.
+        /// slope.
         #[staticmethod]
-        #[pyo3(signature = (slope=None, radius=None, *, half_angle=None))]
+        #[pyo3(signature = (radius, *, slope=None, half_angle=None))]
         fn rounded_cone(
+            radius: Real,
             slope: Option<Real>,
-            radius: Option<Real>,
             half_angle: Option<Real>,
         ) -> PyResult<Self> {
-            let slope = sloped(slope, half_angle)?;
-            let radius = radius.ok_or_else(|| PyTypeError::new_err("radius must be given"))?.0;
+            let (radius, slope) = (radius.0, sloped(slope, half_angle)?);
             Ok(Self(Tip::new(Form::RoundedCone { slope, radius })?))
         }
 
@@ -128,7 +127,7 @@ class! {
 
         /// Cone of this slope, or half angle [rad], that is cut off at the radius `flat` [m].
         #[staticmethod]
-        #[pyo3(signature = (flat, slope=None, *, half_angle=None))]
+        #[pyo3(signature = (flat, *, slope=None, half_angle=None))]
         fn flat_cone(flat: Real, slope: Option<Real>, half_angle: Option<Real>) -> PyResult<Self> {
             let (flat, slope) = (flat.0, sloped(slope, half_angle)?);
             Ok(Self(Tip::new(Form::FlatCone { flat, slope })?))

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use super::base::{Kind, PyShape, held, object, shape_class};
 use crate::model::surface::HeightMap;
-use crate::python::arguments::{Pair, Real, Repr, flags, read_only, real_matrix};
+use crate::python::arguments::{Coordinate, Pair, Real, Repr, flags, read_only, real_matrix};
 use crate::python::value::Arguments;
 
 shape_class! {
@@ -18,7 +18,8 @@ shape_class! {
     /// Parameters
     /// ----------
     /// heights : array_like
-    ///     Heights ``(nx, ny)`` [m], finite.
+    ///     Heights ``(nx, ny)`` [m], finite. Of a DataArray with dimensions x and y, in any order, the coordinates must
+    ///     ascend, and have this spacing; integers that number the samples may have any.
     /// spacing : float or tuple of float
     ///     Distances between samples ``(dx, dy)`` [m], or one for both.
     /// center : tuple of float, optional
@@ -33,7 +34,7 @@ shape_class! {
     ///     If the heights are not real numbers.
     /// ValueError
     ///     If a height is not finite, there are fewer than two samples in a direction, or the spacing
-    ///     is not finite and above 0.
+    ///     is not finite and above 0, or contradicts the coordinates of a DataArray.
     ///
     /// Examples
     /// --------
@@ -70,6 +71,11 @@ shape_class! {
                     ))
                 })?;
             let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
+            for (coordinate, spacing) in Coordinate::both(heights)?.iter().zip(spacing) {
+                if let Some(coordinate) = coordinate {
+                    coordinate.check_spacing("heights", spacing)?;
+                }
+            }
             let map = map.centered_at(center.map_or([0.0; 2], |center| center.0))?;
             Ok(object(Self, map.periodic(flags("periodic", periodic)?)?))
         }

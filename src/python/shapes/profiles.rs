@@ -8,7 +8,7 @@ use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use super::logarithmic::PyLogarithmicProfile;
 use crate::model::surface::{Profile, SampledProfile};
-use crate::python::arguments::{Real, Repr, mapped, read_only, real_array};
+use crate::python::arguments::{Real, Repr, Two, mapped, read_only, real_array};
 use crate::python::value::{self, Arguments, Value};
 
 /// A measured axial profile of a roller: drops at positions, a smooth curve through them, +inf beyond.
@@ -173,8 +173,8 @@ pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
     if let Ok(profile) = object.extract::<PySampledProfile>() {
         return Ok(profile.0.into());
     }
-    match object.extract::<[Bound<'_, PyAny>; 2]>() {
-        Ok([x, drop]) => Ok(PySampledProfile::new(&x, &drop, true, None, None)?.0.into()),
+    match object.extract::<Two>() {
+        Ok(Two([x, drop])) => Ok(PySampledProfile::new(&x, &drop, true, None, None)?.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
             "profile must be a LogarithmicProfile, a SampledProfile or a pair (x, drop), got {}",
             Repr(object)

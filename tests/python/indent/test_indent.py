@@ -29,7 +29,9 @@ def test_states_have_the_shape_of_what_is_given() -> None:
 
 
 @pytest.mark.parametrize(
-    "value", [Tip.paraboloid(1e-5), Tip.cone(0.3), Adhesion.jkr(0.1), Adhesion.dmt(0.1)], ids=repr
+    "value",
+    [Tip.paraboloid(1e-5), Tip.cone(slope=0.3), Adhesion.jkr(0.1), Adhesion.dmt(0.1)],
+    ids=repr,
 )
 def test_values_survive_pickles(value: object) -> None:
     assert pickle.loads(pickle.dumps(value)) == value
@@ -142,13 +144,13 @@ WRONG = {
     "Tip.sphere(-1.0)": "radius must be finite and above 0, got -1",
     "Tip.sphere(5e-324)": "radius must be between 1e-100 and 1e100",
     "slope_of(70.3)": "half_angle must be between 0 and pi/2",
-    "Tip.cone(70)": "slope must be above 0 and at most 5.*half_angle=.*got 70",
+    "Tip.cone(slope=70)": "slope must be above 0 and at most 5.*half_angle=.*got 70",
     "Tip.cone(half_angle=70)": "half_angle must be between 0 and pi/2.*deg2rad.*70",
     "Tip.cone(half_angle=0.1)": "slope must be .* at most 5",
     "Tip.cone()": "exactly one of slope and half_angle",
-    "Tip.cone(0.3, half_angle=1.2)": "exactly one of slope and half",
-    "Tip.rounded_cone(70, 1e-7)": "slope must be .*half_angle=",
-    "Tip.flat_cone(1e-7, 70)": "slope must be .*half_angle=.*got 70",
+    "Tip.cone(slope=0.3, half_angle=1.2)": "exactly one of slope and half",
+    "Tip.rounded_cone(1e-7, slope=70)": "slope must be .*half_angle=",
+    "Tip.flat_cone(1e-7, slope=70)": "slope must be .*half_angle=.*got 70",
     "Tip.flat_cone(1e-7)": "exactly one of slope",
     "Tip.profile([0.0, 2.0, 1.0], [0.0, 0.1, 0.2])": "profile radii must be ascending",
     "Tip.profile([0.0, 1.0], [0.0, 0.1])": "profile",
@@ -170,7 +172,16 @@ WRONG = {
 }
 
 
-@table(*errors(ValueError, WRONG), ("Tip.rounded_cone(0.3)", TypeError, "radius must be given"))
+BY_NAME = {
+    "Tip.cone(0.5)": r"cone\(\) takes 0 positional arguments",
+    "Tip.rounded_cone(1e-7, 0.5)": r"rounded_cone\(\) takes 1 positional argument",
+    "Tip.flat_cone(1e-7, 0.5)": r"flat_cone\(\) takes 1 positional argument",
+    "Tip.rounded_cone(slope=0.3)": "radius",
+}
+"""Half the angle of a cone and its slope are both near 1: the name says which is meant."""
+
+
+@table(*errors(ValueError, WRONG), *errors(TypeError, BY_NAME))
 def test_bad_input_is_refused(call: str, kind: type[Exception], words: str) -> None:
     names = globals() | {"ball": Indentation(STEEL, Tip.sphere(1e-5)), "slope_of": slope_of}
     refused(call, kind, words, names)
@@ -220,12 +231,12 @@ ANGLE = np.deg2rad(70.3)
 @pytest.mark.parametrize(
     ("by_angle", "by_slope"),
     [
-        (Tip.cone(half_angle=ANGLE), Tip.cone(1 / math.tan(ANGLE))),
+        (Tip.cone(half_angle=ANGLE), Tip.cone(slope=1 / math.tan(ANGLE))),
         (
             Tip.rounded_cone(radius=1e-7, half_angle=ANGLE),
-            Tip.rounded_cone(1 / math.tan(ANGLE), 1e-7),
+            Tip.rounded_cone(1e-7, slope=1 / math.tan(ANGLE)),
         ),
-        (Tip.flat_cone(1e-7, half_angle=ANGLE), Tip.flat_cone(1e-7, 1 / math.tan(ANGLE))),
+        (Tip.flat_cone(1e-7, half_angle=ANGLE), Tip.flat_cone(1e-7, slope=1 / math.tan(ANGLE))),
     ],
 )
 def test_a_half_angle_is_a_slope(by_angle: Tip, by_slope: Tip) -> None:
@@ -268,7 +279,7 @@ def test_deep_contacts_are_warned_of(tip: Tip, shallow: float, deep: float) -> N
 def test_steep_cones_are_warned_of_and_berkovichs_is_not() -> None:
     assert not Indentation(STEEL, Tip.berkovich()).at(load=1e-3).warnings
     with pytest.warns(nacre.NacreWarning, match="up to 0.60"):
-        Indentation(STEEL, Tip.cone(0.6)).at(load=1e-3)
+        Indentation(STEEL, Tip.cone(slope=0.6)).at(load=1e-3)
 
 
 def test_a_fit_is_warned_of_once() -> None:

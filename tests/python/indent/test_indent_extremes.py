@@ -23,11 +23,11 @@ BASE = nacre.Elastic(70e9, 0.22)
 BODY = nacre.HalfSpace(BASE, [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-6)])
 TIPS = {
     "sphere": Tip.sphere(5e-6),
-    "cone": Tip.cone(0.3),
+    "cone": Tip.cone(slope=0.3),
     "power": Tip.power(1e-2, 1.5),
-    "rounded_cone": Tip.rounded_cone(0.3, 1e-6),
+    "rounded_cone": Tip.rounded_cone(1e-6, slope=0.3),
     "rounded_punch": Tip.rounded_punch(1e-6, 5e-6),
-    "flat_cone": Tip.flat_cone(1e-6, 0.3),
+    "flat_cone": Tip.flat_cone(1e-6, slope=0.3),
     "flat_punch": Tip.flat_punch(1e-6),
     "profile": Tip.profile(np.linspace(0, 2e-5, 9), np.linspace(0, 2e-5, 9) ** 2 / 1e-5),
 }
@@ -65,7 +65,7 @@ def calls() -> dict[str, tuple[str, Callable[[Any], Any]]]:
     """Return functions of one number by their names, each with the name of the number."""
     found: dict[str, tuple[str, Callable[[Any], Any]]] = {
         "slope_of": ("half_angle", slope_of),
-        "cone": ("slope", lambda x: used(Tip.cone(x))),
+        "cone": ("slope", lambda x: used(Tip.cone(slope=x))),
         "cone angle": ("half_angle|slope", lambda x: used(Tip.cone(half_angle=x))),
         "sphere": ("radius", lambda x: used(Tip.sphere(x))),
         "paraboloid": ("radius", lambda x: used(Tip.paraboloid(x))),
@@ -73,12 +73,12 @@ def calls() -> dict[str, tuple[str, Callable[[Any], Any]]]:
         "factor": ("factor", lambda x: used(Tip.power(x, 2.0))),
         "exponent": ("exponent", lambda x: used(Tip.power(1e-3, x))),
         "berkovich": ("radius", lambda x: used(Tip.berkovich(x))),
-        "rounded_cone": ("radius", lambda x: used(Tip.rounded_cone(0.3, x))),
-        "rounded_cone slope": ("slope", lambda x: used(Tip.rounded_cone(x, 1e-6))),
+        "rounded_cone": ("radius", lambda x: used(Tip.rounded_cone(x, slope=0.3))),
+        "rounded_cone slope": ("slope", lambda x: used(Tip.rounded_cone(1e-6, slope=x))),
         "rounded_punch": ("radius", lambda x: used(Tip.rounded_punch(1e-6, x))),
         "rounded_punch flat": ("flat", lambda x: used(Tip.rounded_punch(x, 1e-6))),
-        "flat_cone": ("flat", lambda x: used(Tip.flat_cone(x, 0.3))),
-        "flat_cone slope": ("slope", lambda x: used(Tip.flat_cone(1e-6, x))),
+        "flat_cone": ("flat", lambda x: used(Tip.flat_cone(x, slope=0.3))),
+        "flat_cone slope": ("slope", lambda x: used(Tip.flat_cone(1e-6, slope=x))),
         "area depth": ("depth|area function", lambda x: used(Tip.area_function([24.5], x))),
         "jkr": ("work|minimum", lambda x: adhering(Adhesion.jkr(x))),
         "dmt": ("work", lambda x: adhering(Adhesion.dmt(x))),

@@ -208,3 +208,40 @@ def test_a_stress_with_wrong_axes_is_refused(changes: dict[str, Any], message: s
 def test_friction_with_wrong_fields_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         nacre.types.FrictionSolution.from_dict(solved("slid").to_dict() | changes)
+
+
+@every_result
+def test_numpy_makes_no_array_of_a_result(kind: str) -> None:
+    result = RESULTS[kind]
+    has_pressure = isinstance(result, nacre.Solution | nacre.types.FrictionSolution)
+    name = r"pressure\b" if has_pressure else r"\w+"
+    for call in (np.asarray, np.array, np.abs, lambda one: np.asarray([one, one])):
+        with pytest.raises(
+            TypeError, match=rf"a field of a {type(result).__name__}, such as {name}"
+        ):
+            call(result)
+
+
+def test_numpy_makes_no_array_of_what_follows_from_results() -> None:
+    history = nacre.types.History([solved("slid")])
+    with pytest.raises(TypeError, match="a field of a FrictionSolution, such as pressure"):
+        np.asarray(history)
+    for result, name in (
+        (SOLUTION.gradient("approach"), "Gradient"),
+        (SOLUTION.jvp({"load": 1.0}), "Direction, such as pressure"),
+        (solved("one"), "IndentSolution, such as pressure"),
+        (solved("one").derivatives()["tip.radius"], "StateDerivative"),
+        (nacre.indent.Indentation(STEEL, results.ROUND).curve(approach=[1e-8]), "IndentCurve"),
+        (solved("fit"), "Fit"),
+    ):
+        with pytest.raises(TypeError, match=f"a field of a {name}"):
+            np.asarray(result)
+
+
+def test_arrays_of_objects_hold_results() -> None:
+    """As columns of pandas do."""
+    column = np.empty(2, dtype=object)
+    column[:] = [SOLUTION, SUMMARY]
+    assert column[0] is SOLUTION
+    assert column[1] is SUMMARY
+    assert np.array([SOLUTION, SUMMARY], dtype=object)[1] is SUMMARY

@@ -1,0 +1,172 @@
+//! Arrays may have any order in memory: the same numbers follow, and the same errors.
+
+use nacre::convolution::Convolution;
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{
+    Algorithm, Contact, FrictionOptions, Grid, Hardness, HeightMap, Motion, Options, Paraboloid,
+    Result, Setup, Solution, Step, StressOptions, Surface, stress,
+};
+use ndarray::{Array2, Axis, s};
+
+use crate::support::settings::{plan, steel};
+
+/// The same array with columns first, with both axes backwards, and within a larger one.
+fn layouts(array: &Array2<f64>) -> [Array2<f64>; 3] {
+    let (rows, columns) = array.dim();
+    let mut columns_first = Array2::zeros((columns, rows)).reversed_axes();
+    columns_first.assign(array);
+    let mut backwards = array.slice(s![..;-1, ..;-1]).to_owned();
+    backwards.invert_axis(Axis(0));
+    backwards.invert_axis(Axis(1));
+    let mut spread = Array2::zeros((2 * rows, 3 * columns));
+    spread.slice_mut(s![..;2, ..;3]).assign(array);
+    let apart = spread.slice_move(s![..;2, ..;3]);
+    let all = [columns_first, backwards, apart];
+    for one in &all {
+        assert!(one == array && !one.is_standard_layout());
+    }
+    all
+}
+
+/// Positive numbers without a symmetry.
+fn map(shape: [usize; 2]) -> Array2<f64> {
+    Array2::from_shape_fn(shape, |(i, j)| 1.0 + ((3 * i + 5 * j) % 17) as f64 / 16.0)
+}
+
+fn contact() -> Result<Contact> {
+    plan(steel()?, Grid::new([12, 10], [3e-4, 3e-4])?)
+}
+
+fn solved(options: &Options) -> Result<Solution> {
+    contact()?.solve(&Paraboloid::new(5e-3, 5e-3)?, &Motion::load(10.0), options)
+}
+
+#[test]
+fn options_of_a_solve() -> Result<()> {
+    let (map, hardness) = (map([12, 10]), |values| Some(Hardness::Cells(values)));
+    let dent = 1e-9 * &map;
+    for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+        let of = |initial: &Array2<f64>, limits: Array2<f64>, indentation: &Array2<f64>| {
+            let (initial, indentation) = (Some(initial.clone()), Some(indentation.clone()));
+            let hardness = hardness(limits);
+            solved(&Options { algorithm, initial, hardness, indentation, ..Options::default() })
+        };
+        let expected = of(&map, 7e8 * &map, &dent)?;
+        // The hardness limits the pressure: the two calls differ.
+        assert!(expected.plastic_work() > 0.0);
+        for ((initial, limits), dent) in
+            layouts(&map).iter().zip(layouts(&(7e8 * &map))).zip(layouts(&dent))
+        {
+            let solution = of(initial, limits, &dent)?;
+            assert_eq!(solution.pressure, expected.pressure);
+            assert_eq!(solution.indentation, expected.indentation);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn wrong_values_are_refused() -> Result<()> {
+    for (wrong, name) in
+        [(-1.0, "hardness must be above 0"), (f64::NAN, "hardness must be above 0")]
+    {
+        let mut limits = map([12, 10]);
+        limits[[7, 3]] = wrong;
+        for limits in layouts(&limits) {
+            let hardness = Some(Hardness::Cells(limits.clone()));
+            let error = solved(&Options { hardness, ..Options::default() }).err();
+            assert!(error.is_some_and(|error| error.to_string().starts_with(name)));
+            for options in [
+                Options { initial: Some(limits.clone()), ..Options::default() },
+                Options { indentation: Some(limits.clone()), ..Options::default() },
+            ] {
+                assert!(solved(&options).is_err());
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn convolutions() -> Result<()> {
+    let grid = Grid::new([12, 10], [3e-4, 3e-4])?;
+    let coefficients = influence_coefficients(&steel()?.into(), &grid, Method::Exact)?;
+    let (pressure, convolution) = (map([12, 10]), Convolution::plan(&coefficients, None)?);
+    let expected = convolution.apply(&pressure)?;
+    for (pressure, coefficients) in layouts(&pressure).iter().zip(layouts(&coefficients)) {
+        assert_eq!(convolution.apply(pressure)?, expected);
+        assert_eq!(Convolution::plan(&coefficients, None)?.apply(pressure)?, expected);
+        for mut displacement in layouts(&expected) {
+            displacement.fill(0.0);
+            convolution.apply_into(pressure, &mut displacement, &mut convolution.workspace())?;
+            assert_eq!(displacement, expected);
+        }
+        let setup = Setup { coefficients: Some(coefficients.into_shared()), ..Setup::default() };
+        let contact = Contact::plan(steel()?, grid, setup)?;
+        let shape = Paraboloid::new(5e-3, 5e-3)?;
+        let solution = contact.solve(&shape, &Motion::load(10.0), &Options::default())?;
+        assert_eq!(solution.pressure, solved(&Options::default())?.pressure);
+    }
+    Ok(())
+}
+
+#[test]
+fn surfaces_and_friction() -> Result<()> {
+    let (map, grid) = (map([12, 10]), Grid::new([12, 10], [3e-4, 3e-4])?);
+    let gaps = |heights: &Array2<f64>| HeightMap::new(heights.clone(), [2.5e-5, 3e-5])?.gaps(&grid);
+    let slid = |friction: &Array2<f64>| -> Result<Array2<f64>> {
+        let step = Step::press(Motion::load(10.0), friction.clone());
+        let step = Step { force: [Some(1.0), None], ..step };
+        let options = FrictionOptions { tolerance: 1e-4, ..FrictionOptions::default() };
+        let steps = contact()?.slide(&Paraboloid::new(5e-3, 5e-3)?, &[step], &options, None)?;
+        Ok(steps[0].traction[0].clone())
+    };
+    let stresses = |pressure: &Array2<f64>| {
+        let body = steel()?.into();
+        stress(&body, &grid, pressure, &[1e-5], &StressOptions::default())
+    };
+    for other in layouts(&map) {
+        assert_eq!(gaps(&other)?, gaps(&map)?);
+        assert_eq!(slid(&other)?, slid(&map)?);
+        assert_eq!(stresses(&other)?, stresses(&map)?);
+    }
+    Ok(())
+}
+
+/// A surface whose gaps have their columns first.
+#[derive(Debug)]
+struct ColumnsFirst(Paraboloid);
+
+impl Surface for ColumnsFirst {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.0.gap(x, y)
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let [columns_first, ..] = layouts(&self.0.gaps(grid)?);
+        Ok(columns_first)
+    }
+}
+
+#[test]
+fn fields_that_a_user_replaces() -> Result<()> {
+    let solution = solved(&Options::default())?;
+    let shape = ColumnsFirst(Paraboloid::new(5e-3, 5e-3)?);
+    let options = Options::default();
+    let again = contact()?.solve(&shape, &Motion::load(10.0), &options)?;
+    assert_eq!(again.pressure, solution.pressure);
+    for (pressure, displacement) in
+        layouts(&solution.pressure).into_iter().zip(layouts(&solution.displacement))
+    {
+        let other = Solution { pressure, displacement, ..solution.clone() };
+        assert_eq!(other.gap(), solution.gap());
+        assert_eq!(other.line_load(), solution.line_load());
+        assert_eq!(other.contact_extent(), solution.contact_extent());
+        assert_eq!(other.stiffness(None)?, solution.stiffness(None)?);
+        let depths = [1e-5];
+        let stresses =
+            |of: &Solution| of.stress(Default::default(), &depths, &StressOptions::default());
+        assert_eq!(stresses(&other)?, stresses(&solution)?);
+    }
+    Ok(())
+}
