@@ -6,7 +6,11 @@ Quantities are plain numbers in consistent units; `display_units` says which uni
 from __future__ import annotations
 
 import math
+import re
 import sys
+import threading
+from collections.abc import Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass
 from types import TracebackType
 
@@ -27,6 +31,11 @@ BASES = {
 The pound-force and the inch are exact by definition; a psi is a pound-force per square inch.
 """
 IMPERIAL = ("lbf", "in", "psi")
+POWERS = {"": 1, "²": 2, "³": 3, "⁴": 4}
+FACTORS = re.compile(r"([/ ]?)([^/ ²³⁴]+)([²³⁴]?)")
+"""A unit in a product or a quotient: the sign before it, its name, and its power."""
+WORK = {"J": "N m", "J/m": "N", "J/m²": "N/m", "J/m³": "Pa"}
+"""Units of energies in systems that have no name for them."""
 SIZES = {sign: float(f"1e{power}") for power, sign in PREFIXES.items()} | {"c": 1e-2, "T": 1e12}
 READABLE = (0.1, 1e5)
 """Values that are written in a system's own unit, without another prefix; squared for areas."""
@@ -48,18 +57,22 @@ def size_of(unit: str) -> tuple[str, float] | None:
     >>> size_of("N/mm")
     ('N/m', 1000.0)
     """
-    if unit.endswith("²"):
-        side = _simple(unit.removesuffix("²"))
-        return side and (f"{side[0]}²", side[1] ** 2)
-    for mark in "/ ":
-        first, found, second = unit.partition(mark)
-        if found:
-            one, other = _simple(first), _simple(second)
-            if one is None or other is None:
-                return None
-            size = one[1] / other[1] if mark == "/" else one[1] * other[1]
-            return f"{one[0]}{mark}{other[0]}", size
-    return _simple(unit)
+    factors = FACTORS.findall(unit)
+    sizes = {name: _simple(name) for _, name, _ in factors}
+    if not factors or None in sizes.values() or "".join(map("".join, factors)) != unit:
+        return None
+    known = {name: size for name, size in sizes.items() if size is not None}
+    dimension = "".join(f"{mark}{known[name][0]}{power}" for mark, name, power in factors)
+    return dimension, _product(unit, {name: size for name, (_, size) in known.items()})
+
+
+def _product(unit: str, sizes: Mapping[str, float]) -> float:
+    """Return the size of a product or quotient of units with these sizes, others with 1."""
+    above, below = 1.0, 1.0
+    for mark, name, power in FACTORS.findall(unit):
+        size = sizes.get(name, 1.0) ** POWERS[power]
+        above, below = (above, below * size) if mark == "/" else (above * size, below)
+    return above / below
 
 
 PLAIN = {
@@ -118,50 +131,66 @@ class System:
                 f"units must be consistent, stress = force/length²; 1 {parts[0]}/{parts[1]}² is "
                 f"{force / length**2 / stress:.6g} {parts[2]}, got {name!r}"
             )
-        newton, metre, pascal = parts
         self.name = "SI" if parts == ["N", "m", "Pa"] else name
         self.imperial = any(part in IMPERIAL for part in parts)
-        self.units = {
-            "N": (force, newton),
-            "m": (length, metre),
-            "Pa": (stress, pascal),
-            "m²": (length**2, f"{metre}²"),
-            "N/m": (force / length, f"{newton}/{metre}"),
-            "N m": (force * length, f"{newton} {metre}"),
-            "m/N": (length / force, f"{metre}/{newton}"),
-            "m/s": (length, f"{metre}/s"),
-            "1/m": (1 / length, f"1/{metre}"),
-            "m/Pa": (length / stress, f"{metre}/{pascal}"),
-        }
-        work = {"J": "N m", "J/m": "N", "J/m²": "N/m"}
-        if self.name == "SI":
-            self.units |= {unit: (1.0, unit) for unit in work}
-        else:
-            self.units |= {unit: self.units[same] for unit, same in work.items()}
+        self._names = dict(zip(("N", "m", "Pa"), parts, strict=True))
+        self._sizes = {"N": force, "m": length, "Pa": stress}
+
+    def unit(self, dimension: str) -> tuple[float, str]:
+        """Return the size in SI and the name of the unit of numbers whose SI unit is `dimension`.
+
+        >>> System("N-mm-MPa").unit("J/m²")
+        (1000.0, 'N/mm')
+        """
+        if self.name != "SI":
+            dimension = WORK.get(dimension, dimension)
+        parts = FACTORS.findall(dimension)
+        name = "".join(f"{mark}{self._names.get(one, one)}{power}" for mark, one, power in parts)
+        return _product(dimension, self._sizes), name
 
     @property
     def metres(self) -> float:
         """Size of the unit of length in metres."""
-        return self.units["m"][0]
+        return self._sizes["m"]
 
 
 SI = System("SI")
-_system = SI
+
+_block: ContextVar[System | None] = ContextVar("units of a with block", default=None)
+"""Units of the innermost ``with`` block of this thread or task."""
+_thread = threading.local()
+"""Units that a statement has set in a thread other than the main one, as `_thread.system`."""
+_process = SI
+"""Units that a statement has set in the main thread."""
 
 
-class Restoring:
-    """The context in which units are set: they are restored at its end."""
+def system() -> System:
+    """Return the system of units that is set here."""
+    return _block.get() or getattr(_thread, "system", _process)
 
-    def __init__(self, before: System, now: System) -> None:
-        self.before = before
-        self.now = now
 
-    def __repr__(self) -> str:
-        """Name the units: a notebook shows this where `display_units` ends a cell."""
-        return f"numbers are in {', '.join(self.now.units[unit][1] for unit in ('N', 'm', 'Pa'))}"
+def _hold(units: System) -> None:
+    """Set units as a statement does: to the end of a block around it, or until the next call."""
+    global _process
+    if _block.get():
+        _block.set(units)
+    elif threading.current_thread() is threading.main_thread():
+        _process = units
+    else:
+        _thread.system = units
+
+
+class Within:
+    """A context in which units are set: the earlier ones are restored at its end."""
+
+    def __init__(self, units: System) -> None:
+        self._units = units
+        self._outer: list[System | None] = []
 
     def __enter__(self) -> None:
-        """Begin the context, in which the units are set already."""
+        """Set the units for the lines of this block alone."""
+        self._outer.append(_block.get())
+        _block.set(self._units)
 
     def __exit__(
         self,
@@ -170,8 +199,29 @@ class Restoring:
         traceback: TracebackType | None,
     ) -> None:
         """Restore the units."""
-        global _system
-        _system = self.before
+        _block.set(self._outer.pop())
+
+
+class Restoring(Within):
+    """The context that `display_units` returns, which has set its units already."""
+
+    def __init__(self, before: System, now: System) -> None:
+        super().__init__(now)
+        self.before = before
+        self.now = now
+        self._is_statement = True
+        _hold(now)
+
+    def __repr__(self) -> str:
+        """Name the units: a notebook shows this where `display_units` ends a cell."""
+        return f"numbers are in {', '.join(self.now.unit(unit)[1] for unit in ('N', 'm', 'Pa'))}"
+
+    def __enter__(self) -> None:
+        """Set the units for this block, and no longer as a statement does."""
+        if self._is_statement:
+            self._is_statement = False
+            _hold(self.before)
+        super().__enter__()
 
 
 def display_units(system: str) -> Restoring:
@@ -190,8 +240,9 @@ def display_units(system: str) -> Restoring:
     Returns
     -------
     context manager
-        Context at whose end the earlier units are restored. Without a ``with`` statement the units
-        hold in this process until the next call.
+        Context at whose end the earlier units are restored. Its units hold in this thread alone,
+        or in this task of asyncio. Without a ``with`` statement the units hold until the next
+        call: those of the main thread in all threads that set none, those of another thread in it.
 
     Raises
     ------
@@ -201,7 +252,7 @@ def display_units(system: str) -> Restoring:
     Notes
     -----
     Numbers below 0.1 or from 100 000 get another prefix: 0.002 mm is printed as 2 µm.
-    `HeightMap.read` gives metres whatever is set.
+    `HeightMap.read` gives metres whatever is set. Bearings are in SI.
 
     Examples
     --------
@@ -211,15 +262,11 @@ def display_units(system: str) -> Restoring:
     ...     print(str(solution).splitlines()[6])
     peak pressure  1603 MPa ± ...
     """
-    global _system
-    before, asked = _system, System(system)
-    _system = SI if asked.name == SI.name else asked
-    return Restoring(before, _system)
+    units = System(system)
+    return Restoring(_system(), SI if units.name == SI.name else units)
 
 
-def system() -> System:
-    """Return the system of units that is set."""
-    return _system
+_system = system
 
 
 def symbol(unit: str) -> str:
@@ -228,7 +275,7 @@ def symbol(unit: str) -> str:
     >>> symbol("N m")
     'N m'
     """
-    return _system.units.get(unit, (1.0, unit))[1]
+    return system().unit(unit)[1]
 
 
 @dataclass(frozen=True)
@@ -245,7 +292,7 @@ class Scale:
         In SI, and where the unit of the system that is set is not readable, `largest` lies between
         1 and 1000 as far as prefixes go.
         """
-        size, own = _system.units.get(unit, (1.0, unit))
+        size, own = system().unit(unit)
         return cls._chosen(largest, size, unit, own)
 
     @classmethod
@@ -263,15 +310,16 @@ class Scale:
     @classmethod
     def _chosen(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
-        # The prefix of an area is squared: mm² are 1e-6 m².
-        power = 2 if dimension.endswith("²") else 1
         if not dimension or largest == 0 or not math.isfinite(largest) or dimension[0] == "1":
             return cls(1.0, own)  # nobody writes k1/m
-        if _system is not SI and dimension in _system.units:
-            target, name = _system.units[dimension]
+        # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
+        power = POWERS[FACTORS.findall(dimension)[0][2]]
+        units = system()
+        if units is not SI:
+            target, name = units.unit(dimension)
             low, high = (bound**power for bound in READABLE)
             factor = 1.0 if size == target else size / target
-            if _system.imperial or low <= abs(largest) * factor < high:
+            if units.imperial or low <= abs(largest) * factor < high:
                 return cls(factor, name)
         # A number just below 1000 is printed as 1000.
         digits = math.log10(abs(largest)) + math.log10(size * (1 + 1e-9))
