@@ -19,7 +19,7 @@ use crate::contact::problem::patch::{bounds, rows};
 use crate::contact::problem::{Multipliers, Quality};
 use crate::contact::solution::warnings::Warning;
 use crate::contact::solver::{Solver, Termination};
-use crate::error::{Error, Result, all_finite, finite, same_shape};
+use crate::error::{Error, Result, all_finite, finite, refuse_if, same_shape};
 use crate::model::grid::{Grid, Window, full_window};
 use crate::model::surface::Surface;
 use crate::numerics::layout::{slice, slice_mut};
@@ -177,20 +177,28 @@ impl Solution {
         self.pressure.sum() * self.grid().cell_area()
     }
 
-    /// First moments of the pressure about the origin (Σ p x dA, Σ p y dA) \[N m\].
+    /// First moments of the pressure about the origin (Σ p x dA, Σ p y dA) \[N m\]; NaN along an axis on which the grid
+    /// is periodic, where they depend on the cell that is the first.
     pub fn moment(&self) -> [f64; 2] {
         let area = self.grid().cell_area();
         let by_axis = |axis: usize| {
+            if self.grid().is_periodic()[axis] {
+                return f64::NAN;
+            }
             let line = self.pressure.sum_axis(ndarray::Axis(1 - axis));
             line.dot(&self.grid().coordinates(axis)) * area
         };
         [by_axis(0), by_axis(1)]
     }
 
-    /// Point where the force acts \[m\]; the origin where there is no force.
+    /// Point where the force acts \[m\]; the origin where there is no force, and NaN along an axis on which the grid is
+    /// periodic.
     pub fn eccentricity(&self) -> [f64; 2] {
         let load = self.load();
-        self.moment().map(|moment| if load > 0.0 { moment / load } else { 0.0 })
+        self.moment().map(|moment| match moment.is_nan() || load > 0.0 {
+            true => moment / load,
+            false => 0.0,
+        })
     }
 
     /// Area of the cells in contact \[m²\].
@@ -280,11 +288,16 @@ impl Solution {
     /// cells a parabola through p² of the third to the seventh cell is continued to its zero. At a
     /// sharp edge, where p grows, on lines of fewer than 14 cells, and where there is no such zero
     /// within a cell, the contact ends with its outermost cell. Both ends are 0 where there is no
-    /// contact.
+    /// contact, and NaN along an axis on which the grid is periodic where the contact goes on from its last cell to its
+    /// first.
     pub fn contact_extent(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| {
-            let lanes = self.pressure.lanes(ndarray::Axis(axis)).into_iter();
-            let ends = lanes.filter_map(line_ends).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            let lanes = || self.pressure.lanes(ndarray::Axis(axis)).into_iter();
+            let wraps = |p: ndarray::ArrayView1<f64>| p[0] > 0.0 && p[p.len() - 1] > 0.0;
+            if self.grid().is_periodic()[axis] && lanes().any(wraps) {
+                return [f64::NAN; 2];
+            }
+            let ends = lanes().filter_map(line_ends).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
             let first = self.grid().coordinates(axis)[0];
             let spacing = self.grid().spacing()[axis];
             ends.map_or([0.0; 2], |ends| ends.map(|end| first + spacing * end))
@@ -424,6 +437,18 @@ impl Report {
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
+    }
+
+    /// Checks that a history that begins with this solution goes on with the same bodies.
+    ///
+    /// # Errors
+    /// Where a body is another one.
+    pub(crate) fn check_bodies(&self, body: &Body, counterbody: Option<&Body>) -> Result<()> {
+        refuse_if(
+            self.body != *body || self.counterbody.as_ref() != counterbody,
+            "initial must be a solution of the body and the counterbody of this contact, was one of others: what has \
+             slipped or yielded belongs to its bodies",
+        )
     }
 
     /// How free ends of the bodies are counted; `None` where there are none.

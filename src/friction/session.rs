@@ -18,7 +18,6 @@ use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros}
 use crate::compliance::traction::Tangential;
 use crate::contact::{Contact, Motion, Options, Report, Solution, Termination, Warning};
 use crate::error::{Error, Result, fraction};
-use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 use crate::numerics::parallel::dot;
 
@@ -137,7 +136,7 @@ impl<'a> Session<'a> {
             .ok_or(Error::Inconsistent("the first step must have a coefficient of friction"))?;
         friction.check(grid)?;
         let freedoms = step.freedoms(grid)?;
-        let before = before_of(last, grid)?;
+        let before = before_of(last, self.contact)?;
         let [x, y] = before.shift;
         let starts = [x, y, before.twist];
         let task = TractionTask {
@@ -172,7 +171,7 @@ impl<'a> Session<'a> {
             rolling: Some(rolling),
             is_steady,
             increments: [along, across, Freedom::Prescribed(rolling.spin)].map(over_a_cell),
-            before: before_of(last, grid)?,
+            before: before_of(last, self.contact)?,
         })
     }
 
@@ -297,10 +296,15 @@ impl<'a> Session<'a> {
             && course.report.imbalance <= tolerance + ROUNDING
             && course.report.pressure_change <= tolerance
             && normal.report.converged();
+        let coupling_energy = match self.coupled {
+            true => 0.5 * grid.cell_area() * (&normal.pressure * self.lift(&fields.traction)).sum(),
+            false => 0.0,
+        };
         let report = FrictionReport {
             violation: fields.violation,
             excess: fields.excess,
             full_slip: fields.full_slip,
+            coupling_energy,
             termination: match (course.stopped, is_good) {
                 (true, _) => Termination::Stopped,
                 (_, true) => Termination::Converged,
@@ -356,11 +360,15 @@ impl<'a> Session<'a> {
         if !self.coupled {
             return Box::new(self.shape);
         }
-        let grid = self.contact.grid();
+        Box::new(Lifted::new(self.shape, self.contact.grid(), self.lift(traction)))
+    }
+
+    /// The normal displacement of both bodies together that tractions make.
+    fn lift(&self, traction: &[Array2<f64>; 2]) -> Array2<f64> {
+        let shape = self.contact.grid().shape();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
-        let lift = self.tangential.window(grid.shape()).lift(&q);
-        let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
-        Box::new(Lifted::new(self.shape, grid, lift))
+        let lift = self.tangential.window(shape).lift(&q);
+        Array2::from_shape_fn(shape, |(i, j)| lift[i * shape[1] + j])
     }
 
     /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
@@ -483,12 +491,13 @@ fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
 /// The state that a solution leaves, or that of bodies that have not touched.
 ///
 /// # Errors
-/// Where the solution is on another grid.
-fn before_of(last: Option<&FrictionSolution>, grid: &Grid) -> Result<Before> {
+/// Where the solution is one on another grid, or of other bodies.
+fn before_of(last: Option<&FrictionSolution>, contact: &Contact) -> Result<Before> {
     let Some(last) = last else {
-        return Ok(Before::nothing(grid));
+        return Ok(Before::nothing(contact.grid()));
     };
-    grid.check_initial(Some(last.grid()))?;
+    contact.grid().check_initial(Some(last.grid()))?;
+    last.normal.report.check_bodies(contact.body(), contact.setup().counterbody.as_ref())?;
     let (shift, twist) = match last.motion {
         TangentialMotion::Slide { shift, twist } => (shift, twist),
         TangentialMotion::Roll { .. } => ([0.0; 2], 0.0),

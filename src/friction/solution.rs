@@ -57,6 +57,10 @@ pub struct FrictionReport {
     pub excess: f64,
     /// Change of the pressure in the last sweep over the peak; 0 without coupling.
     pub pressure_change: f64,
+    /// Elastic energy ½ Σ p v dA of the pressure and the normal displacement v that tractions make \[J\]; 0 without
+    /// coupling.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub coupling_energy: f64,
     /// Whether tractions and pressure act on each other.
     pub coupled: bool,
     /// Whether all cells in contact slip.
@@ -240,10 +244,17 @@ impl FrictionSolution {
         self.dissipation().sum() * self.grid().cell_area()
     }
 
-    /// Elastic energy ½ Σ q · u dA of tractions and their displacements \[J\].
+    /// What tractions add to the elastic energy of the bodies \[J\]: with the normal displacement v that they make,
+    ///
+    /// ```text
+    /// ½ Σ (q · u + p v) dA
+    /// ```
+    ///
+    /// The normal contact has ½ Σ p w dA without v. The sum of both changes by the work of the forces less what friction
+    /// dissipates. Without coupling v is 0; with it the share of the tractions alone may be below 0. Derived here.
     pub fn tangential_energy(&self) -> f64 {
         let ([qx, qy], [ux, uy]) = (&self.traction, &self.displacement);
-        0.5 * (qx * ux + qy * uy).sum() * self.grid().cell_area()
+        0.5 * (qx * ux + qy * uy).sum() * self.grid().cell_area() + self.report.coupling_energy
     }
 }
 

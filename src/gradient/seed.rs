@@ -47,6 +47,14 @@ impl Seed {
         let p = &state.pressure;
         Ok(match output {
             Output::Approach => Self::of_motion(state, 0),
+            Output::Tilt(axis) | Output::Moment(axis)
+                if solution.grid().is_periodic()[axis_of(*axis)?] =>
+            {
+                return Err(Error::no_derivative(
+                    "a tilt or a moment",
+                    "the grid is periodic along this axis: there is neither a tilt nor a moment",
+                ));
+            }
             Output::Tilt(axis) => Self::of_motion(state, 1 + axis_of(*axis)?),
             Output::Load => Self::of_moment(state, 0, area),
             Output::Moment(axis) => Self::of_moment(state, 1 + axis_of(*axis)?, area),

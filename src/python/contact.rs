@@ -218,13 +218,14 @@ pub(super) fn solve(
     plan: Option<&Bound<'_, PyPlan>>,
 ) -> PyResult<PySolved> {
     let (shape, motion, mut options) = (shape_of(&given)?, motion(&given)?, options(&given)?);
-    let mut first = None;
+    let (mut first, mut dented) = (None, None);
     if let Some(initial) = given.get("initial")? {
         if let Ok(before) = initial.cast::<PySolved>() {
             let before = &before.get().0;
             options.initial = Some(before.pressure.clone());
             options.indentation.clone_from(&before.indentation);
             first = Some(*before.grid());
+            dented = before.indentation.as_ref().map(|_| Arc::clone(before));
         } else {
             options.initial = Some(real_matrix("initial", &initial)?);
         }
@@ -234,10 +235,17 @@ pub(super) fn solve(
         None => {
             let (body, setup, grid) = planning(&given)?;
             // A permanent indentation lies on its grid.
-            let dented = first.filter(|_| options.indentation.is_some());
-            On::Bodies(body, setup, grid.or(dented))
+            let grid = grid.or_else(|| dented.as_ref().map(|before| *before.grid()));
+            On::Bodies(body, setup, grid)
         }
     };
+    if let Some(before) = dented {
+        let (body, setup) = match &on {
+            On::Plan(plan) => (plan.body(), plan.setup()),
+            On::Bodies(body, setup, _) => (body, setup),
+        };
+        before.report.check_bodies(body, setup.counterbody.as_ref())?;
+    }
     let progress = given.callable("progress")?;
     given.flag("check")?;
     let solution = background::run(py, progress, move |caller: &mut Caller<ReportParts>| {

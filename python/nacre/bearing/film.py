@@ -18,7 +18,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
-from nacre.contact.solution import Solution
+from nacre.contact.solution import Solution, check_unyielded
 from nacre.hertz import contact_modulus
 from nacre.results import display
 from nacre.results.listed import Listed
@@ -203,8 +203,8 @@ def film_thickness(
         If solution is no Solution, or another argument no number.
     ValueError
         If an argument is not finite and above 0, the pressure-viscosity coefficient is that of no
-        oil, nothing touches, the grid is periodic, a body has no modulus, or the radius cannot be
-        found.
+        oil, nothing touches, the surfaces have yielded, the grid is periodic, a body has no
+        modulus, or the radius cannot be found.
 
     Examples
     --------
@@ -227,6 +227,7 @@ def film_thickness(
         raise ValueError("solution must be one on a grid that is not periodic")
     if not solution.load > 0:
         raise ValueError(f"solution must be one in contact, got a load of {solution.load:g}")
+    check_unyielded(solution)
     modulus = _modulus(solution)
     if pressure_viscosity * modulus > THICKEST:
         raise ValueError(

@@ -28,7 +28,7 @@ from nacre._tools.typing import Member
 from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
-from nacre.contact.solution import Solution
+from nacre.contact.solution import Solution, check_unyielded
 from nacre.results import display
 from nacre.results.listed import Listed
 from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
@@ -382,6 +382,8 @@ def _ranges(
 def _half_width(solution: Solution) -> float:
     """Return half of the contact's width in the direction of rolling [m]."""
     low, high = solution.contact_extent[1]
+    if math.isnan(high):
+        raise ValueError("solution must have a contact with ends along y, got one that repeats")
     return (high - low) / 2
 
 
@@ -410,8 +412,8 @@ def stress_volume(
     Raises
     ------
     ValueError
-        If nothing touches, a layer does not exist, the slopes of models differ, or the counterbody
-        is rigid.
+        If nothing touches, the surfaces have yielded, a layer does not exist, the slopes of models
+        differ, or the counterbody is rigid.
 
     Examples
     --------
@@ -425,6 +427,7 @@ def stress_volume(
         raise TypeError(f"solution must be a Solution, got {solution!r}")
     if not solution.load > 0:
         raise ValueError("solution must be one in contact, got a load of 0")
+    check_unyielded(solution)
     models: Mapping[int | str, Model] = (
         model if isinstance(model, Mapping) else {"substrate": model}
     )
@@ -548,15 +551,18 @@ def life_ratio(
             "solution and reference must not both have infinite lives: the largest stresses, "
             f"{one.largest:.4g} and {other.largest:.4g} Pa, are below the fatigue limit"
         )
+    notes = one.notes
     if one.integral == 0:
         ratio = math.inf
         text = "the life is infinite in this model: no stress is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
+        notes = (*notes, text)
     else:
         ratio = (other.integral / one.integral) ** (1 / one.slope)
     if other.integral == 0:
         text = "the ratio is 0: no stress of the reference is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
+        notes = (*notes, text)
     models = model.values() if isinstance(model, Mapping) else [model]
     names = " and ".join(dict.fromkeys(type(found).__name__ for found in models))
     return LifeRatio(
@@ -569,7 +575,7 @@ def life_ratio(
         one.interface_shear,
         one.interface_tension,
         f"{names}{kinds}a model: ratios of equal materials only",
-        one.notes,
+        notes,
     )
 
 

@@ -19,7 +19,7 @@ from nacre._tools.units import printable
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import Stressed
 from nacre.results import display, files, tables, values
-from nacre.results.base import Result, as_text, checked, tuples
+from nacre.results.base import Result, Warned, as_text, checked, tuples
 from nacre.results.quantities import AXIS, WITH_FRICTION, Quantity
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ class FrictionReport(Result):
     """
 
     _COMPILED = True
+    _LATER = ("coupling_energy", "warnings")
 
     termination: Literal["running", "converged", "iteration limit", "stopped"]
     """How the iteration ended: "converged", "iteration limit" or "stopped"; "running" in progress.
@@ -66,6 +67,11 @@ class FrictionReport(Result):
     """Largest traction above its bound, over the largest bound."""
     pressure_change: float
     """Change of the pressure in the last sweep, over the peak; 0 without coupling."""
+    coupling_energy: float
+    """Elastic energy of the pressure and the normal displacement that tractions make [J].
+
+    It is 0 without coupling, and part of `FrictionSolution.tangential_energy`.
+    """
     coupled: bool
     """Whether tractions and pressure act on each other."""
     full_slip: bool
@@ -74,11 +80,19 @@ class FrictionReport(Result):
     """Tolerance that was asked for."""
     seconds: float
     """Seconds that the step took, without planning."""
+    warnings: tuple[str, ...] = ()
+    """Warnings about the solution; each was also issued as a `nacre.NacreWarning`."""
 
     @property
     def converged(self) -> bool:
         """Whether the tolerance was met."""
         return self.termination == "converged"
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        said = cls._checked({"warnings": state.pop("warnings") or ()})
+        known = {name: value for name, value in state.items() if value is not None}
+        return dataclasses.replace(super()._restored(known), **said)
 
     def __repr__(self) -> str:
         """Return how the iteration ended."""
@@ -86,6 +100,11 @@ class FrictionReport(Result):
             f"<FrictionReport: {self.termination}, {self.convolutions} convolutions, "
             f"violation {self.violation:.1e}, imbalance {self.imbalance:.1e}>"
         )
+
+
+def _of_normal(name: str) -> Any:
+    """Return a property that is that of the normal contact."""
+    return property(lambda self: getattr(self.normal, name), doc=getattr(Solution, name).__doc__)
 
 
 @dataclass(frozen=True, repr=False)
@@ -129,7 +148,12 @@ class FrictionSolution(Result, Stressed):
     In rolling it is that of the distance rolled [N], the power over the speed.
     """
     tangential_energy: float
-    """Elastic energy of the tractions and their displacements [J]."""
+    """What the tractions add to the elastic energy of the bodies [J].
+
+    It is ``½ sum (q · u + p v) dA`` with the normal displacement v that the tractions make, which
+    is 0 without coupling. The energy of the pressure alone is that of `normal`. With coupling, what
+    the tractions add may be below 0.
+    """
     report: FrictionReport
     """Course of the solve, and how well the laws hold."""
 
@@ -137,33 +161,37 @@ class FrictionSolution(Result, Stressed):
     def _of(cls, solved: core.FrictionSolved) -> Self:
         """Return a solution of the compiled module."""
         numbers = dict.fromkeys(SLIDES + ROLLS) | tuples(json.loads(solved.numbers()))
-        report = FrictionReport(**numbers.pop("report"))
-        return cls(solved, report=report, **numbers)
+        normal = Solution._of(solved.normal())
+        warnings = tuple(normal.report.warnings)
+        report = FrictionReport(**numbers.pop("report"), warnings=warnings)
+        made = cls(solved, report=report, **numbers)
+        made.__dict__["normal"] = normal
+        return made
 
     @functools.cached_property
     def normal(self) -> Solution:
         """Normal contact: pressure, gap, approach, tilt."""
         return Solution._of(self._solved.normal())
 
-    @property
-    def pressure(self) -> Field:
-        """Pressure ``(nx, ny)`` [Pa]."""
-        return self.normal.pressure
+    grid = _of_normal("grid")
+    x, y = _of_normal("x"), _of_normal("y")
+    load, approach, tilt = _of_normal("load"), _of_normal("approach"), _of_normal("tilt")
+    eccentricity, moment = _of_normal("eccentricity"), _of_normal("moment")
+    pressure, gap, line_load = _of_normal("pressure"), _of_normal("gap"), _of_normal("line_load")
+    peak_pressure, peak_position = _of_normal("peak_pressure"), _of_normal("peak_position")
+    central_pressure, in_contact = _of_normal("central_pressure"), _of_normal("in_contact")
+    contact_area, contact_share = _of_normal("contact_area"), _of_normal("contact_share")
+    contact_extent = _of_normal("contact_extent")
+    hardness, indentation = _of_normal("hardness"), _of_normal("indentation")
+    plastic_work = _of_normal("plastic_work")
 
     @property
-    def grid(self) -> core.Grid:
-        """Grid."""
-        return self.normal.grid
+    def elastic_energy(self) -> float:
+        """Elastic energy of both bodies [J], of pressure and tractions together.
 
-    @property
-    def x(self) -> Field:
-        """Cell centres along x, ``(nx,)`` [m]."""
-        return self.normal.x
-
-    @property
-    def y(self) -> Field:
-        """Cell centres along y, ``(ny,)`` [m]."""
-        return self.normal.y
+        It changes by the work of the forces less the energy `dissipated`.
+        """
+        return self.normal.elastic_energy + self.tangential_energy
 
     @functools.cached_property
     def traction(self) -> Field:
@@ -345,7 +373,8 @@ class FrictionSolution(Result, Stressed):
             "friction": self.friction,
             **{name: getattr(self, name) for name in VECTORS},
             "motion": {name: values.encode(getattr(self, name)) for name in motion},
-            "report": dataclasses.asdict(self.report),
+            # The normal contact has the warnings.
+            "report": {k: v for k, v in self.report._state().items() if k != "warnings"},
         }
 
     @classmethod
@@ -360,7 +389,7 @@ class FrictionSolution(Result, Stressed):
             return cls._of(core.FrictionSolved(normal._solved, rest=told, **fields))
 
 
-class History(list[FrictionSolution]):
+class History(list[FrictionSolution], Warned):
     """Steps of sliding or rolling, in their order: a list, which is printed and saved as a whole.
 
     Examples
@@ -373,6 +402,11 @@ class History(list[FrictionSolution]):
     """
 
     _QUANTITIES = WITH_FRICTION
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings about all steps, each once."""
+        return tuple(dict.fromkeys(text for step in self for text in step.report.warnings))
 
     def numbers(self) -> xarray.Dataset:
         """Dataset of the numbers of all steps; needs ``nacre-contact[files]``.

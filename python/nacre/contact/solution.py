@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
+from nacre._tools.units import written
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -223,6 +224,20 @@ class Report(Result):
         )
 
 
+def check_unyielded(solution: Solution) -> None:
+    """Raise a `ValueError` for a contact whose surfaces have yielded.
+
+    Its pressure is right, but the residual stress of the material that yielded is not in the
+    stresses, and the shape of the dent not in what follows from radii.
+    """
+    if (depth := float(solution.indentation.max())) > 0:
+        raise ValueError(
+            "solution must be one whose surfaces have not yielded, as stresses and radii below a "
+            f"dent are not known, got a permanent indentation of {written(depth, 'm')}: solve "
+            "without hardness and without a dented initial solution"
+        )
+
+
 @dataclass(frozen=True, repr=False, init=False)
 class Solution(Result, Stressed):
     """A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
@@ -348,12 +363,15 @@ class Solution(Result, Stressed):
 
     @property
     def eccentricity(self) -> Pair:
-        """Point where the force acts, ``(e_x, e_y)`` [m]; the origin where there is no force."""
+        """Point where the force acts, ``(e_x, e_y)`` [m]; the origin where there is no force.
+
+        It is NaN along an axis on which the grid is periodic, and so is `moment`.
+        """
         return self._numbers["eccentricity"]
 
     @property
     def moment(self) -> Pair:
-        """First moments of the pressure about the origin [N m]."""
+        """First moments of the pressure about the origin [N m]; NaN along a periodic axis."""
         return self._numbers["moment"]
 
     @property
@@ -378,7 +396,11 @@ class Solution(Result, Stressed):
 
     @property
     def contact_extent(self) -> tuple[Pair, Pair]:
-        """Ends of the contact ``((x0, x1), (y0, y1))`` [m], accurate to a fraction of a cell."""
+        """Ends of the contact ``((x0, x1), (y0, y1))`` [m], accurate to a fraction of a cell.
+
+        They are NaN along an axis on which the grid is periodic where the contact goes on from the
+        last cell to the first.
+        """
         return self._numbers["contact_extent"]
 
     @property

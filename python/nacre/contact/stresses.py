@@ -16,7 +16,7 @@ import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
 from nacre.results import display, files, values
-from nacre.results.base import Result, as_text, same
+from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.listed import Tabular
 from nacre.results.quantities import EXTREMES
 
@@ -36,7 +36,7 @@ AXES = ("z", "x", "y")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Stress(Result):
+class Stress(Result, Warned):
     """Stress below the surface, and displacement where it was asked for.
 
     A field has an axis for depth, x and y unless that one was given as a number: ``(nz, nx, ny)``
@@ -377,7 +377,7 @@ class InterfaceStress(_Extremes):
 
 
 @dataclass(frozen=True, repr=False)
-class StressSummary(Tabular):
+class StressSummary(Tabular, Warned):
     """Extremes of the stress in each layer and at each interface.
 
     Printing it shows a table, and so does a notebook. Each value comes with its point

@@ -63,6 +63,10 @@ class States(NamedTuple):
     edges: tuple[float, ...] = ()
     """Places among them where the stress is not smooth: edges of the contact, at the surface."""
 
+    def only(self, depths: list[int]) -> States:
+        """Return the histories at the depths of these numbers."""
+        return States(self.y, self.normal[depths], self.tangential[depths], self.edges)
+
     def at(self, friction: float) -> Array:
         """Return the states with a coefficient of friction."""
         return self.normal + friction * self.tangential if friction else self.normal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
@@ -26,9 +27,11 @@ from nacre.fatigue.summary import (
     numbers,
     prepared,
     rule_of,
+    unresolved,
     word,
 )
 from nacre.results import display, files
+from nacre.results.base import Warned
 from nacre.results.listed import Tabular
 from nacre.results.quantities import SHAKEDOWN
 
@@ -40,7 +43,7 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ShakedownMap(Tabular):
+class ShakedownMap(Tabular, Warned):
     """Shakedown limits of the layers of a contact over the coefficient of friction.
 
     Printing it shows a table, and so does a notebook. `shakedown_map` makes it.
@@ -71,6 +74,10 @@ class ShakedownMap(Tabular):
     """Largest pressure of the contact [Pa]."""
     is_estimate: bool
     """Whether the limits are estimates, as in point contacts and rollers."""
+    warnings: tuple[str, ...] = ()
+    """Warnings, each also issued as `NacreWarning`; none in files of earlier versions."""
+
+    _LATER = ("warnings",)
 
     def _state(self) -> dict[str, Any]:
         return {
@@ -95,6 +102,7 @@ class ShakedownMap(Tabular):
                 rule=rule_of,
                 peak_pressure=float,
                 is_estimate=flag,
+                warnings=lambda texts: tuple(word(text) for text in texts or ()),
             )
         )
 
@@ -172,12 +180,13 @@ class ShakedownMap(Tabular):
     def __str__(self) -> str:
         """Return a table."""
         rows, notes = self._printed()
-        return printable("\n".join([*display.aligned(rows, "<"), *notes]))
+        lines = [*display.aligned(rows, "<"), *notes]
+        return printable("\n".join(lines + [f"warning: {text}" for text in self.warnings]))
 
     def _repr_html_(self) -> str:
         (head, *rows), notes = self._printed()
         picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
+        return display.markup(rows, self.warnings, picture, head, notes, widest=display.WIDE)
 
     def __repr__(self) -> str:
         """Return how much the map holds."""
@@ -216,7 +225,8 @@ def shakedown_map(
     Raises
     ------
     ValueError
-        If an argument is out of range, the contact is periodic, or nothing touches.
+        If an argument is out of range, the contact is periodic, nothing touches, or the surfaces
+        have yielded.
 
     Notes
     -----
@@ -248,30 +258,36 @@ def shakedown_map(
     regions = [
         region for region in asked.regions() if given is None or in_region(region, given).size
     ]
-    shape = (len(regions), coefficients.size)
-    limits, first, deciding = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    peak = asked.rolling.peak_pressure
-    with lasting("shakedown", progress) as tell:
-        for i, region in enumerate(regions):
-            chosen = asked.depths(region) if given is None else in_region(region, given)
-            for k, coefficient in enumerate(coefficients.tolist()):
-                if tell is not None:
-                    tell((i + k / coefficients.size) / len(regions))
-                rows = asked.rows(region, chosen, coefficient)
-                if given is None:
-                    rows = asked.refined(region, rows, coefficient)
-                decides = max(rows, key=lambda row: row.values["shakedown"])
-                limits[i, k] = peak / decides.values["shakedown"]
-                first[i, k] = peak / max(row.values["first_yield"] for row in rows)
-                deciding[i, k] = decides.z
-        if tell is not None:
-            tell(1.0)
     names = tuple(
         "the substrate"
         if region.bottom == np.inf
         else display.layer_name(region.layer, region.name)
         for region in regions
     )
+    said: list[str] = []
+    shape = (len(regions), coefficients.size)
+    limits, first, deciding = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    peak = asked.rolling.peak_pressure
+    with lasting("shakedown", progress) as tell:
+        for i, region in enumerate(regions):
+            if tell is not None:
+                tell(i / len(regions))
+            doubts: dict[str, None] = {}
+            for k, rows in enumerate(asked.evaluated(region, given, coefficients.tolist())):
+                best = {
+                    name: max(rows, key=lambda row, name=name: row.values[name])  # type: ignore[misc]
+                    for name in ("shakedown", "first_yield")
+                }
+                limits[i, k] = peak / best["shakedown"].values["shakedown"]
+                first[i, k] = peak / best["first_yield"].values["first_yield"]
+                deciding[i, k] = best["shakedown"].z
+                doubts |= dict.fromkeys(unresolved(names[i], best))
+            said += doubts
+        if tell is not None:
+            tell(1.0)
+    for text in said:
+        warnings.warn(text, core.NacreWarning, stacklevel=2)
+    is_estimate = asked.rolling.x is not None
     return ShakedownMap(
-        coefficients, limits, first, deciding, names, rule, peak, asked.rolling.x is not None
+        coefficients, limits, first, deciding, names, rule, peak, is_estimate, tuple(said)
     )

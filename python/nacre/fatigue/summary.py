@@ -16,11 +16,11 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
 from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
-from nacre.contact.solution import Solution
+from nacre.contact.solution import Solution, check_unyielded
 from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
-from nacre.results.base import Result
+from nacre.results.base import Result, Warned
 from nacre.results.listed import Tabular
 from nacre.results.quantities import FATIGUE, PROFILE
 
@@ -45,6 +45,10 @@ CLOSEST = 1e-3
 """Distance of depths in half-widths below which a refined one is no other: maxima are flat."""
 JUMP = 0.01
 """Part by which another maximum of the shear amplitude may be less for Matake's plane to jump."""
+DUST = 1e-9
+"""Part of the half-width of the contact below which a place is at 0: the rounding of places."""
+UNLOADED = "unloaded"
+"""In place of y where the stress-free state, infinitely far away, decides."""
 NOISE = 1e-6
 """Part of the peak pressure below which a traction at an interface is printed as 0."""
 UNRESOLVED = 0.25
@@ -164,7 +168,7 @@ class InterfaceFatigue(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FatigueSummary(Tabular):
+class FatigueSummary(Tabular, Warned):
     """Shakedown and fatigue of a solved contact in steady rolling, by layers and interfaces.
 
     Printing it shows a table, and so does a notebook. `assess` makes it.
@@ -314,7 +318,7 @@ class FatigueSummary(Tabular):
             for name, (value, (_, y, z)) in layer._peaks().items():
                 factor = layer.safety_factors.get(name)
                 said = "" if factor is None else f"{factor:.3g}"
-                places = [written(z, "m", 3), written(y, "m", 3)]
+                places = [written(z, "m", 3), UNLOADED if np.isinf(y) else written(y, "m", 3)]
                 told = words.get(name, name)
                 rows.append([head, told, written(value, "Pa"), *places, said])
                 head = ""
@@ -460,18 +464,29 @@ class Assessment:
         bottom = [region.bottom] if region.bottom < np.inf else []
         return np.concatenate([[region.top], kept, bottom])
 
-    def rows(self, region: Region, depths: Array, friction: float) -> list[Row]:
-        """Return what some depths of a layer need."""
+    def rows(
+        self, region: Region, depths: Sequence[Array], frictions: Sequence[float]
+    ) -> list[list[Row]]:
+        """Return what some depths of a layer need, those of each coefficient of friction.
+
+        Stresses are linear in the coefficient: pressure and traction are evaluated once for all.
+        """
+        every = np.unique(np.concatenate(depths))
         parts: list[tuple[list[float], Side]] = [
-            ([z for z in depths if z == 0.0], "below"),
-            ([z for z in depths if z > 0.0 and z != region.bottom], "below"),
-            ([z for z in depths if z == region.bottom], "above"),
+            ([z for z in every if z == 0.0], "below"),
+            ([z for z in every if z > 0.0 and z != region.bottom], "below"),
+            ([z for z in every if z == region.bottom], "above"),
         ]
-        rows = []
+        rows: list[list[Row]] = [[] for _ in frictions]
         for chosen, side in parts:
-            if chosen:
-                found, uncertain = self.rolling.stress(chosen, side, friction != 0.0)
-                rows += self._evaluated(region, chosen, found, uncertain, friction)
+            if not chosen:
+                continue
+            found, uncertain = self.rolling.stress(chosen, side, any(frictions))
+            for k, friction in enumerate(frictions):
+                if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
+                    own = [chosen[n] for n in at]
+                    states = found.only(at)
+                    rows[k] += self._evaluated(region, own, states, uncertain[at], friction)
         return rows
 
     def _evaluated(
@@ -512,23 +527,34 @@ class Assessment:
             )
         return rows
 
-    def refined(self, region: Region, rows: list[Row], friction: float) -> list[Row]:
-        """Return the rows with those at the maxima of parabolas through three depths."""
-        for _ in range(ROUNDS):
-            rows.sort(key=lambda row: row.z)
-            depths = np.array([row.z for row in rows])
-            wanted: list[float] = []
-            for name in rows[0].values:
-                found = np.array([row.values[name] for row in rows])
-                vertex = _vertex(depths, found)
-                near = np.r_[depths, wanted]
-                least = CLOSEST * self.rolling.half_width
-                if vertex is not None and np.abs(near - vertex).min() > least:
-                    wanted.append(vertex)
-            if not wanted:
+    def evaluated(
+        self, region: Region, depths: Array | None, frictions: Sequence[float]
+    ) -> list[list[Row]]:
+        """Return what a layer needs at depths, or at chosen ones, for each coefficient."""
+        chosen = self.depths(region) if depths is None else in_region(region, depths)
+        if not len(chosen):
+            return [[] for _ in frictions]
+        rows = self.rows(region, [chosen] * len(frictions), frictions)
+        for _ in range(ROUNDS if depths is None else 0):
+            wanted = [self._vertices(one) for one in rows]
+            if not any(map(len, wanted)):
                 break
-            rows = rows + self.rows(region, np.sort(wanted), friction)
-        return sorted(rows, key=lambda row: row.z)
+            new = self.rows(region, wanted, frictions)
+            rows = [one + added for one, added in zip(rows, new, strict=True)]
+        return [sorted(one, key=lambda row: row.z) for one in rows]
+
+    def _vertices(self, rows: list[Row]) -> Array:
+        """Return the depths at the maxima of parabolas through three depths, where they are new."""
+        rows = sorted(rows, key=lambda row: row.z)
+        depths = np.array([row.z for row in rows])
+        wanted: list[float] = []
+        for name in rows[0].values:
+            vertex = _vertex(depths, np.array([row.values[name] for row in rows]))
+            near = np.r_[depths, wanted]
+            least = CLOSEST * self.rolling.half_width
+            if vertex is not None and np.abs(near - vertex).min() > least:
+                wanted.append(vertex)
+        return np.sort(wanted)
 
 
 def _range(traction: Array) -> float:
@@ -602,6 +628,7 @@ def prepared(
     """Return what is evaluated, checked."""
     if not isinstance(solution, Solution | FrictionSolution):
         raise TypeError(f"solution must be a Solution or a FrictionSolution, got {solution!r}")
+    check_unyielded(solution.normal if isinstance(solution, FrictionSolution) else solution)
     if rule not in get_args(Rule):
         raise ValueError(f"rule must be 'von_mises' or 'in_plane_tresca', got {rule!r}")
     asked = checked_criteria(criteria)
@@ -676,7 +703,8 @@ def assess(
     Raises
     ------
     ValueError
-        If an argument is out of range, the contact is periodic, or nothing touches.
+        If an argument is out of range, the contact is periodic, nothing touches, or the surfaces
+        have yielded.
 
     Notes
     -----
@@ -721,11 +749,7 @@ def assess(
         for done, region in enumerate(regions):
             if tell is not None:
                 tell(done / len(regions))
-            chosen = asked.depths(region) if given is None else in_region(region, given)
-            rows = asked.rows(region, chosen, friction) if len(chosen) else []
-            if given is None:
-                rows = asked.refined(region, rows, friction)
-            found.append(sorted(rows, key=lambda row: row.z))
+            found += asked.evaluated(region, given, [float(friction)])
         if tell is not None:
             tell(1.0)
     return _summed(asked, regions, found, limits)
@@ -767,6 +791,19 @@ def _summed(
     return summary
 
 
+def unresolved(place: str, best: Mapping[str, Row]) -> list[str]:
+    """Return a warning of the extremes in a layer that the cells do not resolve."""
+    names = [name for name, row in best.items() if row.uncertainty > UNRESOLVED * row.values[name]]
+    are = "is" if len(names) == 1 else "are"
+    text = f"{', '.join(names)} {are} uncertain due to the size of the cells: take smaller cells"
+    return [f"in {place}, {text}"] if names else []
+
+
+def _at(y: float, rolling: Rolling) -> float:
+    """Return a place along y without its rounding."""
+    return 0.0 if abs(y) < DUST * rolling.half_width else y
+
+
 def _layer(
     asked: Assessment, region: Region, rows: list[Row], limit: float | None
 ) -> tuple[LayerFatigue, list[str]]:
@@ -774,7 +811,8 @@ def _layer(
     best = {name: max(rows, key=lambda row: row.values[name]) for name in rows[0].values}
     x = asked.rolling.x or 0.0
     peaks: dict[str, Peak] = {
-        name: (row.values[name], (x, row.at[name], row.z)) for name, row in best.items()
+        name: (row.values[name], (x, _at(row.at[name], asked.rolling), row.z))
+        for name, row in best.items()
     }
     criteria = {type(one).__name__: one for one in asked.criteria}
     factors: dict[str, float] = {}
@@ -795,15 +833,8 @@ def _layer(
         {name: peaks[name] for name in criteria},
         factors,
     )
-    place, said = display.part(layer), []
-    unresolved = [
-        name for name, row in best.items() if row.uncertainty > UNRESOLVED * row.values[name]
-    ]
-    if unresolved:
-        said.append(
-            f"in {place}, {', '.join(unresolved)} {'is' if len(unresolved) == 1 else 'are'} "
-            "uncertain due to the size of the cells: take smaller cells"
-        )
+    place = display.part(layer)
+    said = unresolved(place, best)
     if "Matake" in best and best["Matake"].gap < JUMP:
         said.append(
             f"in {place}, another plane has a shear amplitude within 1 % of that of Matake's "

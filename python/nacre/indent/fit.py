@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -144,9 +145,9 @@ def fit(
     curves = _curves(data)
     _check_arguments(noise, sigma, nuisance)
     system = System.of(body, tip, counterbody, adhesion)
-    for curve in curves:
-        check(curve, stacklevel=3)
-        _check_units(curve, system)
+    doubts = _doubts(curves, system)
+    for text in doubts:
+        warnings.warn(text, core.NacreWarning, stacklevel=2)
 
     def made(noise: Noise, floor: float = 0.0) -> Model:
         return Model(
@@ -168,7 +169,8 @@ def fit(
             f"{model.depth.size}"
         )
     with lasting("fit", progress) as told:
-        return _fitted(made, model, noise, starts, profile, told or (lambda text: None))
+        best = _fitted(made, model, noise, starts, profile, told or (lambda text: None))
+    return replace(best, warnings=(*doubts, *best.warnings))
 
 
 def _fitted(
@@ -236,6 +238,16 @@ def _check_arguments(noise: str, sigma: float | None, nuisance: Sequence[str]) -
         )
     if isinstance(nuisance, str):
         raise TypeError(f"nuisance must be a sequence of names, got {nuisance!r}")
+
+
+def _doubts(curves: Sequence[Curve], system: System) -> list[str]:
+    """Return warnings about curves, and refuse those without contact."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", core.NacreWarning)
+        for curve in curves:
+            check(curve)
+            _check_units(curve, system)
+    return [str(one.message) for one in caught if one.category is core.NacreWarning]
 
 
 def _check_units(curve: Curve, system: System) -> None:

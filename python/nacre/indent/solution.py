@@ -17,7 +17,7 @@ import nacre._core as core
 from nacre._tools.typing import Field, Layers, Matrix, Vector
 from nacre._tools.units import printable, written
 from nacre.results import display
-from nacre.results.base import Fields
+from nacre.results.base import Fields, Warned
 from nacre.results.listed import Tabular
 from nacre.results.quantities import INDENT, units
 from nacre.results.values import decode, encode, refusing
@@ -98,7 +98,7 @@ class StateDerivative(Fields):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IndentSolution(Tabular):
+class IndentSolution(Tabular, Warned):
     """Contacts of an indentation, with all that they depend on.
 
     `Indentation.at` and `nacre.indent.solve` return it. Numbers have the shape of the load,
@@ -409,7 +409,7 @@ IndentState = IndentSolution
 
 
 @dataclass(frozen=True, eq=False)
-class IndentCurve(Fields):
+class IndentCurve(Warned):
     """Loads at approaches, with their derivatives; see `Indentation.curve`."""
 
     approach: Field

@@ -9,7 +9,7 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import WIDTH, checked_axes, lengths, new_axes, next_look, styled
+from nacre.plot.style import WIDTH, checked_axes, extent, lengths, new_axes, next_look, styled
 from nacre.results.base import checked, has_friction
 
 with extra("plot"):
@@ -75,7 +75,7 @@ def _map(solution: FrictionSolution, axes: Axes) -> Axes:
     )
     window = ends
     if touching.any():
-        contact = np.array(solution.normal.contact_extent)
+        contact = extent(solution.normal)
         margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
         window = np.clip(contact + margin * [-1, 1], ends[:, :1], ends[:, 1:])
     scales, same = lengths(window)

@@ -12,7 +12,7 @@ from nacre._core import integer
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
 from nacre.plot.stress import around, body_of, colourbar
-from nacre.plot.style import COLOURMAP, SIGNED, lengths, new_axes, outline, styled
+from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, new_axes, outline, styled
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -87,7 +87,7 @@ def interface_map(
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
     window = [np.array(side) for side in ends]
     if solution.contact_area > 0:
-        narrow = min(float(np.diff(contact)[0]) for contact in solution.contact_extent)
+        narrow = min(float(np.diff(contact)[0]) for contact in extent(solution))
         window = [np.clip(around(solution, axis, narrow), *ends[axis]) for axis in range(len(ends))]
     (across, up), same = lengths(window)
     highest = float(np.nanmax(np.abs(values)))

@@ -11,7 +11,7 @@ import numpy as np
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
 from nacre.plot.sections import section
-from nacre.plot.style import COLOURMAP, WIDTH, lengths, new_axes, outline, styled
+from nacre.plot.style import COLOURMAP, WIDTH, extent, lengths, new_axes, outline, styled
 from nacre.results.display import numbers
 
 with extra("plot"):
@@ -101,7 +101,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
     window = np.array(ends)
     if solution.contact_area > 0:
-        contact = np.array(solution.contact_extent)
+        contact = extent(solution)
         margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
         whole = np.array(grid.periodic)[:, np.newaxis]
         around = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
@@ -132,7 +132,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         )
         outline(axes, solution, [length.factor for length in scales])
         repeats = all(grid.periodic)
-        if solution.contact_area > 0 and not repeats:
+        if solution.contact_area > 0 and not any(grid.periodic):
             at = [
                 length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
             ]
@@ -143,6 +143,8 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         if solution.contact_area > 0:
             share = f"{100 * solution.contact_share:.3g} % of the area touches"
             title = share if repeats else "the cross marks the resultant force"
+            if any(grid.periodic) and not repeats:
+                title = f"periodic along {'xy'[grid.periodic.index(True)]}"
         if same:
             axes.set_aspect("equal")
         else:

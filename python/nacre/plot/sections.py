@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import look, new_axes, next_look, styled
+from nacre.plot.style import extent, look, new_axes, next_look, styled
 from nacre.results.quantities import units
 
 with extra("plot"):
@@ -165,7 +165,7 @@ def _window(solution: Solution, along: str, quantity: str) -> Array:
     ends = grid.center[axis] + np.array([-0.5, 0.5]) * grid.size[axis]
     if quantity not in ("pressure", "line_load") or solution.contact_area == 0:
         return ends
-    contact = np.array(solution.contact_extent[axis])
+    contact = extent(solution)[axis]
     margin = 0.15 * (contact[1] - contact[0]) + grid.spacing[axis]
     low, high = ends
     return np.array([max(contact[0] - margin, low), min(contact[1] + margin, high)])

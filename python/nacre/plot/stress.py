@@ -12,7 +12,7 @@ import numpy.typing as npt
 from nacre._core import HalfSpace, integer
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
+from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, look, new_axes, styled
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -267,7 +267,7 @@ def _reach(
     grid = solution.report.grid
     axes = (1,) if grid.is_line else (0, 1)
     if depth is None:
-        widths = [np.diff(solution.contact_extent[axis])[0] for axis in axes]
+        widths = [np.diff(extent(solution)[axis])[0] for axis in axes]
         narrow = min(widths) or min(grid.size[axis] for axis in axes)
         depth = 1.25 * float(narrow)
     elif not 0 < depth < np.inf:
@@ -291,5 +291,5 @@ def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
 
 def around(solution: Solution, axis: int, width: float) -> Array:
     """Return the ends of the range: the contact, and half of `width` on both sides."""
-    low, high = solution.contact_extent[axis]
+    low, high = extent(solution)[axis]
     return np.array([low - 0.5 * width, high + 0.5 * width])

@@ -98,6 +98,16 @@ def lengths(window: Sequence[npt.ArrayLike] | npt.NDArray[np.float64]) -> tuple[
     return ([min(scales, key=lambda scale: scale.factor)] * 2 if same else scales), same
 
 
+def extent(solution: Solution) -> npt.NDArray[np.float64]:
+    """Return the ends of the contact along x and y, of the grid where a periodic contact has none.
+
+    The second axis of the array is that of the ends.
+    """
+    grid, ends = solution.grid, np.array(solution.contact_extent)
+    whole = np.array(grid.center)[:, np.newaxis] + np.outer(grid.size, [-0.5, 0.5])
+    return np.where(np.isnan(ends), whole, ends)
+
+
 def outline(axes: Axes, solution: Solution, factors: Sequence[float]) -> None:
     """Draw the outline of the contact; a patch gets a line of a sixth of its mean width at most."""
     inside = solution.in_contact

@@ -145,6 +145,25 @@ class Fields:
         )
 
 
+@dataclasses.dataclass(frozen=True)
+class WarningReport:
+    """Report of a result that no iteration ends: what was warned of."""
+
+    warnings: tuple[str, ...]
+    """Warnings about the result; each was also issued as a `nacre.NacreWarning`."""
+
+
+class Warned(Fields):
+    """Base of results that have no report of an iteration, but their own warnings."""
+
+    warnings: Any
+
+    @property
+    def report(self) -> WarningReport:
+        """Report, whose ``warnings`` are those of this result, as of every other one."""
+        return WarningReport(tuple(self.warnings))
+
+
 class Result(Fields):
     """Base of results: each is a dataclass whose fields are its state."""
 

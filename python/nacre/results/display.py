@@ -6,6 +6,7 @@ import base64
 import functools
 import html
 import io
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
@@ -57,8 +58,7 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
     repeats = [name for name, is_so in zip("xy", report.grid.periodic, strict=True) if is_so]
     left = set() if touching else {"peak_position", "contact_extent", "contact_area"}
     if len(repeats) == 2:
-        # The load of one period acts nowhere in particular.
-        left |= {"eccentricity", "moment", "tilt"}
+        left.add("tilt")
     texts: Texts = {**NORMAL_TEXTS} | dict.fromkeys(left, _nothing)
     rows = _rows(solution, CONTACT, texts, report.grid.is_line)
     place = 1 + max(k for k, (name, _) in enumerate(rows) if name in ("approach", "tilt"))
@@ -115,22 +115,38 @@ def _nothing(_: object) -> None:
     """Leave a row out."""
 
 
-def _centred(solution: Solution, name: str, unit: str, scale: float = 1.0) -> str:
+def _centred(solution: Solution, name: str, unit: str, scale: float = 1.0) -> str | None:
     """Return a position or a moment; rounding leaves 1e-16 of the largest possible one."""
     values: tuple[float, float] = getattr(solution, name)
     limits = [NOISE * scale * side for side in solution.report.grid.size]
-    kept = (0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True))
-    return pair(kept, unit)
+    kept = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
+    return _along([None if math.isnan(v) else written(v, unit) for v in kept])
 
 
-def _place(solution: Solution) -> str:
+def _along(texts: Sequence[str | None], mark: str = ", ", form: str = "({})") -> str | None:
+    """Return texts along x and y, that of one axis with its name, or None where there is none."""
+    known = [(axis, text) for axis, text in zip("xy", texts, strict=True) if text is not None]
+    if len(known) == 1:
+        return f"{known[0][1]} along {known[0][0]}"
+    return form.format(mark.join(text for _, text in known)) if known else None
+
+
+def _tilt(solution: Solution) -> str:
+    """Return the slopes; a side that they move by rounding of the displacements is not tilted."""
+    least = NOISE * float(np.abs(solution.displacement).max())
+    sides = zip(solution.tilt, solution.report.grid.size, strict=True)
+    return "({:.4g}, {:.4g})".format(*(s if abs(s) * side > least else 0.0 for s, side in sides))
+
+
+def _place(solution: Solution) -> str | None:
     touches = solution.contact_area > 0
     return _centred(solution, "eccentricity", "m") if touches else "nothing touches"
 
 
-def _extent(solution: Solution) -> str:
-    sides = [written(high - low, "m") for low, high in solution.contact_extent]
-    return sides[1] if solution.report.grid.is_line else " × ".join(sides)
+def _extent(solution: Solution) -> str | None:
+    widths = [high - low for low, high in solution.contact_extent]
+    sides = [None if math.isnan(width) else written(width, "m") for width in widths]
+    return sides[1] if solution.report.grid.is_line else _along(sides, " × ", "{}")
 
 
 def _contact_share(solution: Solution) -> str | None:
@@ -175,7 +191,7 @@ NORMAL_TEXTS: Texts = {
     "eccentricity": _place,
     "moment": lambda s: _centred(s, "moment", "N" if s.report.grid.is_line else "N m", s.load),
     "approach": lambda s: _approach(s),
-    "tilt": lambda s: f"({s.tilt[0]:.4g}, {s.tilt[1]:.4g})",
+    "tilt": _tilt,
     "peak_pressure": lambda s: estimated(s, "peak_pressure", "Pa"),
     "peak_position": lambda s: _centred(s, "peak_position", "m"),
     "contact_extent": _extent,
@@ -187,7 +203,7 @@ NORMAL_TEXTS: Texts = {
 FRICTION_TEXTS: Texts = {
     "torque": _torque,
     "twist": _twist,
-    "creepage": lambda s: s.creepage and f"({s.creepage[0]:.4g}, {s.creepage[1]:.4g})",
+    "creepage": lambda s: s.creepage and "({:.4g}, {:.4g})".format(*shown(s.creepage)),
     "spin": lambda s: None if s.spin is None else f"{s.spin:.4g} /{symbol('m')}",
     "dissipated": _dissipated,
 }
@@ -279,7 +295,8 @@ def friction_line(solution: FrictionSolution) -> str:
     unit = "N/m" if solution.grid.is_line else "N"
     motion = ("shift", "m") if solution.shift is not None else ("creepage", "")
     values = getattr(solution, motion[0]) or (0.0, 0.0)
-    said = pair(shown(values), "m") if motion[1] else "({:.4g}, {:.4g})".format(*values)
+    values = shown(values)
+    said = pair(values, "m") if motion[1] else "({:.4g}, {:.4g})".format(*values)
     return printable(
         f"<FrictionSolution on {nx} x {ny} cells: force {pair(shown(solution.force), unit)}, "
         f"{motion[0]} {said}, {'converged' if solution.report.converged else 'not converged'}>"
@@ -329,6 +346,8 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
     """Return the rows of the table of a stress summary, the heading first."""
     rows = [["", "largest", "value", "±", "z", "x, y", "safety factor"]]
     noise = SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
+    peaks = [peak for layer in summary.layers for peak in (layer.von_mises, layer.tension)]
+    dust = SLIGHT * max((abs(part) for _, place in peaks for part in place), default=0.0)
 
     def add(name: str, peak: Peak | None, error: float | None, factor: float | None = None) -> None:
         if peak is None:
@@ -340,7 +359,7 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
             rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
             return
         share = "" if error is None else _share(error, value)
-        place = f"{written(x, 'm', 3)}, {written(y, 'm', 3)}"
+        place = ", ".join(written(one if abs(one) > dust else 0.0, "m", 3) for one in (x, y))
         number = "" if factor is None else rounded(factor, 3)
         rows.append(["", name, written(value, "Pa"), share, written(z, "m"), place, number])
 

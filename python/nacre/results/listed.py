@@ -12,7 +12,7 @@ import numpy as np
 
 from nacre._tools.units import printable, written
 from nacre.results import display, files
-from nacre.results.base import Result
+from nacre.results.base import Result, Warned
 from nacre.results.quantities import AXIS, Quantity
 from nacre.results.tables import headed
 
@@ -68,7 +68,7 @@ class Tabular(Result, ABC, is_base=True):
         return {}
 
 
-class Listed(Tabular, is_base=True):
+class Listed(Tabular, Warned, is_base=True):
     """Base of results whose table has a row for each of their quantities.
 
     The dataclass needs ``repr=False``, and `_QUANTITIES` and `_TITLE`.
@@ -76,6 +76,11 @@ class Listed(Tabular, is_base=True):
 
     _TITLE: ClassVar[str]
     """What the result is, in files."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What limits the validity, and was warned of: the notes of a model."""
+        return tuple(getattr(self, "notes", ()))
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the numbers, with units; needs ``nacre-contact[files]``.

@@ -220,7 +220,7 @@ def _number(solution: Any, name: str) -> Any:
         raise ValueError(f"the output {name} needs a bearing in the case")
     normal = getattr(solution, "normal", None)
     if normal is None:
-        if name in OF_FRICTION:
+        if name in OF_FRICTION and name not in NUMBERS:
             raise ValueError(f"the output {name} needs friction in the case")
         return getattr(solution, name)
     if name not in OF_FRICTION:

@@ -21,10 +21,13 @@ SOURCE = f"nacre {core.__version__}"
 
 
 def numbers(result: Any) -> Iterator[tuple[Quantity, Any]]:
-    """Yield the numbers of a contact, those that it has, with their rows of the table."""
+    """Yield the numbers of a contact, those that it has, with their rows of the table.
+
+    One that is NaN along both axes, as the moment of a periodic contact, is none.
+    """
     for row in result._QUANTITIES:
         is_number = not row.dims or row.dims[0] == "axis"
-        if is_number and (value := row.of(result)) is not None:
+        if is_number and (value := row.of(result)) is not None and not np.isnan(value).all():
             yield row, value
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import nacre._core as core
-from nacre._tools.units import symbol, system
+from nacre._tools.units import SI, Within, symbol, system
 from nacre.results import quantities
 from nacre.results.outputs import (
     AXES,
@@ -20,6 +20,7 @@ from nacre.results.outputs import (
     Output,
     errors,
 )
+from nacre.results.quantities import PARAMETERS
 from nacre.studies.journal import Record
 
 if TYPE_CHECKING:
@@ -78,7 +79,10 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
 def assembled(
     coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
 ) -> xarray.Dataset:
-    """Return the Dataset of all cases."""
+    """Return the Dataset of all cases; that of bearings is in SI."""
+    if any(record.get("bears") for record in records) and system() is not SI:
+        with Within(SI):
+            return assembled(coordinates, records, outputs)
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
@@ -119,6 +123,10 @@ def assembled(
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
+    for name in dataset.coords if kinds["bears"] else ():
+        # Pictures take them for numbers in the units that are set otherwise.
+        if unit := PARAMETERS.get(str(name).rpartition(".")[2]):
+            dataset[name].attrs["units"] = unit
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",

@@ -104,19 +104,26 @@ pub(crate) struct LinePlan {
     longest: f64,
     /// None where the body is homogeneous.
     spectrum: Option<Spectrum>,
+    /// Transforms of the terms of cosines and of sines, which depend on the mesh alone.
+    transforms: Option<[super::series::TermTransforms; 2]>,
 }
 
 impl LinePlan {
     /// Plans kernels of the grid's strips, and pieces down to `finest` of them.
     pub(crate) fn new(body: &HalfSpace, grid: &Grid, finest: f64) -> Self {
         let (width, datum) = (grid.spacing()[1], grid.size()[1]);
+        let spectrum = Spectrum::new(body, [0.4 * finest * width, 2.0 * datum]);
+        let transforms = spectrum.as_ref().map(|spectrum| {
+            [-0.5, 0.5].map(|nu| spectrum.mesh.transforms(Order { nu, kind: TransformKind::Line }))
+        });
         Self {
-            body: body.clone(),
+            transforms,
             cells: grid.shape()[1],
             width,
             datum,
             longest: body.lengths().map_or(0.0, |[_, longest]| longest),
-            spectrum: Spectrum::new(body, [0.4 * finest * width, 2.0 * datum]),
+            spectrum,
+            body: body.clone(),
         }
     }
 
@@ -193,7 +200,9 @@ impl LinePlan {
             nu: if output.sine { 0.5 } else { -0.5 },
             kind: TransformKind::Line,
         });
-        let transforms = orders.map(|order| mesh.transforms(order));
+        let [even, odd] = self.transforms.as_ref()?;
+        let transforms =
+            L::OUTPUTS.map(|output| if output.sine { odd.clone() } else { even.clone() });
         Some((Series::new(mesh, &orders, &transforms, samples, 0.0), images))
     }
 }
