@@ -8,4 +8,5 @@ pub(crate) mod linear_cg;
 pub(crate) mod parallel;
 pub(crate) mod quadrature;
 pub(crate) mod roots;
+pub(crate) mod rounding;
 pub(crate) mod special;

@@ -5,6 +5,7 @@ use crate::compliance::response::frequency_response;
 use crate::error::{Error, Result, positive, require};
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
+use crate::numerics::rounding;
 
 /// Largest number of layers of a graded coating, at which the search for a number ends. Chosen by trial.
 const MAX_LAYERS: usize = 4096;
@@ -318,7 +319,7 @@ fn between(samples: &[Sample], from: f64, to: f64) -> &[Sample] {
 /// Depths of the samples of a part, increasing, strictly inside.
 fn depths(from: f64, to: f64, thickness: f64) -> Vec<f64> {
     let width = to - from;
-    let count = (SAMPLES * width / thickness).ceil().max(LEAST);
+    let count = rounding::ceil(SAMPLES * width / thickness).max(LEAST);
     let even = (0..count as usize).map(|k| {
         let k = k as f64;
         from + width * (k + ((k + 1.0) * GOLDEN).fract()) / count

@@ -18,6 +18,7 @@ use ndarray::{Array2, ArrayView1, Axis};
 use rayon::prelude::*;
 
 use crate::model::grid::Grid;
+use crate::numerics::rounding::cells_within;
 use crate::numerics::special::{barycentric, chebyshev_nodes};
 
 /// Chebyshev nodes along each direction. Images that are summed lie as far away as the interval is long, so that the
@@ -46,7 +47,7 @@ impl CellImages {
         let longest = size[0].max(size[1]);
         let images = |distance: f64| {
             [0, 1].map(|k| match periodic[k] {
-                true => (distance / size[k]).ceil() as i64,
+                true => cells_within(distance, size[k]) as i64,
                 false => 0,
             })
         };

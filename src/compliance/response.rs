@@ -19,6 +19,7 @@ use std::fmt;
 use crate::error::{Error, Result, finite, not_negative, positive, require};
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::material::Elastic;
+use crate::numerics::rounding;
 
 mod body;
 mod derivatives;
@@ -320,7 +321,7 @@ pub(crate) fn size(body: &dyn Response) -> f64 {
     let larger = limits.short.abs().max(limits.long.abs());
     match body.lengths() {
         Some([shortest, longest]) if larger <= 0.0 => {
-            let octaves = (longest / shortest).log2().ceil() as i32;
+            let octaves = rounding::ceil((longest / shortest).log2()) as i32;
             (0..=octaves)
                 .map(|octave| body.normal(f64::from(octave).exp2() / longest).abs())
                 .fold(0.0, f64::max)

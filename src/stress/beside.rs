@@ -114,8 +114,4 @@ impl<'a> Beside<'a> {
     pub(super) fn at(&self, point: [f64; 2]) -> Vec<f64> {
         self.fields.iter().map(|field| field.at(point)).collect()
     }
-
-    pub(super) fn has(&self, [i, j]: [usize; 2]) -> bool {
-        self.core[0].contains(&i) && self.core[1].contains(&j)
-    }
 }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::field::{Largest, Peak, Tensor};
+use super::field::{Extreme, Largest, Tensor};
 use super::half_space::HalfSpacePlan;
 use super::options::StressProgress;
 use super::plan::{Evaluation, PressureSource, StressPlan};
@@ -19,6 +19,7 @@ use crate::compliance::response::substrate_material;
 use crate::error::Result;
 use crate::model::body::{HalfSpace, Layer};
 use crate::model::grid::Grid;
+use crate::numerics::rounding;
 
 /// Growth of a value from one grid to the next below which the place does not matter, as a part of the value, and of the
 /// largest stress at the depth: a stress that rises to its residual value at infinity has no place. Growth falls at least by
@@ -98,15 +99,15 @@ impl<'a> Beyond<'a> {
     /// not suffice for a wider grid, the peaks found so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
         &mut self,
-        (mut peaks, largest, best): ([Peak; N], f64, [f64; N]),
+        (mut peaks, largest, best): ([Extreme; N], f64, [f64; N]),
         places: &[Place; K],
         residual: &[f64],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
         progress: &mut StressProgress,
-    ) -> ControlFlow<(), [Peak; N]> {
+    ) -> ControlFlow<(), [Extreme; N]> {
         let mut inner = self.plan.whole.grid;
         for level in 0..self.most {
-            let matters = |(peak, best): &(&Peak, f64)| {
+            let matters = |(peak, best): &(&Extreme, f64)| {
                 peak.value >= LEAST_ON_BORDER * best || *best < LEAST_ON_BORDER * largest
             };
             let followed = peaks.iter().zip(best).filter(matters).map(|(peak, _)| peak);
@@ -132,32 +133,36 @@ impl<'a> Beyond<'a> {
             };
             let grid = &plan.whole.grid;
             let (x, y) = (grid.x(), grid.y());
-            let least = |value: f64| value + ROUNDING * value.abs();
-            let mut found = peaks.map(|p| Largest { value: least(p.value), cell: usize::MAX });
+            let mut outside = [Largest::NONE; N];
             let mut largest_here = 0.0_f64;
             for (cell, at) in x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).enumerate() {
                 if !inner.holds(at) {
-                    for (found, value) in found.iter_mut().zip(values(cell)) {
-                        found.offer(value, cell);
+                    for (outside, value) in outside.iter_mut().zip(values(cell)) {
+                        outside.offer(value, cell);
                         largest_here = largest_here.max(value.abs());
                     }
                 }
             }
             let mut grown = false;
-            for (k, (peak, found)) in peaks.iter_mut().zip(found).enumerate() {
-                if found.cell == usize::MAX {
+            for (k, (peak, outside)) in peaks.iter_mut().zip(outside).enumerate() {
+                if outside.value == f64::NEG_INFINITY {
                     continue;
                 }
-                let growth = found.value - peak.value;
+                let growth = outside.value - peak.value;
                 let [own, of_largest] = NEGLIGIBLE_GROWTH;
-                let rest = (own * found.value.abs()).max(of_largest * largest);
-                grown |= growth > rest && found.value + growth >= best[k];
-                let between = found.between(grid, |cell| Some(values(cell)[k]));
-                peak.value = found.value + 0.5 * between;
-                peak.position[0] = x[found.cell / y.len()];
-                peak.position[1] = y[found.cell % y.len()];
+                let rest = (own * outside.value.abs()).max(of_largest * largest);
+                let between = outside.between(grid, |cell| Some(values(cell)[k]));
                 let error = 2.0 * rest + between + MERGING * largest_here;
-                peak.uncertainty = peak.uncertainty.map(|_| error);
+                let (i, j) = (outside.cell / y.len(), outside.cell % y.len());
+                let position = [x[i], y[j], peak.position[2]];
+                let value = outside.value + 0.5 * between;
+                let farther = Extreme::of(value, position, peak.bound.map(|_| error));
+                if growth > ROUNDING * peak.value.abs() {
+                    grown |= growth > rest && outside.value + growth >= best[k];
+                    *peak = peak.with(farther);
+                } else {
+                    *peak = peak.bounded_by(farther);
+                }
             }
             if !grown && level + 1 >= self.searched {
                 break;
@@ -272,20 +277,20 @@ fn searched(whole: &HalfSpacePlan, slides: bool) -> usize {
         open_axes(whole)[*axis] && far >= whole.gap(*axis) as f64 * grid.spacing()[*axis]
     };
     let widths = [0, 1].into_iter().filter(outside).map(|axis| grid.size()[axis]);
-    let levels = (1.0 + 2.0 * far / widths.fold(f64::INFINITY, f64::min)).log2().ceil();
-    (levels as usize).min(FARTHEST)
+    let times = 1.0 + 2.0 * far / widths.fold(f64::INFINITY, f64::min);
+    (rounding::ceil(times.log2()) as usize).min(FARTHEST)
 }
 
 /// Axes along which a peak lies in the outermost cells of `grid`, where neither the grid repeats nor the body ends.
 fn borders<'a>(
     body: &HalfSpace,
     grid: &Grid,
-    peaks: impl Iterator<Item = &'a Peak> + Clone,
+    peaks: impl Iterator<Item = &'a Extreme> + Clone,
 ) -> [bool; 2] {
     [0, 1].map(|axis| {
         let (centres, cell) = (grid.coordinates(axis), grid.spacing()[axis]);
         let ends = if axis == 0 { body.ends() } else { [None; 2] };
-        let is_cut = |peak: &Peak| {
+        let is_cut = |peak: &Extreme| {
             let borders =
                 [centres[0], centres[centres.len() - 1]].into_iter().zip(ends).zip([-1.0, 1.0]);
             borders.into_iter().any(|((border, end), side)| {
@@ -306,7 +311,7 @@ fn moved(field: &[f64], from: &Grid, to: &Grid) -> Array2<f64> {
         let (first, spacing) = (to.coordinates(axis)[0], to.spacing()[axis]);
         let (side, count) = (from.spacing()[axis] / spacing, to.shape()[axis]);
         let share = |at: &f64| {
-            let nearest = ((at - first) / spacing).round();
+            let nearest = rounding::round((at - first) / spacing);
             let moment = (at - first) / spacing - nearest;
             let second = moment * moment + (side * side - 1.0) / 12.0;
             let shares = [0.5 * (second - moment), 1.0 - second, 0.5 * (second + moment)];

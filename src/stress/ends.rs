@@ -15,6 +15,7 @@ use super::section::Span;
 use crate::compliance::ends::Where;
 use crate::error::Result;
 use crate::model::body::Substrate;
+use crate::numerics::rounding::cells_within;
 
 mod face;
 mod pressures;
@@ -84,7 +85,7 @@ impl EndStress {
             };
             images.add_mirror(&pressure, end);
             let excess = near.followed(Where::Surface, dx, threads);
-            let far = (FAR_END * near.reach / FOLLOWED / dx).ceil() as usize;
+            let far = cells_within(FAR_END * near.reach / FOLLOWED, dx);
             let (excess, rows) = ((&*excess, end, near.margin), &near.rows(far));
             parts.push(Box::new(excess_part(excess, &endless, grid, (rows, 1), threads)?));
             let strip = Strip::new(&near, Where::Surface, dx, dx, threads);

@@ -227,9 +227,61 @@ pub struct Peak {
     /// x, y, z \[m\].
     #[cfg_attr(feature = "serde", serde(rename = "at"))]
     pub position: [f64; 3],
-    /// Estimated error of the value \[Pa\], due to the size of the cells: [`Stress::uncertainty`] at this
-    /// depth.
+    /// Estimated error of the value \[Pa\], due to the size of the cells: the largest sum of a value and its error
+    /// ([`Stress::uncertainty`]), over all places that were evaluated, less this value.
     pub uncertainty: Option<f64>,
+}
+
+/// The largest of many values, and the largest that one of them may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extreme {
+    pub(super) value: f64,
+    pub(super) position: [f64; 3],
+    /// The largest sum of a value and its error; none where errors are not known.
+    pub(super) bound: Option<Bound>,
+}
+
+/// The largest sum of a value and its error, and its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bound {
+    pub(super) value: f64,
+    pub(super) position: [f64; 3],
+}
+
+impl Extreme {
+    /// The extreme of one value with this error.
+    pub(super) fn of(value: f64, position: [f64; 3], error: Option<f64>) -> Self {
+        Self { value, position, bound: error.map(|error| Bound { value: value + error, position }) }
+    }
+
+    /// The extreme of the values of both.
+    pub(super) fn with(self, other: Self) -> Self {
+        let largest = if other.value > self.value { other } else { self };
+        Self { bound: self.larger_bound(other), ..largest }
+    }
+
+    /// This extreme, with the larger bound of both.
+    pub(super) fn bounded_by(self, other: Self) -> Self {
+        Self { bound: self.larger_bound(other), ..self }
+    }
+
+    fn larger_bound(self, other: Self) -> Option<Bound> {
+        match (self.bound, other.bound) {
+            (Some(a), Some(b)) if b.value > a.value => Some(b),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// The value with its error.
+    pub(super) fn peak(self) -> Peak {
+        let Self { value, position, bound } = self;
+        Peak { value, position, uncertainty: bound.map(|bound| bound.value - value) }
+    }
+
+    /// The peak of a value that is the smallest of many, of which this is the largest of the negatives.
+    pub(super) fn negative_peak(self) -> Peak {
+        Peak { value: -self.value, ..self.peak() }
+    }
 }
 
 impl Tensor {
@@ -330,15 +382,12 @@ impl Stress {
 
     /// The largest of `values` (depths, nx, ny) and its position; none if there are no values in the body.
     pub fn peak(&self, values: &Array3<f64>) -> Option<Peak> {
-        let found = values
-            .indexed_iter()
-            .filter(|(_, value)| !value.is_nan())
-            .reduce(|best, next| if next.1 > best.1 { next } else { best });
-        found.map(|((k, i, j), &value)| Peak {
-            value,
-            position: [self.x[i], self.y[j], self.z[k]],
-            uncertainty: self.uncertainty.as_ref().map(|errors| errors[k]),
-        })
+        let of_value = |((k, i, j), value): ((usize, usize, usize), &f64)| {
+            let error = self.uncertainty.as_ref().map(|errors| errors[k]);
+            Extreme::of(*value, [self.x[i], self.y[j], self.z[k]], error)
+        };
+        let known = values.indexed_iter().filter(|(_, value)| !value.is_nan());
+        Some(known.map(of_value).reduce(Extreme::with)?.peak())
     }
 
     fn tensors(&self) -> impl Iterator<Item = Tensor> + '_ {
@@ -373,9 +422,10 @@ impl Largest {
         }
     }
 
-    /// Twice what parabolas through this value and its neighbours along each axis rise above it: the value between centres
-    /// of cells is larger by about once that. `of` has the values of cells that count.
+    /// Twice what parabolas through the value of this cell and its neighbours along each axis rise above it: the value between
+    /// centres of cells is larger by about once that. `of` has the values of cells that count.
     pub(super) fn between(&self, grid: &Grid, of: impl Fn(usize) -> Option<f64>) -> f64 {
+        let Some(here) = of(self.cell) else { return 0.0 };
         let (shape, periodic) = (grid.shape(), grid.is_periodic());
         let at = [self.cell / shape[1], self.cell % shape[1]];
         let beside = |axis: usize, step: usize| {
@@ -388,7 +438,7 @@ impl Largest {
         };
         let gain = |axis: usize| {
             let (before, after) = (beside(axis, shape[axis] - 1)?, beside(axis, 1)?);
-            let curvature = (2.0 * self.value - before - after).max(0.0);
+            let curvature = (2.0 * here - before - after).max(0.0);
             // The vertex is at most half a cell away, unless cells that do not count have larger values.
             let slope = (0.5 * (after - before)).abs().min(0.5 * curvature);
             (curvature > 0.0).then(|| slope * slope / curvature)
@@ -397,9 +447,39 @@ impl Largest {
     }
 }
 
+/// The largest value of cells so far, and the largest sum of a value and its error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LargestWithError {
+    pub(super) value: Largest,
+    pub(super) bound: Largest,
+}
+
+impl LargestWithError {
+    pub(super) const NONE: Self = Self { value: Largest::NONE, bound: Largest::NONE };
+
+    pub(super) fn offer(&mut self, value: f64, error: f64, cell: usize) {
+        self.value.offer(value, cell);
+        self.bound.offer(value + error, cell);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A smaller value with a larger error decides how far the extreme may be, whatever the order.
+    #[test]
+    fn the_error_of_an_extreme_is_that_of_the_largest_bound() {
+        let sure = Extreme::of(10.0, [0.0; 3], Some(0.5));
+        let unsure = Extreme::of(9.0, [1.0, 2.0, 3.0], Some(4.0));
+        for extreme in [sure.with(unsure), unsure.with(sure), sure.bounded_by(unsure)] {
+            let Peak { value, position, uncertainty } = extreme.peak();
+            assert_eq!((value, position, uncertainty), (10.0, [0.0; 3], Some(3.0)));
+            assert_eq!(extreme.bound.map(|bound| bound.position), Some([1.0, 2.0, 3.0]));
+            let Peak { value, uncertainty, .. } = extreme.negative_peak();
+            assert_eq!((value, uncertainty), (-10.0, Some(3.0)));
+        }
+    }
 
     /// Uniaxial stress, equibiaxial stress, pure shear, and a tensor turned by known angles.
     #[test]

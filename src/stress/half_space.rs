@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, ArrayRef2};
+use ndarray::ArrayRef2;
 
 use crate::compliance::influence::PlateWaves;
 use crate::compliance::kernel::loads::{
@@ -17,7 +17,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
 use crate::numerics::parallel::{Threads, check_memory, memory_of};
-use crate::stress::subcell::{STRESSES, SubcellStress};
+use crate::stress::subcell::{LocalSteps, STRESSES, StepErrors, SubcellStress};
 
 mod evaluation;
 mod repeats;
@@ -187,36 +187,25 @@ impl HalfSpacePlan {
         memory_of(grid.shape(), pressure + images)
     }
 
-    /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
-    /// none where the pressure is given as uniform over them.
-    pub(super) fn uncertainties(
-        &self,
-        places: &[Place],
-        (friction, uniform): ([f64; 2], bool),
-        window: &Window,
-    ) -> Option<Array1<f64>> {
-        let subcell = &self.solved.as_ref()?.subcell;
-        let steps = subcell.steps(window);
-        let error = |place: &Place| {
-            let [along, across] =
-                subcell.uncertainty(&self.body, place, (friction, uniform), steps);
-            along.max(across)
-        };
-        Some(places.iter().map(error).collect())
+    /// Estimated errors of the stress at `place`, from the size of the cells, under this friction, whose tractions may be
+    /// uniform over cells; none where the pressure is given as uniform over them.
+    pub(super) fn errors(&self, place: &Place, friction: ([f64; 2], bool)) -> Option<StepErrors> {
+        Some(self.solved.as_ref()?.subcell.errors(&self.body, place, friction))
     }
 
-    /// Those errors at one place, from the size of the cells along x and along y.
-    pub(super) fn uncertainties_by_axis(
-        &self,
-        place: &Place,
-        friction: [f64; 2],
-        window: &Window,
-    ) -> [f64; 2] {
-        let of = |solved: &SolvedPressure| {
-            let steps = solved.subcell.steps(window);
-            solved.subcell.uncertainty(&self.body, place, (friction, false), steps)
-        };
-        self.solved.as_ref().map_or([0.0; 2], of)
+    /// Error of the stress everywhere, from the width of the contact.
+    pub(super) fn error_of_width(&self) -> f64 {
+        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.error_of_width())
+    }
+
+    /// Largest steps of the pressure that are felt in the cells of `window`.
+    pub(super) fn steps(&self, window: &Window) -> LocalSteps {
+        self.solved.as_ref().map_or_else(LocalSteps::default, |solved| solved.subcell.steps(window))
+    }
+
+    /// Those that are felt in each cell; no cells where the pressure is given as uniform over them.
+    pub(super) fn steps_by_cell(&self) -> Vec<LocalSteps> {
+        self.solved.as_ref().map_or_else(Vec::new, |solved| solved.subcell.steps_by_cell())
     }
 
     /// Pressure that is taken as uniform over cells for stresses.

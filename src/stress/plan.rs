@@ -12,7 +12,9 @@ use super::half_space::{
 };
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
-use super::subcell::{BodyPair, CellPoint, PointStress, STRESSES, SubcellStress, Tractions};
+use super::subcell::{
+    BodyPair, CellPoint, LocalSteps, PointStress, STRESSES, StepErrors, SubcellStress, Tractions,
+};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
@@ -258,14 +260,32 @@ impl StressPlan {
         window: &Window,
         within: bool,
     ) -> Option<Array1<f64>> {
+        let steps = self.whole.steps(window);
+        let errors = |place| Some(self.errors(place, friction, within)?.at(&steps));
+        places.iter().map(errors).collect()
+    }
+
+    /// Estimated errors of the stress at `place` by the steps of the pressure, of which [`StressPlan::steps_by_cell`] has those
+    /// of each cell; see [`StressPlan::uncertainties`].
+    pub(super) fn errors(
+        &self,
+        place: &Place,
+        friction: [f64; 2],
+        within: bool,
+    ) -> Option<StepErrors> {
         let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
-        let cells = self.whole.uncertainties(places, (friction, uniform), window);
-        let Some(ends) = &self.ends else {
-            return cells;
-        };
-        let ends: Array1<f64> = places.iter().map(|place| ends.at(place.depth)).collect();
-        Some(cells.map_or(ends.clone(), |cells| cells + &ends))
+        let errors = self.whole.errors(place, (friction, uniform));
+        let of_ends = self.ends.as_ref().map(|ends| ends.at(place.depth));
+        match of_ends {
+            None => errors,
+            Some(of_ends) => Some(errors.unwrap_or_default().plus(of_ends)),
+        }
+    }
+
+    /// Largest steps of the pressure that are felt in each cell; no cells where the pressure is given as uniform over them.
+    pub(super) fn steps_by_cell(&self) -> Vec<LocalSteps> {
+        self.whole.steps_by_cell()
     }
 
     /// Largest ratios of known tractions along x and along y to the pressure: the coefficient of friction where cells slip.

@@ -17,24 +17,29 @@
 //!
 //! of which the difference is interpolated likewise: in bodies without ends it is the stress of p'. The method was derived here.
 //!
-//! A patch holds the places of extremes that are within a width of the contact. It counts within a quarter of the half-width of
-//! them and ends a half-width farther off, where the pressure of the grid follows, which is uniform over cells.
+//! A patch holds the cells in which an extreme may be larger than its value by more than is asked for, of those extremes whose
+//! largest bounds are within a width of the contact. It counts within a quarter of the half-width of them and ends a half-width
+//! farther off, where the pressure of the grid follows, which is uniform over cells. Of an extreme, the largest value and the
+//! largest bound count of those of the patches and of the rest of the grid.
+
+use std::ops::Range;
 
 use ndarray::Array2;
 
 use super::beside::{Beside, Sampled};
-use super::field::Peak;
+use super::field::{Bound, Extreme};
 use super::options::{StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::section::Span;
 use super::subcell::BodyPair;
-use super::summary::{Strengths, StressSummary, SummaryRequest, place_of};
+use super::summary::{Extremes, Scope, Strengths, StressSummary, SummaryRequest, place_of};
 use crate::compliance::response::Body;
 use crate::compliance::response::interior::Place;
 use crate::contact::{Contact, Motion, Options, Setup, Solution};
 use crate::error::{Error, Result, refuse_if, require};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
+use crate::numerics::rounding::{self, cells_within};
 
 /// Distance, in half-widths of the contact, within which extremes are found on one patch: from edge to edge.
 const NEAR: f64 = 2.0;
@@ -64,6 +69,40 @@ struct Patch {
     window: Window,
     gap: Sampled,
     load: f64,
+    /// Whether it holds all of the load.
+    is_whole: bool,
+}
+
+/// An extreme that is more uncertain than is asked for.
+struct Suspect {
+    /// Its number in [`Extremes`].
+    which: usize,
+    /// What its bound exceeds the value by, as a part of it.
+    ratio: f64,
+    /// Where its bound is.
+    at: [f64; 2],
+    place: Place,
+    /// The cells in which it may be larger than its value by more than is allowed.
+    cells: Window,
+    /// Error that is allowed.
+    allowed: f64,
+}
+
+/// What suspects are chosen from: all extremes, the bounds in each cell of the grid, and the parts of it that finer cells stand
+/// for.
+struct Suspects<'a> {
+    all: &'a Extremes,
+    bounds: &'a [Vec<f64>],
+    cores: &'a [Window],
+}
+
+fn holds(window: &Window, cell: [usize; 2]) -> bool {
+    [0, 1].iter().all(|axis| window[*axis].contains(&cell[*axis]))
+}
+
+/// The shortest range that holds both.
+fn joined(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    a.start.min(b.start)..a.end.max(b.end)
 }
 
 /// The summary of [`Solution::stress_summary`], with finer cells where an extreme is more uncertain than the part
@@ -116,113 +155,158 @@ impl Refined<'_> {
             return Ok(StressSummary::default());
         };
         let half_width = plan.whole.half_width();
-        let mut summary = request.evaluate(&plan, None, half_width, &mut progress);
-        drop(plan);
-        if !summary.finished {
-            return Ok(summary);
-        }
+        let scope = Scope { records: true, ..Scope::of(&plan) };
+        let mut of_grid = request.evaluate(&plan, scope, &mut progress);
         let mut progress = |part: f64| asked.tell(0.5 + 0.5 * part);
-        let mut left = self.uncertain(&mut summary);
-        while let Some(worst) = left.first().copied() {
-            let places: Vec<_> = summary.peaks().into_iter().map(|peak| peak.map(|p| *p)).collect();
-            let at = |which: usize| places[which].map_or([0.0; 3], |peak| peak.position);
-            let is_near = |which: &usize| {
-                let far = |axis: usize| (at(*which)[axis] - at(worst)[axis]).abs();
-                far(0).max(far(1)) <= NEAR * half_width
-            };
-            let (here, others): (Vec<usize>, Vec<usize>) = left.into_iter().partition(is_near);
-            left = others;
-            let around = |reach: f64| {
-                let windows = here.iter().map(|which| self.window(at(*which), reach * half_width));
-                windows.fold(self.window(at(worst), 0.0), |a, b| {
-                    [0, 1]
-                        .map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
-                })
-            };
-            let (inner, window) = (around(MARGINS[0]), around(MARGINS[1]));
-            let rows = Span::of(body, self.solution.grid()).rows;
-            let is_whole = rows.start <= window[0].start && window[0].end <= rows.end;
-            let at_end = body.ends() != [None; 2]
-                && (!is_whole || rows.start == window[0].start || rows.end == window[0].end);
-            if at_end {
-                continue;
-            }
-            let wanted: Vec<_> = here
-                .iter()
-                .filter_map(|which| {
-                    Some((place_of(&self.layers, *which, places[*which]?), places[*which]?))
-                })
-                .collect();
-            let patch = self.patch(window)?;
-            let wanted = (&*wanted, summary.least_value());
-            let Some(plan) = self.fine_plan(&patch, wanted, &mut progress)? else {
-                continue;
-            };
-            let beside = self.plans_beside(&patch)?;
-            let friction = source.sliding.traction(&self.layers, self.options)?;
-            let parts = beside
-                .iter()
-                .map(|(plan, factor)| (Evaluation::new(plan, friction, false), *factor));
-            let finer = [0, 1].map(|axis| {
-                plan.whole.grid.shape()[axis] / (patch.window[axis].end - patch.window[axis].start)
-            });
-            let core = [0, 1].map(|axis| {
-                let start = patch.window[axis].start;
-                (inner[axis].start - start) * finer[axis]..(inner[axis].end - start) * finer[axis]
-            });
-            let beside = Beside {
-                grid: self.solution.grid(),
-                parts: parts.collect(),
-                core,
-                fields: Vec::new(),
-            };
-            let mut fine = request.evaluate(&plan, Some(beside), half_width, &mut progress);
-            if !fine.finished {
-                summary.finished = false;
+        // Parts of the grid that finer cells stand for, and the extremes of these.
+        let mut cores: Vec<Window> = Vec::new();
+        let mut of_patches: Option<Extremes> = None;
+        let mut settled = vec![false; of_grid.values.len()];
+        loop {
+            let all = of_patches.as_ref().map_or_else(|| of_grid.clone(), |of| of_grid.with(of));
+            let summary = all.summary(body, strengths);
+            if !summary.finished {
                 return Ok(summary);
             }
-            for (which, (own, finer)) in summary.peaks().into_iter().zip(fine.peaks()).enumerate() {
-                if let (true, Some(own), Some(finer)) = (here.contains(&which), own, finer)
-                    && finer.uncertainty.is_some_and(|error| Some(error) < own.uncertainty)
-                {
-                    *own = *finer;
+            let suspects = Suspects { all: &all, bounds: &of_grid.bounds, cores: &cores };
+            let suspects = self.suspects(&suspects, &settled, (summary.least_value(), half_width));
+            if suspects.is_empty() {
+                return Ok(summary);
+            }
+            let around = |reach: f64| {
+                let windows = suspects.iter().map(|suspect| self.wider(&suspect.cells, reach));
+                windows.reduce(|a, b| [0, 1].map(|axis| joined(&a[axis], &b[axis])))
+            };
+            let margins = MARGINS.map(|margin| around(margin * half_width).unwrap_or_default());
+            let fine = match self.is_at_end(&margins[1]) {
+                true => None,
+                false => self.fine_extremes(
+                    (&request, &plan),
+                    &suspects,
+                    margins.clone(),
+                    &mut progress,
+                )?,
+            };
+            let Some(fine) = fine else {
+                // The largest bound of these stays, whatever is found elsewhere.
+                suspects.iter().for_each(|suspect| settled[suspect.which] = true);
+                continue;
+            };
+            let [core, _] = margins;
+            cores.push(core);
+            of_patches = Some(of_patches.map_or(fine.clone(), |of| of.with(&fine)));
+            if fine.finished {
+                let scope = Scope { without: &cores, records: true, ..Scope::of(&plan) };
+                of_grid = request.evaluate(&plan, scope, &mut progress);
+            }
+        }
+    }
+
+    /// The extremes whose largest bounds are too far from their values and near each other, the worst first, of those that are
+    /// not `settled`; none where there are no more.
+    fn suspects(
+        &self,
+        &Suspects { all, bounds, cores }: &Suspects,
+        settled: &[bool],
+        (least, half_width): (f64, f64),
+    ) -> Vec<Suspect> {
+        let [_, ny] = self.solution.grid().shape();
+        let is_open = |cell: [usize; 2]| !cores.iter().any(|core| holds(core, cell));
+        let uncertain = |(which, extreme): (usize, &Extreme)| {
+            let Bound { value, position: [x, y, depth] } = extreme.bound?;
+            let size = extreme.value.abs().max(least);
+            let ratio = (value - extreme.value) / size;
+            let cell = [self.cell(0, x), self.cell(1, y)];
+            let counts = !settled[which] && value > 0.0 && ratio > self.target;
+            let is_within = self.solution.grid().holds([x, y]) && is_open(cell);
+            (counts && is_within).then(|| Suspect {
+                which,
+                ratio,
+                at: [x, y],
+                place: place_of(&self.layers, which, depth),
+                cells: cell.map(|k| k..k + 1),
+                allowed: self.target * size,
+            })
+        };
+        let mut suspects: Vec<_> = all.values.iter().enumerate().filter_map(uncertain).collect();
+        suspects.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+        let Some(worst) = suspects.first() else { return suspects };
+        let (at, near) = (worst.at, NEAR * half_width);
+        let around = self.wider(&worst.cells, near);
+        suspects.retain(|suspect| {
+            (suspect.at[0] - at[0]).abs().max((suspect.at[1] - at[1]).abs()) <= near
+        });
+        for suspect in &mut suspects {
+            let most = all.values[suspect.which].value + suspect.allowed;
+            for i in around[0].clone() {
+                for j in around[1].clone() {
+                    if bounds[suspect.which][i * ny + j] > most && is_open([i, j]) {
+                        let cell = [i..i + 1, j..j + 1];
+                        suspect.cells =
+                            [0, 1].map(|axis| joined(&suspect.cells[axis], &cell[axis]));
+                    }
                 }
             }
         }
-        summary.compare(strengths);
-        Ok(summary)
+        suspects
     }
 
-    /// Numbers of the extremes on the grid that are more uncertain than is asked for, the worst first.
-    fn uncertain(&self, summary: &mut StressSummary) -> Vec<usize> {
-        let least = summary.least_value();
-        let grid = self.solution.grid();
-        let ratio = |peak: &Peak| {
-            let [x, y, _] = peak.position;
-            let ratio =
-                peak.uncertainty.filter(|_| grid.holds([x, y]))? / peak.value.abs().max(least);
-            Some(ratio).filter(|ratio| *ratio > self.target)
+    /// Whether a window is cut by a free end.
+    fn is_at_end(&self, window: &Window) -> bool {
+        let body = self.source.body;
+        let rows = Span::of(body, self.solution.grid()).rows;
+        let is_whole = rows.start <= window[0].start && window[0].end <= rows.end;
+        body.ends() != [None; 2]
+            && (!is_whole || rows.start == window[0].start || rows.end == window[0].end)
+    }
+
+    /// The extremes in the core of a window, on cells that are fine enough for the suspects, or as fine as may be; none where
+    /// the grid's are.
+    fn fine_extremes(
+        &self,
+        (request, whole): (&SummaryRequest, &StressPlan),
+        suspects: &[Suspect],
+        [core, window]: [Window; 2],
+        progress: &mut StressProgress,
+    ) -> Result<Option<Extremes>> {
+        let patch = self.patch(window)?;
+        let Some(plan) = self.fine_plan(&patch, suspects, progress)? else { return Ok(None) };
+        let beside = self.plans_beside(&patch)?;
+        let friction = self.source.sliding.traction(&self.layers, self.options)?;
+        let parts = beside
+            .iter()
+            .map(|(plan, factor)| (Evaluation::new(plan, friction, false), *factor))
+            .collect();
+        let finer = [0, 1].map(|axis| plan.whole.grid.shape()[axis] / patch.window[axis].len());
+        let core = [0, 1].map(|axis| {
+            let [start, end] = [core[axis].start, core[axis].end]
+                .map(|cell| (cell - patch.window[axis].start) * finer[axis]);
+            start..end
+        });
+        let beside = Beside { grid: self.solution.grid(), parts, core, fields: Vec::new() };
+        let scope = Scope {
+            beside: Some(beside),
+            half_width: whole.whole.half_width(),
+            of_width: if patch.is_whole { 0.0 } else { whole.whole.error_of_width() },
+            ..Scope::of(&plan)
         };
-        let peaks = summary.peaks().into_iter().enumerate();
-        let mut found: Vec<(usize, f64)> =
-            peaks.filter_map(|(which, peak)| Some((which, ratio(peak?)?))).collect();
-        found.sort_by(|a, b| b.1.total_cmp(&a.1));
-        found.into_iter().map(|(which, _)| which).collect()
+        Ok(Some(request.evaluate(&plan, scope, progress)))
     }
 
     /// Number of the cell at a coordinate along an axis.
     fn cell(&self, axis: usize, at: f64) -> usize {
         let grid = self.solution.grid();
         let position = (at - grid.coordinates(axis)[0]) / grid.spacing()[axis];
-        (position.round().max(0.0) as usize).min(grid.shape()[axis] - 1)
+        (rounding::round(position).max(0.0) as usize).min(grid.shape()[axis] - 1)
     }
 
-    /// Cells of the grid within a distance of a place along both axes.
-    fn window(&self, place: [f64; 3], reach: f64) -> Window {
+    /// A window, wider by a distance to all sides, as far as the grid goes.
+    fn wider(&self, window: &Window, reach: f64) -> Window {
+        let grid = self.solution.grid();
         [0, 1].map(|axis| {
-            let cells = (reach / self.solution.grid().spacing()[axis]).ceil() as usize;
-            let cell = self.cell(axis, place[axis]);
-            cell.saturating_sub(cells)..(cell + cells + 1).min(self.solution.grid().shape()[axis])
+            let cells = cells_within(reach, grid.spacing()[axis]);
+            let end = (window[axis].end + cells).min(grid.shape()[axis]);
+            window[axis].start.saturating_sub(cells)..end
         })
     }
 
@@ -259,16 +343,22 @@ impl Refined<'_> {
         let pressure = of_window(&self.solution.pressure);
         let contact = Contact::plan(&self.bodies[0], grid, self.setup())?;
         let gap = of_window(&self.solution.gap()) - contact.convolution().apply(&pressure)?;
-        let load = pressure.sum() * grid.cell_area();
-        Ok(Patch { window, gap: Sampled::new(&grid, gap), load })
+        let sum = pressure.sum();
+        let loaded = |pressure: &Array2<f64>| pressure.iter().filter(|p| **p != 0.0).count();
+        Ok(Patch {
+            is_whole: loaded(&pressure) == loaded(&self.solution.pressure),
+            window,
+            gap: Sampled::new(&grid, gap),
+            load: sum * grid.cell_area(),
+        })
     }
 
-    /// Plan of the stress of a patch on cells that are fine enough for the `wanted` extremes, or as fine as may be; none where
+    /// Plan of the stress of a patch on cells that are fine enough for the `suspects`, or as fine as may be; none where
     /// the grid's are.
     fn fine_plan(
         &self,
         patch: &Patch,
-        (wanted, least): (&[(Place, Peak)], f64),
+        suspects: &[Suspect],
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
         let most = self.solution.grid().shape().iter().product::<usize>().max(FEWEST_CELLS);
@@ -302,22 +392,18 @@ impl Refined<'_> {
             let Some(plan) = source.plan(self.options.threads, progress)? else {
                 return Err(Error::Stopped);
             };
-            // Axes along which a wanted extreme is too uncertain.
+            // Axes along which an extreme is too uncertain.
             let mut coarse = [false; 2];
-            for (place, peak) in wanted {
+            for suspect in suspects {
                 let near = [0, 1].map(|axis| {
-                    let at = |shift: f64| {
-                        let spacing = self.solution.grid().spacing()[axis];
-                        let from = grid.coordinates(axis)[0];
-                        let cell =
-                            (peak.position[axis] + shift * spacing - from) / grid.spacing()[axis];
-                        (cell.round().max(0.0) as usize).min(grid.shape()[axis] - 1)
-                    };
-                    at(-1.0)..at(1.0) + 1
+                    let [start, end] = [suspect.cells[axis].start, suspect.cells[axis].end]
+                        .map(|cell| (cell - patch.window[axis].start) * finer[axis]);
+                    start..end
                 });
-                let errors = plan.whole.uncertainties_by_axis(place, friction, &near);
+                let errors = plan.whole.errors(&suspect.place, (friction, false));
+                let errors = errors.unwrap_or_default().by_axis(&plan.whole.steps(&near));
                 for (coarse, error) in coarse.iter_mut().zip(errors) {
-                    *coarse |= error > self.target * peak.value.abs().max(least);
+                    *coarse |= error > suspect.allowed;
                 }
             }
             found = Some(plan);

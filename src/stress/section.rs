@@ -11,6 +11,7 @@ use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result, finite, not_negative, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::{Grid, Window};
+use crate::numerics::rounding;
 
 /// Relative distance within which a depth counts as that of an interface: depths of interfaces are
 /// sums of thicknesses, which round by some 1e-16 each.
@@ -196,8 +197,9 @@ impl Points {
                 .map_or(0.0, |at| at.lower as f64 + (at.upper as f64 - at.lower as f64) * at.weight)
         };
         let position = [position(0), position(1)];
-        let cell =
-            [0, 1].map(|axis| (position[axis].round().max(0.0) as usize).min(self.cells[axis] - 1));
+        let cell = [0, 1].map(|axis| {
+            (rounding::round(position[axis]).max(0.0) as usize).min(self.cells[axis] - 1)
+        });
         let within = [0, 1].map(|axis| position[axis] - cell[axis] as f64);
         within.iter().any(|u| *u != 0.0).then_some(CellPoint { cell, within })
     }

@@ -73,7 +73,8 @@ pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};
 pub(super) use uncertainty::BodyPair;
-use uncertainty::{LocalSteps, Uncertainty};
+use uncertainty::Uncertainty;
+pub(super) use uncertainty::{LocalSteps, StepErrors};
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
 /// left to the convolution.
@@ -128,16 +129,25 @@ impl SubcellStress {
         self.uncertainty.steps(&self.given, &self.margin.window(window))
     }
 
-    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells along x and along y, where the
-    /// pressure has these steps; with the friction, whether its tractions are uniform over cells.
-    pub(super) fn uncertainty(
+    /// Error of the stress everywhere, from the width of the contact.
+    pub(super) fn error_of_width(&self) -> f64 {
+        self.uncertainty.of_width
+    }
+
+    /// Largest steps of the pressure that are felt in each cell.
+    pub(super) fn steps_by_cell(&self) -> Vec<LocalSteps> {
+        self.margin.middle(&self.uncertainty.steps_by_cell(&self.given))
+    }
+
+    /// Estimated errors of the stress in `body` at `place`, from the size of the cells; with the friction, whether its
+    /// tractions are uniform over cells.
+    pub(super) fn errors(
         &self,
         body: &HalfSpace,
         place: &Place,
         friction: ([f64; 2], bool),
-        steps: LocalSteps,
-    ) -> [f64; 2] {
-        self.uncertainty.at(body, place, friction, steps)
+    ) -> StepErrors {
+        self.uncertainty.at(body, place, friction)
     }
 
     /// Pressure that is taken as uniform over cells.
@@ -450,7 +460,7 @@ impl Margin {
     }
 
     /// Values of the cells from those with the margin.
-    fn middle(self, wide: &[f64]) -> Vec<f64> {
+    fn middle<T: Copy>(self, wide: &[T]) -> Vec<T> {
         let ([nx, ny], [_, wy]) = (self.shape, self.wide_shape());
         let rows = (0..nx).map(|i| (i + self.width[0]) * wy + self.width[1]);
         rows.flat_map(|start| wide[start..start + ny].iter().copied()).collect()

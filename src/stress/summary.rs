@@ -4,16 +4,16 @@ use std::ops::ControlFlow;
 
 use super::beside::Beside;
 use super::beyond::Beyond;
-use super::field::{Largest, Peak, Percent, SmallerCells, Tensor};
+use super::field::{Extreme, Largest, LargestWithError, Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
-use super::subcell::{CellPoint, STRESSES};
+use super::subcell::{CellPoint, LocalSteps, STRESSES, StepErrors};
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive, refuse_if};
 use crate::model::body::{HalfSpace, Layer};
-use crate::model::grid::Grid;
+use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::{check_memory, memory_of};
 
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
@@ -106,23 +106,25 @@ impl StressSummary {
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
         let negligible = self.negligible_error();
-        let unresolved = |peaks: &[(&str, &Peak)]| -> Option<(String, f64)> {
-            let ratio = |(name, peak): &(&str, &Peak)| {
-                let error = peak.uncertainty.filter(|error| *error > negligible)?;
-                let ratio = error / peak.value.abs();
+        // Compression everywhere is no tension to be known.
+        let pulls = |peak: &&Peak| peak.value + peak.uncertainty.unwrap_or(0.0) > 0.0;
+        let unresolved = |peaks: &[(&str, Option<&Peak>)]| -> Option<(String, f64)> {
+            let ratio = |(name, peak): &(&str, Option<&Peak>)| {
+                let Peak { value, uncertainty, .. } = (*peak)?;
+                let ratio = uncertainty.filter(|error| *error > negligible)? / value.abs();
                 (ratio > UNRESOLVED_EXTREME)
                     .then(|| (format!("{name} by {}", Percent(ratio)), ratio))
             };
-            let (said, ratios): (Vec<_>, Vec<_>) = peaks.iter().filter_map(ratio).unzip();
+            let (texts, ratios): (Vec<_>, Vec<_>) = peaks.iter().filter_map(ratio).unzip();
             let worst = ratios.into_iter().reduce(f64::max)?;
-            Some((said.join(", "), worst))
+            Some((texts.join(", "), worst))
         };
         let layers = self.layers.iter().filter_map(|layer| {
             let LayerSummary { von_mises, tension, shear, .. } = layer;
-            let peaks = [("von Mises", von_mises), ("tension", tension), ("shear", shear)];
-            // Compression everywhere is no tension to be known.
-            let known = if tension.value > 0.0 { 3 } else { 1 };
-            let unresolved = unresolved(&peaks[..known])?;
+            let tension = Some(tension).filter(pulls);
+            let peaks =
+                [("von Mises", Some(von_mises)), ("tension", tension), ("shear", Some(shear))];
+            let unresolved = unresolved(&peaks)?;
             let place = match layer.depths[1].is_finite() {
                 true => format!("layers[{}]", layer.layer),
                 false => "the substrate".to_string(),
@@ -130,7 +132,11 @@ impl StressSummary {
             Some((place, unresolved))
         });
         let interfaces = self.interfaces.iter().filter_map(|face| {
-            let peaks = [("shear", &face.shear), ("compression", &face.compression)];
+            let InterfaceSummary { tension, compression, shear, jump, .. } = face;
+            let tension = Some(tension).filter(pulls);
+            let peaks = [("shear", Some(shear)), ("compression", Some(compression))];
+            let others = [("tension", tension), ("jump", jump.as_ref())];
+            let peaks = [peaks, others].concat();
             Some((format!("interfaces[{}]", face.interface), unresolved(&peaks)?))
         });
         let said = |(place, (said, worst)): (String, (String, f64))| {
@@ -154,37 +160,90 @@ impl StressSummary {
     pub(super) fn least_value(&self) -> f64 {
         self.negligible_error() / UNRESOLVED_EXTREME
     }
+}
 
-    /// All extremes, those of the layers first; none for a jump on a rigid base, and for what is no tension.
-    pub(super) fn peaks(&mut self) -> Vec<Option<&mut Peak>> {
-        let tension = |peak: &&mut Peak| peak.value > 0.0;
-        let layers = self.layers.iter_mut().flat_map(|layer| {
-            let LayerSummary { von_mises, tension: pulled, shear, .. } = layer;
-            [Some(von_mises), Some(pulled).filter(tension), Some(shear)]
+/// The extremes of a body, three of each layer and of the substrate, then four of each interface; no jump on a rigid base.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Extremes {
+    pub(super) values: Vec<Extreme>,
+    /// Of each, the largest sum of a value and its error in each cell, over all depths, where it is recorded.
+    pub(super) bounds: Vec<Vec<f64>>,
+    /// Whether all was done.
+    pub(super) finished: bool,
+}
+
+/// Number of extremes of a layer, and of an interface.
+const OF_LAYER: usize = 3;
+const OF_INTERFACE: usize = 4;
+
+impl Extremes {
+    /// The summary of a body of which these are the extremes.
+    pub(super) fn summary(&self, body: &HalfSpace, strengths: &Strengths) -> StressSummary {
+        let members = body.layers().len() + usize::from(substrate_material(body).is_some());
+        let (of_layers, of_interfaces) =
+            self.values.split_at(self.values.len().min(OF_LAYER * members));
+        let tops = std::iter::once(0.0).chain(bottoms(body));
+        let bottoms_and_end = bottoms(body).chain([f64::INFINITY]);
+        let layers = of_layers.chunks(OF_LAYER).zip(tops.zip(bottoms_and_end)).enumerate();
+        let layers = layers.map(|(number, (extremes, (top, bottom)))| {
+            let own = body.layers().get(number);
+            let mut layer = LayerSummary {
+                layer: number,
+                name: own.and_then(Layer::name).map(String::from),
+                depths: [top, bottom],
+                yield_safety_factor: None,
+                strength_safety_factor: None,
+                von_mises: extremes[0].peak(),
+                tension: extremes[1].peak(),
+                shear: extremes[2].peak(),
+            };
+            layer.compare(strengths);
+            layer
         });
-        let interfaces = self.interfaces.iter_mut().flat_map(|face| {
-            let InterfaceSummary { tension: pulled, compression, shear, jump, .. } = face;
-            let pulled = Some(pulled).filter(tension);
-            [pulled, Some(compression), Some(shear), jump.as_mut()]
+        let interfaces = of_interfaces.chunks(OF_INTERFACE).zip(bottoms(body)).enumerate();
+        let interfaces = interfaces.map(|(interface, (extremes, depth))| InterfaceSummary {
+            interface,
+            depth,
+            tension: extremes[0].peak(),
+            compression: extremes[1].negative_peak(),
+            shear: extremes[2].peak(),
+            jump: extremes.get(3).map(|jump| jump.peak()),
         });
-        layers.chain(interfaces).collect()
+        StressSummary {
+            layers: layers.collect(),
+            interfaces: interfaces.collect(),
+            finished: self.finished,
+        }
     }
 
-    /// Sets the safety factors anew.
-    pub(super) fn compare(&mut self, strengths: &Strengths) {
-        self.layers.iter_mut().for_each(|layer| layer.compare(strengths));
+    /// The extremes of the places of both.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let pairs = self.values.iter().zip(&other.values);
+        Self {
+            values: pairs.map(|(one, other)| one.with(*other)).collect(),
+            bounds: Vec::new(),
+            finished: self.finished && other.finished,
+        }
     }
 }
 
-/// The place of an extreme of [`StressSummary::peaks`] with this number, in a body of these layers.
-pub(super) fn place_of(body: &HalfSpace, which: usize, peak: Peak) -> Place {
-    let depth = peak.position[2];
+/// Depths of the bottom faces of the layers.
+fn bottoms(body: &HalfSpace) -> impl Iterator<Item = f64> {
+    let below = |depth: &mut f64, layer: &Layer| {
+        *depth += layer.thickness();
+        Some(*depth)
+    };
+    body.layers().iter().scan(0.0, below)
+}
+
+/// The place of an extreme of [`Extremes`] with this number, at a depth in a body of these layers.
+pub(super) fn place_of(body: &HalfSpace, which: usize, depth: f64) -> Place {
     let substrate = usize::from(substrate_material(body).is_some());
     let count = body.layers().len();
-    let (layer, is_below) = match which.checked_sub(3 * (count + substrate)) {
-        None => (which / 3, false),
-        Some(which) if which % 4 == 3 => (which / 4 + 1, true),
-        Some(which) => (which / 4, false),
+    let (layer, is_below) = match which.checked_sub(OF_LAYER * (count + substrate)) {
+        None => (which / OF_LAYER, false),
+        Some(which) if which % OF_INTERFACE == 3 => (which / OF_INTERFACE + 1, true),
+        Some(which) => (which / OF_INTERFACE, false),
     };
     let top: f64 = body.layers()[..layer.min(count)].iter().map(Layer::thickness).sum();
     let below_top = if is_below { 0.0 } else { (depth - top).max(0.0) };
@@ -236,7 +295,10 @@ impl StressPlan {
             "refine must be None where the tractions of a contact are known, and in the summary of a plan: \
              Solution.stress_summary of a contact without friction solves finer cells",
         )?;
-        Ok(request.evaluate(self, None, self.whole.half_width(), &mut |part| asked.tell(part)))
+        let scope = Scope::of(self);
+        Ok(request
+            .evaluate(self, scope, &mut |part| asked.tell(part))
+            .summary(&self.whole.body, strengths))
     }
 }
 
@@ -249,14 +311,41 @@ pub(super) fn summary_once(
     let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
     let request = SummaryRequest::checked(body, grid, sliding, strengths, asked.options())?;
     let evaluate = |plan: &StressPlan, progress: &mut StressProgress| {
-        request.evaluate(plan, None, plan.whole.half_width(), progress)
+        request.evaluate(plan, Scope::of(plan), progress)
     };
-    Ok(source.once(asked, request.memory, evaluate)?.unwrap_or_default())
+    let extremes = source.once(asked, request.memory, evaluate)?.unwrap_or_default();
+    Ok(extremes.summary(body, strengths))
+}
+
+/// What is evaluated of a plan.
+pub(super) struct Scope<'a> {
+    /// What the plan's stress lacks, and the cells that count.
+    pub(super) beside: Option<Beside<'a>>,
+    /// Cells that do not count.
+    pub(super) without: &'a [Window],
+    /// Half-width of the contact, for which depths are chosen.
+    pub(super) half_width: f64,
+    /// Error of the stress of what is beside the plan.
+    pub(super) of_width: f64,
+    /// Whether the bounds of each cell are recorded.
+    pub(super) records: bool,
+}
+
+impl Scope<'_> {
+    /// All cells of a plan.
+    pub(super) fn of(plan: &StressPlan) -> Self {
+        Self {
+            beside: None,
+            without: &[],
+            half_width: plan.whole.half_width(),
+            of_width: 0.0,
+            records: false,
+        }
+    }
 }
 
 /// Arguments of one summary, checked.
-pub(super) struct SummaryRequest<'a> {
-    strengths: &'a Strengths,
+pub(super) struct SummaryRequest {
     /// Residual stress of each layer and of the substrate.
     residual: Vec<f64>,
     /// μ times the unit vector of the traction on the body.
@@ -282,78 +371,70 @@ impl Strengths {
     }
 }
 
-impl<'a> SummaryRequest<'a> {
+impl SummaryRequest {
     pub(super) fn checked(
         body: &HalfSpace,
         grid: &Grid,
         sliding: &SlidingSense,
-        strengths: &'a Strengths,
+        strengths: &Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
         strengths.check()?;
-        // Six components, and the in-plane stress above an interface.
-        let arrays = 9 + plane_arrays(options.friction != 0.0, false);
+        // Bounds of each cell.
+        let layers = body.layers().len();
+        let bounds = options.refine.map_or(0, |_| OF_LAYER * (layers + 1) + OF_INTERFACE * layers);
+        // Six components, and the in-plane stress above an interface; steps of the pressure, and two arrays on the way to them.
+        let arrays = 9 + 8 + bounds + plane_arrays(options.friction != 0.0, false);
         Ok(Self {
-            strengths,
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
             memory: memory_of(grid.shape(), arrays),
         })
     }
 
-    /// The summary of a plan, at depths for a contact of this half-width. `beside` has what the plan's stress lacks.
+    /// The extremes of a plan.
     pub(super) fn evaluate(
         &self,
         plan: &StressPlan,
-        beside: Option<Beside<'_>>,
-        half_width: f64,
+        scope: Scope<'_>,
         progress: &mut StressProgress,
-    ) -> StressSummary {
+    ) -> Extremes {
         let body = &plan.whole.body;
-        let regions = regions(body, half_width);
+        let regions = regions(body, scope.half_width);
         let in_layers = regions.iter().map(|region| region.len() + 3 * REFINEMENTS);
         let planned = in_layers.sum::<usize>() + body.layers().len();
-        let mut planes =
-            Planes::new(plan, beside, self.friction, &self.residual, planned, progress);
-        let mut summary = StressSummary::default();
-        if self.fill(&regions, &mut planes, &mut summary).is_continue() {
-            summary.finished = true;
+        let mut planes = Planes::new(plan, scope, self.friction, &self.residual, planned, progress);
+        let mut values = Vec::new();
+        let finished = fill(&regions, &mut planes, &mut values).is_continue();
+        if finished {
             // A break has nothing left to stop.
             let _ = (planes.progress)(1.0);
         }
-        summary
-    }
-
-    /// Adds all layers and interfaces to `summary`.
-    fn fill(
-        &self,
-        regions: &[Vec<Place>],
-        planes: &mut Planes,
-        summary: &mut StressSummary,
-    ) -> ControlFlow<()> {
-        let body = &planes.plan.whole.body;
-        let mut top = 0.0;
-        for region in regions {
-            let layer = layer(planes, body, region, top, self.strengths)?;
-            top = layer.depths[1];
-            summary.layers.push(layer);
-        }
-        for (number, layer) in body.layers().iter().enumerate() {
-            summary.interfaces.push(interface(planes, body, number, layer)?);
-        }
-        ControlFlow::Continue(())
+        Extremes { values, bounds: planes.bounds, finished }
     }
 }
 
-/// Summary of the layer whose top face is at depth `top`, from the places of `region`.
-fn layer(
+/// Adds the extremes of all layers and interfaces to `extremes`.
+fn fill(
+    regions: &[Vec<Place>],
     planes: &mut Planes,
-    body: &HalfSpace,
-    region: &[Place],
-    top: f64,
-    strengths: &Strengths,
-) -> ControlFlow<(), LayerSummary> {
-    let mut evaluated: Vec<(Place, [Peak; 3])> = Vec::new();
+    extremes: &mut Vec<Extreme>,
+) -> ControlFlow<()> {
+    let body = &planes.plan.whole.body;
+    for region in regions {
+        planes.begin(extremes.len(), OF_LAYER);
+        extremes.extend(layer(planes, region)?);
+    }
+    for (number, (layer, depth)) in body.layers().iter().zip(bottoms(body)).enumerate() {
+        planes.begin(extremes.len(), OF_INTERFACE);
+        interface(planes, body, (number, layer, depth), extremes)?;
+    }
+    ControlFlow::Continue(())
+}
+
+/// Extremes of a layer, from the places of `region`.
+fn layer(planes: &mut Planes, region: &[Place]) -> ControlFlow<(), [Extreme; OF_LAYER]> {
+    let mut evaluated: Vec<(Place, [Extreme; OF_LAYER])> = Vec::new();
     for place in region {
         evaluated.push((*place, planes.extremes(place)?));
     }
@@ -378,41 +459,24 @@ fn layer(
             evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
         }
     }
-    let [von_mises, tension, shear] = [0, 1, 2].map(|which| {
-        let peaks = evaluated.iter().map(|(_, peaks)| peaks[which]);
-        let first = evaluated[0].1[which];
-        peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
-    });
-    let layer = region[0].layer;
-    let own = body.layers().get(layer);
-    let thickness = own.map(Layer::thickness);
-    let mut summary = LayerSummary {
-        layer,
-        name: own.and_then(Layer::name).map(String::from),
-        depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
-        yield_safety_factor: None,
-        strength_safety_factor: None,
-        von_mises,
-        tension,
-        shear,
-    };
-    summary.compare(strengths);
-    ControlFlow::Continue(summary)
+    let first = evaluated[0].1;
+    ControlFlow::Continue(evaluated.iter().fold(first, |largest, (_, peaks)| {
+        std::array::from_fn(|which| largest[which].with(peaks[which]))
+    }))
 }
 
-/// Summary of the interface below `layer`, which has the `number`.
+/// Adds the extremes of the interface below a `layer`, which has the `number` and this depth of its bottom, to `extremes`.
 fn interface(
     planes: &mut Planes,
     body: &HalfSpace,
-    number: usize,
-    layer: &Layer,
-) -> ControlFlow<(), InterfaceSummary> {
-    let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
+    (number, layer, depth): (usize, &Layer, f64),
+    extremes: &mut Vec<Extreme>,
+) -> ControlFlow<()> {
     let next = body.layers().get(number + 1).map(Layer::material);
     let below = next.or(substrate_material(body));
     let above =
         Place { layer: number, below_top: layer.thickness(), depth, material: layer.material() };
-    let [tension, compression, shear] = planes.tractions(&above)?;
+    let tractions = planes.tractions(&above)?;
     let jump = match below {
         None => None,
         Some(material) => {
@@ -420,25 +484,29 @@ fn interface(
             Some(planes.jump(&above, &below)?)
         }
     };
-    ControlFlow::Continue(InterfaceSummary {
-        interface: number,
-        depth,
-        tension,
-        compression,
-        shear,
-        jump,
-    })
+    extremes.extend(tractions.into_iter().chain(jump));
+    ControlFlow::Continue(())
 }
 
 /// The plane of stress that was evaluated last, and what evaluates the next.
 struct Planes<'a, 'b> {
     plan: &'a StressPlan,
-    beside: Option<Beside<'a>>,
+    scope: Scope<'a>,
     friction: [f64; 2],
     residual: &'a [f64],
     evaluation: Evaluation<'a>,
     /// The six components at the cells.
     fields: [Vec<f64>; STRESSES],
+    /// Points of the edge of the contact, at which the surface is evaluated, too.
+    edge: Vec<CellPoint>,
+    /// Largest steps of the pressure that are felt in each cell; no cells where errors do not depend on them.
+    steps: Vec<LocalSteps>,
+    /// Errors of the components by those steps; none where they are not known.
+    errors: Option<StepErrors>,
+    /// Bounds of each extreme in each cell, where they are recorded.
+    bounds: Vec<Vec<f64>>,
+    /// Number of the first of the extremes that are evaluated.
+    first: usize,
     progress: &'a mut StressProgress<'b>,
     /// Planes evaluated so far.
     done: usize,
@@ -452,7 +520,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// many of those `planned` are done.
     fn new(
         plan: &'a StressPlan,
-        beside: Option<Beside<'a>>,
+        scope: Scope<'a>,
         friction: [f64; 2],
         residual: &'a [f64],
         planned: usize,
@@ -461,11 +529,16 @@ impl<'a, 'b> Planes<'a, 'b> {
         let cells = plan.whole.grid.shape().iter().product();
         Self {
             plan,
-            beside,
+            scope,
             friction,
             residual,
             evaluation: Evaluation::new(plan, friction, false),
             fields: std::array::from_fn(|_| vec![0.0; cells]),
+            edge: plan.edge_points(),
+            steps: plan.steps_by_cell(),
+            errors: None,
+            bounds: Vec::new(),
+            first: 0,
             progress,
             done: 0,
             planned,
@@ -473,28 +546,72 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
     }
 
-    /// Evaluates the stress at `place`.
-    fn evaluate(&mut self, place: &Place) -> ControlFlow<()> {
+    /// Begins `count` extremes of which the first has this number.
+    fn begin(&mut self, first: usize, count: usize) {
+        self.first = first;
+        if self.scope.records {
+            let none = vec![f64::NEG_INFINITY; self.fields[0].len()];
+            self.bounds.resize(first + count, none);
+        }
+    }
+
+    /// Records the bounds of a cell, of the extremes from number `from` of those that were begun.
+    fn record<const N: usize>(&mut self, from: usize, cell: usize, bounds: [f64; N]) {
+        if self.scope.records {
+            for (recorded, bound) in self.bounds[self.first + from..].iter_mut().zip(bounds) {
+                recorded[cell] = recorded[cell].max(bound);
+            }
+        }
+    }
+
+    /// Evaluates the stress at `place`. With `points`, the larger values at an edge are those at its points.
+    fn evaluate(&mut self, place: &Place, points: bool) -> ControlFlow<()> {
         let (done, planned) = (self.done as f64, self.planned as f64);
         let progress = &mut self.progress;
         let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
-        if let Some(beside) = &mut self.beside {
+        if let Some(beside) = &mut self.scope.beside {
             beside.add(place, &self.plan.whole.grid, &mut self.fields, &mut progress)?;
         }
         let residual = self.residual[place.layer];
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
         }
+        self.errors = self.errors_at(place, false).map(|errors| {
+            let grid = &self.plan.whole.grid;
+            let [dx, dy] = grid.spacing();
+            let cell = if grid.is_line() { dy } else { dx.max(dy) };
+            if points {
+                errors.beside_points()
+            } else if place.depth < cell {
+                errors.without_points()
+            } else {
+                errors
+            }
+        });
         self.done += 1;
         ControlFlow::Continue(())
+    }
+
+    /// The errors at `place`, of tractions that are known `within` cells or uniform over them.
+    fn errors_at(&self, place: &Place, within: bool) -> Option<StepErrors> {
+        let errors = self.plan.errors(place, self.friction, within)?;
+        Some(errors.plus(self.scope.of_width))
     }
 
     /// Whether a cell counts.
     fn counts(&self, cell: usize) -> bool {
         let ny = self.plan.whole.grid.shape()[1];
-        self.beside.as_ref().is_none_or(|beside| beside.has([cell / ny, cell % ny]))
+        self.has([cell / ny, cell % ny])
+    }
+
+    /// Whether a cell of this row and column counts.
+    fn has(&self, cell: [usize; 2]) -> bool {
+        let holds =
+            |window: &Window| [0, 1].iter().all(|axis| window[*axis].contains(&cell[*axis]));
+        self.scope.beside.as_ref().is_none_or(|beside| holds(&beside.core))
+            && !self.scope.without.iter().any(holds)
     }
 
     /// Numbers of the cells that count.
@@ -506,65 +623,74 @@ impl<'a, 'b> Planes<'a, 'b> {
         Tensor::new(self.fields.each_ref().map(|field| field[cell]))
     }
 
-    fn peak(&self, Largest { value, cell }: Largest, place: &Place) -> Peak {
-        let ny = self.plan.whole.grid.shape()[1];
-        let centre = CellPoint { cell: [cell / ny, cell % ny], within: [0.0; 2] };
-        self.peak_at(value, &centre, place, false)
+    /// The steps of the pressure that are felt in a cell.
+    fn steps(&self, cell: usize) -> LocalSteps {
+        self.steps.get(cell).copied().unwrap_or_default()
     }
 
-    /// A peak at a point, whose stress is that of loads `within` cells or that of the cell.
-    fn peak_at(&self, value: f64, point: &CellPoint, place: &Place, within: bool) -> Peak {
-        let [x, y] = self.plan.position(point);
-        let window = point.cell.map(|cell| cell..cell + 1);
-        let places = std::slice::from_ref(place);
-        let error = self.plan.uncertainties(places, self.friction, &window, within);
-        Peak { value, position: [x, y, place.depth], uncertainty: error.map(|errors| errors[0]) }
+    /// The error of a cell at the place that was evaluated last; 0 where it is not known.
+    fn error(&self, cell: usize) -> f64 {
+        self.errors.map_or(0.0, |errors| errors.at(&self.steps(cell)))
     }
 
     /// The largest von Mises stress, principal stress and shear stress at `place`.
-    fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
-        self.evaluate(place)?;
+    fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Extreme; OF_LAYER]> {
+        self.evaluate(place, place.layer == 0 && !self.edge.is_empty())?;
         if let (true, Some(solved)) = (place.depth == 0.0, &self.plan.whole.solved) {
             solved.subcell.set_tractions_at_centres(self.friction, &mut self.fields);
         }
-        let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
+        let [mut von_mises, mut tension, mut shear] = [LargestWithError::NONE; OF_LAYER];
         for cell in self.cells() {
-            let tensor = self.tensor(cell);
+            let (tensor, error) = (self.tensor(cell), self.error(cell));
             let mises = tensor.von_mises();
-            von_mises.offer(mises, cell);
+            von_mises.offer(mises, error, cell);
             // The largest principal stress is at most the mean plus 2/3 of von Mises' stress, and the
             // largest shear stress at most 1/√3 of it: most cells need no principal stresses.
-            if tensor.mean() + 0.67 * mises > tension.value || 0.58 * mises > shear.value {
+            let matters = |most: f64, largest: LargestWithError| {
+                most > largest.value.value || most + error > largest.bound.value
+            };
+            let [most_tension, most_shear] = [tensor.mean() + 0.67 * mises, 0.58 * mises];
+            if self.scope.records || matters(most_tension, tension) || matters(most_shear, shear) {
                 let [first, _, last] = tensor.principal();
-                tension.offer(first, cell);
-                shear.offer(0.5 * (first - last), cell);
+                let largest_shear = 0.5 * (first - last);
+                tension.offer(first, error, cell);
+                shear.offer(largest_shear, error, cell);
+                self.record(0, cell, [mises, first, largest_shear].map(|value| value + error));
             }
         }
         let of = |tensors: &[Tensor; 1]| three(&tensors[0]);
         let peaks = self.peaks([von_mises, tension, shear], place, &[], of);
-        if place.depth == 0.0 { self.with_edge(peaks, place) } else { ControlFlow::Continue(peaks) }
+        let points: Vec<_> =
+            self.edge.iter().filter(|point| self.has(point.cell)).copied().collect();
+        match place.depth > 0.0 || points.is_empty() {
+            true => ControlFlow::Continue(peaks),
+            false => self.with_edge(peaks, place, &points),
+        }
     }
 
-    /// The peaks of the surface, or those at the edge of the contact where they are larger. Between the centres of cells
-    /// stresses at the surface fall off from the edge as the root of the distance.
-    fn with_edge(&mut self, mut peaks: [Peak; 3], place: &Place) -> ControlFlow<(), [Peak; 3]> {
-        let mut points = self.plan.edge_points();
-        points.retain(|point| self.beside.as_ref().is_none_or(|beside| beside.has(point.cell)));
+    /// The peaks of the surface and of the `points` of the edge of the contact. Between the centres of cells stresses at the
+    /// surface fall off from the edge as the root of the distance.
+    fn with_edge(
+        &mut self,
+        mut peaks: [Extreme; OF_LAYER],
+        place: &Place,
+        points: &[CellPoint],
+    ) -> ControlFlow<(), [Extreme; OF_LAYER]> {
         let Some(at) = self.evaluation.point_stress(place) else {
             return ControlFlow::Continue(peaks);
         };
         let ny = self.plan.whole.grid.shape()[1];
+        let number = |point: &CellPoint| point.cell[0] * ny + point.cell[1];
         // Where the largest values are, from those in the cells of the edge.
-        let in_cells =
-            points.iter().map(|point| three(&self.tensor(point.cell[0] * ny + point.cell[1])));
-        let in_cells: Vec<_> = in_cells.collect();
-        let mut known: Vec<Option<[f64; 3]>> = vec![None; points.len()];
+        let in_cells: Vec<_> =
+            points.iter().map(|point| three(&self.tensor(number(point)))).collect();
+        let mut known: Vec<Option<[f64; OF_LAYER]>> = vec![None; points.len()];
         let (residual, part) = (self.residual[place.layer], self.done as f64 / self.planned as f64);
         let mut value = |k: usize, which: usize| -> ControlFlow<(), f64> {
             if known[k].is_none() {
                 let mut told = |_| (self.progress)(part.min(1.0));
                 let mut sum = self.evaluation.at_point(place, &at, &points[k], &mut told)?;
-                if let Some(beside) = &self.beside {
+                if let Some(beside) = &self.scope.beside {
                     let added = beside.at(self.plan.position(&points[k]));
                     sum.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
                 }
@@ -573,8 +699,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             }
             ControlFlow::Continue(known[k].map_or(f64::NEG_INFINITY, |values| values[which]))
         };
-        let mut found = Vec::new();
-        for which in [0, 1, 2] {
+        for which in 0..OF_LAYER {
             let mut starts: Vec<usize> = (0..points.len()).collect();
             starts.sort_by(|a, b| in_cells[*b][which].total_cmp(&in_cells[*a][which]));
             starts.truncate(EDGE_STARTS);
@@ -593,7 +718,7 @@ impl<'a, 'b> Planes<'a, 'b> {
                 0.5 * self.plan.whole.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
             while step > shortest {
                 let mut moved = false;
-                for beside in self.plan.along_edge(&points, k, step) {
+                for beside in self.plan.along_edge(points, k, step) {
                     let value = value(beside, which)?;
                     if value > largest {
                         (k, largest, moved) = (beside, value, true);
@@ -603,53 +728,65 @@ impl<'a, 'b> Planes<'a, 'b> {
                     step *= 0.5;
                 }
             }
-            found.push((which, largest, points[k]));
         }
-        for (which, value, point) in found {
-            if value > peaks[which].value {
-                peaks[which] = self.peak_at(value, &point, place, true);
+        let errors = self.errors_at(place, true);
+        for (point, values) in points.iter().zip(known) {
+            let Some(values) = values else { continue };
+            let [x, y] = self.plan.position(point);
+            let cell = number(point);
+            let error = errors.map(|errors| errors.at(&self.steps(cell)));
+            for (peak, value) in peaks.iter_mut().zip(values) {
+                *peak = peak.with(Extreme::of(value, [x, y, place.depth], error));
             }
+            self.record(0, cell, values.map(|value| value + error.unwrap_or(0.0)));
         }
         ControlFlow::Continue(peaks)
     }
 
-    /// Extremes of the traction at `place`: the largest and the smallest σ_zz, and the largest √(σ_xz² + σ_yz²).
-    fn tractions(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
-        self.evaluate(place)?;
-        let [mut tension, mut compression, mut shear] = [Largest::NONE; 3];
-        for cell in self.cells() {
-            let Tensor { zz, yz, xz, .. } = self.tensor(cell);
-            tension.offer(zz, cell);
-            compression.offer(-zz, cell);
-            shear.offer(xz.hypot(yz), cell);
-        }
+    /// Extremes of the traction at `place`: the largest σ_zz and −σ_zz, and the largest √(σ_xz² + σ_yz²).
+    fn tractions(&mut self, place: &Place) -> ControlFlow<(), [Extreme; 3]> {
+        self.evaluate(place, false)?;
         let of = |tensors: &[Tensor; 1]| {
             let Tensor { zz, yz, xz, .. } = tensors[0];
             [zz, -zz, xz.hypot(yz)]
         };
-        let peaks = self.peaks([tension, compression, shear], place, &[], of);
-        let mut peaks =
-            self.with_beyond((peaks, largest_of(&peaks), [f64::NEG_INFINITY; 3]), &[*place], of)?;
-        peaks[1].value = -peaks[1].value;
-        ControlFlow::Continue(peaks)
+        let peaks = self.largest(place, (0, &[]), of);
+        self.with_beyond((peaks, largest_of(&peaks), [f64::NEG_INFINITY; 3]), &[*place], of)
     }
 
     /// Largest jump of the in-plane stress from the plane at `above`, which was evaluated last, to that at `below`.
-    fn jump(&mut self, above: &Place, below: &Place) -> ControlFlow<(), Peak> {
-        let before = [self.fields.clone()];
-        self.evaluate(below)?;
-        let mut largest = Largest::NONE;
-        for cell in self.cells() {
-            largest.offer(jump(self.tensors(&before, cell)), cell);
-        }
+    fn jump(&mut self, above: &Place, below: &Place) -> ControlFlow<(), Extreme> {
+        let (before, errors) = ([self.fields.clone()], self.errors);
+        self.evaluate(below, false)?;
+        self.errors = self.errors.zip(errors).map(|(below, above)| below.larger(above));
         let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
-        let peaks = self.peaks([largest], below, &before, of);
+        let peaks = self.largest(below, (3, &before), of);
         let [peak] = self.with_beyond(
             (peaks, largest_of(&peaks), [f64::NEG_INFINITY; 1]),
             &[*above, *below],
             of,
         )?;
         ControlFlow::Continue(peak)
+    }
+
+    /// The largest values of all cells at `place`, which are the extremes from number `from` of those that were begun. `of`
+    /// has the values of a cell, from its stresses at one place or more: those of the planes `before`, and of the one
+    /// evaluated last.
+    fn largest<const N: usize, const K: usize>(
+        &mut self,
+        place: &Place,
+        (from, before): (usize, &[[Vec<f64>; STRESSES]]),
+        of: impl Fn(&[Tensor; K]) -> [f64; N],
+    ) -> [Extreme; N] {
+        let mut largest = [LargestWithError::NONE; N];
+        for cell in self.cells() {
+            let (values, error) = (of(&self.tensors(before, cell)), self.error(cell));
+            for (largest, value) in largest.iter_mut().zip(values) {
+                largest.offer(value, error, cell);
+            }
+            self.record(from, cell, values.map(|value| value + error));
+        }
+        self.peaks(largest, place, before, of)
     }
 
     /// Stresses of a cell at one place or more: those of the planes `before`, and of the one evaluated last.
@@ -660,30 +797,43 @@ impl<'a, 'b> Planes<'a, 'b> {
         })
     }
 
-    /// The peaks of the largest values at `place`. `of` has the values of a cell, from its stresses at one place or more: those
-    /// of the planes `before`, and of the one evaluated last.
+    /// The extremes of the largest values at `place`, with what is missed between centres of cells. `of` has the values of a
+    /// cell, from its stresses at one place or more: those of the planes `before`, and of the one evaluated last.
     fn peaks<const N: usize, const K: usize>(
         &self,
-        found: [Largest; N],
+        largest: [LargestWithError; N],
         place: &Place,
         before: &[[Vec<f64>; STRESSES]],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
-    ) -> [Peak; N] {
+    ) -> [Extreme; N] {
+        let grid = &self.plan.whole.grid;
         std::array::from_fn(|n| {
-            let peak = self.peak(found[n], place);
-            let value = |cell: usize| self.counts(cell).then(|| of(&self.tensors(before, cell))[n]);
-            let between = found[n].between(&self.plan.whole.grid, value);
-            Peak { uncertainty: peak.uncertainty.map(|error| error + between), ..peak }
+            let of_cell =
+                |cell: usize| self.counts(cell).then(|| of(&self.tensors(before, cell))[n]);
+            let extreme = |at: Largest, error: f64| {
+                let centre = CellPoint {
+                    cell: {
+                        let ny = grid.shape()[1];
+                        [at.cell / ny, at.cell % ny]
+                    },
+                    within: [0.0; 2],
+                };
+                let [x, y] = self.plan.position(&centre);
+                let error = error + at.between(grid, of_cell);
+                Extreme::of(at.value, [x, y, place.depth], self.errors.map(|_| error))
+            };
+            let LargestWithError { value, bound } = largest[n];
+            extreme(value, self.error(value.cell)).bounded_by(extreme(bound, 0.0))
         })
     }
 
     /// The peaks of [`Planes::extremes`], or larger ones beyond the grid.
     fn beyond(
         &mut self,
-        peaks: [Peak; 3],
+        peaks: [Extreme; OF_LAYER],
         place: &Place,
-        best: [f64; 3],
-    ) -> ControlFlow<(), [Peak; 3]> {
+        best: [f64; OF_LAYER],
+    ) -> ControlFlow<(), [Extreme; OF_LAYER]> {
         self.with_beyond((peaks, largest_of(&peaks), best), &[*place], |tensors: &[Tensor; 1]| {
             three(&tensors[0])
         })
@@ -692,21 +842,21 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// The peaks at the last of `places`, or larger ones beyond the grid: [`Beyond::peaks`].
     fn with_beyond<const N: usize, const K: usize>(
         &mut self,
-        found: ([Peak; N], f64, [f64; N]),
+        inside: ([Extreme; N], f64, [f64; N]),
         places: &[Place; K],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
-    ) -> ControlFlow<(), [Peak; N]> {
-        if self.beside.is_some() {
-            return ControlFlow::Continue(found.0);
+    ) -> ControlFlow<(), [Extreme; N]> {
+        if self.scope.beside.is_some() {
+            return ControlFlow::Continue(inside.0);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
         let mut told = |_| (self.progress)(part);
-        self.beyond.peaks(found, places, self.residual, of, &mut told)
+        self.beyond.peaks(inside, places, self.residual, of, &mut told)
     }
 }
 
 /// The largest magnitude of peaks.
-fn largest_of(peaks: &[Peak]) -> f64 {
+fn largest_of(peaks: &[Extreme]) -> f64 {
     peaks.iter().fold(0.0, |largest, peak| peak.value.abs().max(largest))
 }
 
@@ -717,7 +867,7 @@ fn jump([above, below]: [Tensor; 2]) -> f64 {
 }
 
 /// Von Mises stress, largest principal stress and largest shear stress.
-fn three(tensor: &Tensor) -> [f64; 3] {
+fn three(tensor: &Tensor) -> [f64; OF_LAYER] {
     let [first, _, last] = tensor.principal();
     [tensor.von_mises(), first, 0.5 * (first - last)]
 }
@@ -785,7 +935,7 @@ const LONGEST_REFINEMENT: f64 = 0.9;
 fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
     let value = |k: usize| evaluated[k].1;
     let best = (0..evaluated.len()).reduce(|a, b| if value(b) > value(a) { b } else { a })?;
-    if best == 0 || best + 1 == evaluated.len() {
+    if best == 0 || best + 1 == evaluated.len() || value(best) == f64::NEG_INFINITY {
         return None;
     }
     let z = |k: usize| evaluated[k].0.below_top;

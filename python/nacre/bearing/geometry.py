@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
+from nacre._tools.rounding import ROUNDING, floor
 from nacre._tools.typing import Layers
 from nacre._tools.units import system
 from nacre.hertz import contact_modulus
@@ -242,8 +243,8 @@ class Bearing(ABC):
                 f"got {millimetres(pitch)}"
             )
         apart = pitch * math.sin(math.pi / self.count)
-        if apart < diameter:
-            most = math.floor(math.pi / math.asin(diameter / pitch))
+        if apart < (1.0 - ROUNDING) * diameter:
+            most = floor(math.pi / math.asin(diameter / pitch))
             raise ValueError(
                 f"count must be at most {most}: on a pitch circle of {millimetres(pitch)}, "
                 f"{self.count} elements are {millimetres(apart)} apart, less than their diameter, "

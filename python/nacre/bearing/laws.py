@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.rounding import ceil, floor
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -194,10 +195,10 @@ class Solved:
         self.kept: dict[tuple[int, int], Solution] = {}
         power = 2 if bearing.rolls else 3  # of the width, in the load
         # Widths in steps, so that a small change of the loads does not change the cells.
-        steps = math.ceil(STEPS * math.log2(float(lines.max())) / power)
+        steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
         heaviest = 2.0 ** (steps * power / STEPS)
-        halved = np.floor(np.log2(heaviest / np.maximum(lines, 1e-100 * heaviest)) / power)
-        self.halved = np.clip(halved, 0, NARROWEST).astype(int)
+        halved = floor(np.log2(heaviest / np.maximum(lines, 1e-100 * heaviest)) / power)
+        self.halved = np.clip(halved, 0, NARROWEST)
         self.heaviest, self.power, self.cells = heaviest, power, cells
         self.workers = threads or core.Convolution([[1.0]], None).threads()
 

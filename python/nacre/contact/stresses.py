@@ -321,8 +321,9 @@ class LayerStress(_Extremes):
     uncertainty: dict[str, float]
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
-    Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
-    See `Stress.uncertainty`.
+    Each is the largest sum of a value and its error over all places, less the value: another place,
+    which the cells resolve less, may have the extreme. Where it is not small compared with the
+    value, take smaller cells, or `refine`. See `Stress.uncertainty`.
     """
 
     @classmethod
@@ -367,8 +368,9 @@ class InterfaceStress(_Extremes):
     uncertainty: dict[str, float]
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
-    Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
-    See `Stress.uncertainty`.
+    Each is the largest sum of a value and its error over all places, less the value: another place,
+    which the cells resolve less, may have the extreme. Where it is not small compared with the
+    value, take smaller cells, or `refine`. See `Stress.uncertainty`.
     """
 
     def __repr__(self) -> str:
@@ -741,10 +743,10 @@ class Stressed:
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
         refine : float, optional
-            Largest estimated error of the extremes, as a part of them, such as 0.05. A patch around
-            each place where the cells leave a larger one is solved again on finer cells, until
-            the error is below it or the patch has as many cells as the grid or 512 × 512, whichever
-            is more. By default the cells of the grid are used. Not for `nacre.slide` and
+            Largest estimated error of the extremes, as a part of them, such as 0.05. Patches that
+            hold the places where value and error together exceed an extreme by more are solved
+            again on finer cells, until the error is below it or a patch has as many cells as the
+            grid or 512 × 512, whichever is more. By default the cells of the grid are used. Not for `nacre.slide` and
             `nacre.roll`, periodic grids, surfaces that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two

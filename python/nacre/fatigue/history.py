@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.rounding import ceil, floor
 from nacre._tools.typing import Direction, Member, Side
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
@@ -132,7 +133,7 @@ class Rolling:
         merged = [self.pressure, *(() if self.tractions is None else self.tractions)]
         reach = 2 * NEAR * self.half_width / step
         # A multiple of 4², of which a quarter is put into the middle of the next one.
-        count = 16 * int(np.ceil(max(reach, ny) / 16))
+        count = 16 * int(ceil(max(reach, ny) / 16))
         before = (count - ny) // 2
         middle = self.grid.center[1] + (count / 2 - before - ny / 2) * step
         sides = ((0, 0), (before, count - ny - before))
@@ -161,7 +162,7 @@ class Rolling:
             inner = (
                 self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
             )
-            used &= np.arange(count) % max(1, int(DENSE * inner / step)) == 0
+            used &= np.arange(count) % max(1, int(floor(DENSE * inner / step))) == 0
             found.append((grid, merged, np.flatnonzero(used)))
             covered = middle + np.array([-0.5, 0.5]) * count * step
         return found

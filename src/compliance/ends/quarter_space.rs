@@ -20,6 +20,7 @@ use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
 use crate::numerics::quadrature::Rule;
+use crate::numerics::rounding;
 use crate::numerics::special::{EULER_GAMMA, barycentric, chebyshev_nodes};
 
 /// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
@@ -50,7 +51,7 @@ impl Nodes {
         let at = |row: usize| nearest + spacing * row as f64;
         while rows.len() < count {
             let start = at(rows.len()) - 0.5 * spacing;
-            let doubled = (start / spacing).round().min((count - rows.len()) as f64);
+            let doubled = rounding::round(start / spacing).min((count - rows.len()) as f64);
             let first = distances.len();
             if start < NODES_THEMSELVES * spacing || doubled <= PANEL_NODES as f64 {
                 distances.push(at(rows.len()));

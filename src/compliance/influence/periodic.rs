@@ -19,6 +19,7 @@ use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::fft::inverse_even;
 use crate::numerics::parallel::Threads;
+use crate::numerics::rounding::cells_within;
 
 /// Distance of the end of the sums, in longest lengths of what is summed: 1e-10 of the coefficient of the loaded cell is
 /// left.
@@ -65,7 +66,7 @@ pub(super) fn apart(
 ) -> Result<Array2<f64>> {
     let (spacing, [_, ny]) = (grid.spacing(), grid.shape());
     let farthest = offsets.iter().fold(0.0_f64, |most, x| most.max(*x));
-    let rows = (farthest / spacing[0]).ceil() as usize + 1;
+    let rows = cells_within(farthest, spacing[0]) + 1;
     let longer = Grid::new([rows, ny], [rows as f64 * spacing[0], grid.size()[1]])?;
     let images = CellImages::plan(&longer.periodic(grid.is_periodic())?, RINGS).at_offsets(offsets);
     let mut sums = sums(body, &images, spacing, offsets, threads)?;

@@ -29,6 +29,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::fft::Keep;
+use crate::numerics::rounding::cells_within;
 
 /// The plan of a body's kernels, which all depths share.
 #[derive(Debug)]
@@ -237,7 +238,7 @@ impl<M: ComponentsAt, P: ComponentsAt, const C: usize> CellSource<M, P, C> {
         let [dx, dy] = self.spacing;
         let far = FAR * dx.max(dy);
         let rest = far * far - self.depth * self.depth - (i as f64 * dx).powi(2);
-        if rest <= 0.0 { 0 } else { ((rest.sqrt() / dy).ceil() as usize).min(self.offsets[1]) }
+        if rest <= 0.0 { 0 } else { cells_within(rest.sqrt(), dy).min(self.offsets[1]) }
     }
 
     /// Computes the values at the points of row i that differences need, one component after another.

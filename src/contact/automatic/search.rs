@@ -10,6 +10,7 @@ use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::Extent;
+use crate::numerics::rounding::cells_within;
 
 /// Cells across the narrower width of the contact. The 64 that are promised are raised by 7 %, because the
 /// contact on the coarse grid is up to 6 % too wide.
@@ -183,10 +184,9 @@ impl<'a> Search<'a> {
             let cells = (widths[axis] / finest)
                 .min((widths[axis] / (ASPECT_RATIO * finest)).max(LONG_CONTACT));
             let cell = widths[axis] / cells.max(ACROSS);
-            // Rounding must not add a cell where the frame is a whole number of them.
-            let count = ((frame[axis][1] - frame[axis][0]) / cell * (1.0 - 1e-9)).ceil();
+            let count = cells_within(frame[axis][1] - frame[axis][0], cell);
             // Even, so that the middle of a symmetric contact lies between cells.
-            2 * (0.5 * count).ceil() as usize
+            count.next_multiple_of(2)
         });
         self.task.grid_over(frame, self.task.at_most(shape))
     }

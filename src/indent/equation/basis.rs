@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::numerics::parallel::Lanes;
 use crate::numerics::quadrature::Rule;
+use crate::numerics::rounding;
 use crate::numerics::special::{legendre, legendre_pair, spherical_bessel};
 
 /// Contact radius, in thicknesses of the top layer, up to which values at nodes are cheaper than polynomials.
@@ -262,8 +263,8 @@ impl Waves {
             top *= 0.5;
         }
         add(0.0, top);
-        let halvings = (width / top).log2().round() as usize;
-        let panels = (TAIL / thickness / width).ceil() as usize;
+        let halvings = rounding::round((width / top).log2()) as usize;
+        let panels = rounding::ceil(TAIL / thickness / width) as usize;
         for k in 1..panels {
             add(k as f64 * width, (k + 1) as f64 * width);
         }

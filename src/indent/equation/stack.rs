@@ -7,6 +7,7 @@ use super::basis::Waves;
 use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives, refuse_free};
 use crate::error::{Result, refuse_if};
 use crate::model::body::BodyParameter;
+use crate::numerics::rounding;
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
 pub(in crate::indent) const MOST_RATIO: f64 = 1024.0;
@@ -178,7 +179,7 @@ impl Stack {
     /// longest level serves beyond.
     pub(in crate::indent) fn level(&self, length: f64) -> Option<&Arc<StackLevel>> {
         let h = self.0.thickness?;
-        let doublings = (length / (FIRST_LENGTH * h)).log2().ceil().max(0.0) as usize;
+        let doublings = rounding::ceil((length / (FIRST_LENGTH * h)).log2()).max(0.0) as usize;
         let number = doublings.min(LEVELS - 1);
         Some(self.0.levels[number].get_or_init(|| {
             let length = FIRST_LENGTH * h * 2.0_f64.powi(number as i32);

@@ -12,6 +12,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
+use crate::numerics::rounding::{self, cells_within};
 use crate::stress::half_space::{HalfSpacePart, HalfSpacePlan, SurfaceLoad};
 
 /// Length over which the pressures beside the load are followed, in widths of the contact or in distances of it from
@@ -76,7 +77,7 @@ impl NearEnd {
             nearest,
             rows: nx - beyond,
             reach: FOLLOWED * scale,
-            margin: ((MARGIN_BESIDE * scale / grid.spacing()[1]).ceil() as usize).min(2 * ny),
+            margin: cells_within(MARGIN_BESIDE * scale, grid.spacing()[1]).min(2 * ny),
             column: grid.spacing()[1],
             spread: EndPressure::new(&from_end, distance(beyond), grid.spacing()),
             material,
@@ -107,7 +108,7 @@ impl NearEnd {
 
     /// The means as far as the pressure is followed.
     pub(super) fn followed(&self, place: Where, spacing: f64, threads: &Threads) -> Array2<f64> {
-        let count = ((self.reach / spacing).ceil() as usize).min(MOST_ROWS);
+        let count = cells_within(self.reach, spacing).min(MOST_ROWS);
         self.means((place, self.margin), spacing, count, threads)
     }
 }
@@ -260,11 +261,11 @@ impl Strip {
     ) -> Self {
         // An odd number, so that centres coincide.
         let half = 0.5 * (FINER_CELLS * spacing / dx - 1.0);
-        let division = 2 * half.ceil() as usize + 1;
+        let division = 2 * rounding::ceil(half) as usize + 1;
         let [all, none] = REPLACED.map(|cells| (cells * division) as f64);
         let count = REPLACED[1] * division;
         // Beyond, finer cells make no more difference than beyond the strip.
-        let beside = (STRIP as f64 * spacing / near.column).ceil() as usize;
+        let beside = cells_within(STRIP as f64 * spacing, near.column);
         let margin = near.margin.min(beside);
         let mut fine = near.means((place, margin), spacing / division as f64, count, threads);
         for (i, mut row) in fine.rows_mut().into_iter().enumerate() {

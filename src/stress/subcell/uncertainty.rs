@@ -22,14 +22,23 @@
 //! ```
 //!
 //! D is the stress under a unit pressure of wavenumber α, and under the friction in proportion to it. On
-//! hard coatings it is large at wavelengths of a few thicknesses.
+//! hard coatings it is large at wavelengths of a few thicknesses. Steps are those within some cells of a place.
+//!
+//! At an edge that is reconstructed, the loads of cells are followed over some cells only ([`super::near`]). What is left
+//! out falls off as the inverse cube of the distance from the edge, which is added.
+//!
+//! The edge is known to a part of a cell, and with it the width of the contact. The pressure everywhere, and the stress at
+//! depths of up to a half-width, has the error c/n² of the largest pressure in a contact n cells wide; farther below, the error
+//! falls as the square of the depth, at least as fast as the stress.
 
 use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
+use crate::numerics::rounding;
 
 use super::edge::{BAND, around, edge_distances};
+use super::near::DEPTH_LIMIT;
 use super::reconstruction::Reconstruction;
 
 // With these shares, the estimate is some three times the error (`tests/stress/resolution.rs`).
@@ -51,6 +60,15 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
 const TRACTION_SHARE: f64 = 0.5;
 
+/// Stress that is left out at a distance of one cell from an edge, as a part of the step there, if it fell off as the inverse
+/// cube of the distance: that of the four cells at an edge p = √d under a strip of pressure, less their means and shares,
+/// summed for the edge anywhere in a cell and for all targets at depths of four to eight cells. Where loads four cells to the
+/// side are left out, it is at most 3.2e-4 of the step, less than half of what this bounds. Computed here.
+const LEFT_OUT: f64 = 0.05;
+
+/// Error of the stress over the largest pressure, times the square of the cells across a contact.
+const WIDTH_ERROR: f64 = 0.25;
+
 /// Wavenumber of the longest waves of a step, times the side of a cell.
 const LONGEST: f64 = 1.5;
 
@@ -67,6 +85,13 @@ const STEP_REACH: usize = 6;
 #[derive(Debug)]
 pub(super) struct Uncertainty {
     shape: [usize; 2],
+    /// Sides of a cell.
+    spacing: [f64; 2],
+    /// Distance to which the loads of cells at an edge are followed.
+    followed: f64,
+    /// Error of the stress down to the depth of half the width of the contact, due to that width.
+    pub(super) of_width: f64,
+    half_width: f64,
     known: Vec<Known>,
     /// Waves along x and along y.
     waves: [Vec<Wave>; 2],
@@ -88,8 +113,71 @@ struct Wave {
 type AxisSteps = [f64; 3];
 
 /// Largest steps along x and along y in a part of the grid.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
+
+/// Errors of the stress at one depth per unit of the steps around a place.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::stress) struct StepErrors {
+    /// Under pressure and the friction in proportion to it.
+    pressure: [AxisSteps; 2],
+    /// Under tractions that are uniform over cells.
+    traction: [AxisSteps; 2],
+    /// Error that does not depend on the steps.
+    everywhere: f64,
+}
+
+impl StepErrors {
+    /// Errors \[Pa\] from waves along x and along y, where the pressure has these steps.
+    pub(in crate::stress) fn by_axis(&self, LocalSteps(steps): &LocalSteps) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let largest = |factors: &AxisSteps| {
+                factors.iter().zip(&steps[axis]).map(|(f, step)| f * step).fold(0.0, f64::max)
+            };
+            largest(&self.pressure[axis]) + largest(&self.traction[axis]) + self.everywhere
+        })
+    }
+
+    /// The error \[Pa\] where the pressure has these steps.
+    pub(in crate::stress) fn at(&self, steps: &LocalSteps) -> f64 {
+        let [along, across] = self.by_axis(steps);
+        along.max(across)
+    }
+
+    /// The larger of two errors.
+    pub(in crate::stress) fn larger(self, other: Self) -> Self {
+        let larger = |a: [AxisSteps; 2], b: [AxisSteps; 2]| {
+            [0, 1].map(|axis| [0, 1, 2].map(|known| f64::max(a[axis][known], b[axis][known])))
+        };
+        Self {
+            pressure: larger(self.pressure, other.pressure),
+            traction: larger(self.traction, other.traction),
+            everywhere: self.everywhere.max(other.everywhere),
+        }
+    }
+
+    /// These errors, and another that does not depend on the steps.
+    pub(in crate::stress) fn plus(mut self, everywhere: f64) -> Self {
+        self.everywhere += everywhere;
+        self
+    }
+
+    /// The errors of values in cells of the layer at the surface, whose larger values at an edge that is known are found at
+    /// points of the edge.
+    pub(in crate::stress) fn beside_points(mut self) -> Self {
+        self.traction.iter_mut().for_each(|factors| factors[Known::Edge as usize] = 0.0);
+        self
+    }
+
+    /// The errors of values in cells at depths of less than a cell, where larger ones may lie between centres at an edge that is
+    /// known. Farther below, stresses are smooth enough for parabolas.
+    pub(in crate::stress) fn without_points(mut self) -> Self {
+        for factors in &mut self.pressure {
+            factors[Known::Edge as usize] = factors[Known::Mean as usize];
+        }
+        self
+    }
+}
 
 impl Uncertainty {
     pub(super) fn new(
@@ -123,12 +211,29 @@ impl Uncertainty {
             };
             (0..COUNT).map(wave).collect()
         };
-        Self { shape, known, waves: grid.spacing().map(waves) }
+        let peak = pressure.iter().copied().fold(0.0, f64::max);
+        let spacing = grid.spacing();
+        let across = cells_across(pressure, shape);
+        let shorter = if grid.is_line() { spacing[1] } else { spacing[0].min(spacing[1]) };
+        Self {
+            shape,
+            spacing,
+            followed: DEPTH_LIMIT * shorter,
+            of_width: WIDTH_ERROR * peak / across[0].min(across[1]).powi(2),
+            half_width: 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]),
+            known,
+            waves: spacing.map(waves),
+        }
     }
 
     /// Whether the pressure is known within a cell and those beside it.
     pub(super) fn is_known_around(&self, cell: [usize; 2]) -> bool {
         around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
+    }
+
+    /// How well the pressure is known in the worse of two cells.
+    fn worse(&self, a: usize, b: usize) -> usize {
+        self.known[a].max(self.known[b]) as usize
     }
 
     /// Largest steps of `pressure` that are felt in the cells of `window`.
@@ -138,9 +243,8 @@ impl Uncertainty {
         let columns =
             window[1].start.saturating_sub(STEP_REACH)..(window[1].end + STEP_REACH).min(ny);
         let count = |steps: &mut AxisSteps, a: usize, b: usize| {
-            let step = (pressure[a] - pressure[b]).abs();
-            let largest = &mut steps[self.known[a].max(self.known[b]) as usize];
-            *largest = largest.max(step);
+            let largest = &mut steps[self.worse(a, b)];
+            *largest = largest.max((pressure[a] - pressure[b]).abs());
         };
         let [mut along, mut across] = [AxisSteps::default(); 2];
         for i in rows.clone() {
@@ -157,41 +261,108 @@ impl Uncertainty {
         LocalSteps([along, across])
     }
 
-    /// Estimated errors \[Pa\] of the components of the stress at `place`, from waves along x and along y, under pressure and `friction` times
-    /// it, where the pressure has these steps. With the friction, whether its tractions are uniform over cells.
+    /// [`Uncertainty::steps`] of each cell by itself.
+    pub(super) fn steps_by_cell(&self, pressure: &[f64]) -> Vec<LocalSteps> {
+        let [nx, ny] = self.shape;
+        let mut steps = vec![LocalSteps::default(); pressure.len()];
+        for (axis, (next, count)) in [(ny, nx), (1, ny)].into_iter().enumerate() {
+            for known in [Known::Well, Known::Edge, Known::Mean] {
+                // The step from each cell to the next along the axis.
+                let step = |cell: usize| {
+                    let has_next = [cell / ny, cell % ny][axis] + 1 < count;
+                    let counts = has_next && self.worse(cell, cell + next) == known as usize;
+                    if counts { (pressure[cell] - pressure[cell + next]).abs() } else { 0.0 }
+                };
+                let mut largest: Vec<f64> = (0..pressure.len()).map(step).collect();
+                for along in 0..2 {
+                    let ahead = STEP_REACH - usize::from(along == axis);
+                    largest = largest_around(&largest, self.shape, along, [STEP_REACH, ahead]);
+                }
+                for (steps, largest) in steps.iter_mut().zip(largest) {
+                    steps.0[axis][known as usize] = largest;
+                }
+            }
+        }
+        steps
+    }
+
+    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it, and whether the
+    /// tractions of the friction are uniform over cells.
     pub(super) fn at(
         &self,
         body: &HalfSpace,
         place: &Place,
         (friction, uniform): ([f64; 2], bool),
-        LocalSteps(steps): LocalSteps,
-    ) -> [f64; 2] {
+    ) -> StepErrors {
         let friction = friction[0].hypot(friction[1]);
         let material = place.material;
-        let error = |(steps, wave): (AxisSteps, &Wave)| {
-            let parts = wave.shares.iter().zip(steps);
-            let pressure = parts.map(|(share, step)| share * step).fold(0.0, f64::max);
-            if pressure <= 0.0 {
-                return 0.0;
+        // Farther below, stresses of the same force differ less.
+        let beyond = (self.half_width / place.depth.max(self.half_width)).powi(2);
+        let everywhere = if self.of_width > 0.0 { self.of_width * beyond } else { 0.0 };
+        let mut errors = StepErrors { everywhere, ..StepErrors::default() };
+        for axis in 0..2 {
+            for wave in &self.waves[axis] {
+                let fields = wave.column.at(body, place);
+                let [pressed, sheared] = [&fields.pressure, &fields.shear].map(|state| {
+                    let (along, across) = state.lateral_stress(material);
+                    [state.p, state.tau, along, across].map(f64::abs)
+                });
+                let (q, u) = fields.twist;
+                let twisted = friction * q.abs().max((material.shear() * u).abs());
+                let largest = |slides: bool| {
+                    let pairs = pressed.iter().zip(&sheared);
+                    let sums = pairs.map(|(p, s)| if slides { p + friction * s } else { *p });
+                    sums.fold(if slides { twisted } else { 0.0 }, f64::max)
+                };
+                let of_pressure = largest(!uniform);
+                for (error, share) in errors.pressure[axis].iter_mut().zip(wave.shares) {
+                    *error = error.max(share * of_pressure);
+                }
+                if uniform {
+                    let sheared = sheared.iter().fold(0.0, |a: f64, s| a.max(friction * s));
+                    let of_traction = wave.uniform * sheared.max(twisted);
+                    let traction = &mut errors.traction[axis];
+                    traction.iter_mut().for_each(|error| *error = error.max(of_traction));
+                }
             }
-            let largest = steps.into_iter().fold(0.0, f64::max);
-            let traction = friction * if uniform { wave.uniform * largest } else { pressure };
-            let fields = wave.column.at(body, place);
-            let [pressed, sheared] = [&fields.pressure, &fields.shear].map(|state| {
-                let (along, across) = state.lateral_stress(material);
-                [state.p, state.tau, along, across].map(f64::abs)
-            });
-            let (q, u) = fields.twist;
-            let twisted = q.abs().max((material.shear() * u).abs());
-            let pairs = pressed.into_iter().zip(sheared);
-            let in_plane = pairs.map(|(pressed, sheared)| pressure * pressed + traction * sheared);
-            in_plane.fold(traction * twisted, f64::max)
-        };
-        [0, 1].map(|axis| {
-            let waves = self.waves[axis].iter().map(|wave| error((steps[axis], wave)));
-            waves.fold(0.0, f64::max)
-        })
+            let distance = place.depth.max(self.followed) / self.spacing[axis];
+            let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
+            let edge = &mut errors.pressure[axis][Known::Edge as usize];
+            *edge = edge.max(left_out);
+        }
+        errors
     }
+}
+
+/// The largest of `values` within so many cells before and after each along one axis.
+fn largest_around(
+    values: &[f64],
+    [nx, ny]: [usize; 2],
+    axis: usize,
+    [before, after]: [usize; 2],
+) -> Vec<f64> {
+    let (count, next) = [(nx, ny), (ny, 1)][axis];
+    let largest = |cell: usize| {
+        let at = [cell / ny, cell % ny][axis];
+        let around = at.saturating_sub(before)..(at + after + 1).min(count);
+        around.map(|k| values[cell - at * next + k * next]).fold(0.0, f64::max)
+    };
+    (0..values.len()).map(largest).collect()
+}
+
+/// Mean number of cells in a row across a contact along each axis; infinite where there is no contact, and along x in line
+/// contact, whose rows are endless.
+fn cells_across(pressure: &[f64], [nx, ny]: [usize; 2]) -> [f64; 2] {
+    let touches = |i: usize, j: usize| pressure[i * ny + j] > 0.0;
+    let (mut cells, mut starts) = (0.0, [0.0, 0.0]);
+    for i in 0..nx {
+        for j in (0..ny).filter(|j| touches(i, *j)) {
+            cells += 1.0;
+            starts[0] += f64::from(u8::from(nx > 1 && (i == 0 || !touches(i - 1, j))));
+            starts[1] += f64::from(u8::from(j == 0 || !touches(i, j - 1)));
+        }
+    }
+    starts.map(|starts| if starts > 0.0 { cells / starts } else { f64::INFINITY })
 }
 
 /// How well the pressure within a cell is known.
@@ -234,7 +405,7 @@ impl BodyPair<'_> {
     /// at all that are shorter than a cell.
     pub(super) fn root_law_holds(&self, cell: f64) -> bool {
         let change = |from: f64, to: f64| {
-            let count = ((to / from).log2() * PER_OCTAVE).ceil();
+            let count = rounding::ceil((to / from).log2() * PER_OCTAVE);
             let at = |k: u32| from * (to / from).powf(f64::from(k) / count) / cell;
             let ends = [f64::INFINITY, f64::NEG_INFINITY];
             let [low, high] = (0..=count as u32)
@@ -253,6 +424,47 @@ mod tests {
     use crate::error::Result;
     use crate::model::body::{HalfSpace, Layer};
     use crate::model::material::Elastic;
+
+    /// Steps of each cell by itself are those of a window of one cell, in a plane and in a line.
+    #[test]
+    fn steps_by_cell_are_those_of_windows() {
+        for shape @ [nx, ny] in [[17, 23], [1, 31]] {
+            let known = [Known::Well, Known::Edge, Known::Mean];
+            let cells = 0..nx * ny;
+            let uncertainty = Uncertainty {
+                shape,
+                spacing: [1.0; 2],
+                followed: DEPTH_LIMIT,
+                of_width: 0.0,
+                half_width: 1.0,
+                known: cells.clone().map(|k| known[k * k % 7 % 3]).collect(),
+                waves: [Vec::new(), Vec::new()],
+            };
+            let pressure: Vec<f64> = cells.clone().map(|k| (k * k % 101) as f64).collect();
+            let steps = uncertainty.steps_by_cell(&pressure);
+            for (k, LocalSteps(steps)) in cells.zip(&steps) {
+                let window = [k / ny, k % ny].map(|at| at..at + 1);
+                let LocalSteps(expected) = uncertainty.steps(&pressure, &window);
+                // The same differences, of which the largest is chosen.
+                assert_eq!(Some(*steps), Some(expected), "{k}");
+            }
+        }
+    }
+
+    /// A ring of two cells, and a line of contacts of 3 and 5 cells.
+    #[test]
+    fn cells_across_are_means_of_rows() {
+        let ring: Vec<f64> = (0..49)
+            .map(|k| {
+                f64::from(u8::from(![2, 3, 4].contains(&(k / 7)) || ![2, 3, 4].contains(&(k % 7))))
+            })
+            .collect();
+        // 40 cells: four rows of 7, three of twice 2.
+        assert_eq!(Some(cells_across(&ring, [7, 7])), Some([4.0; 2]));
+        let line = [0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+        assert_eq!(Some(cells_across(&line, [1, 10])), Some([f64::INFINITY, 4.0]));
+        assert_eq!(Some(cells_across(&[0.0; 4], [2, 2])), Some([f64::INFINITY; 2]));
+    }
 
     /// Bare bodies and coatings that are thin or thick compared with a cell; not those of about a cell,
     /// nor thin ones that are soft enough to bear the pressure as springs do.
