@@ -54,8 +54,8 @@ pub struct StressPlan {
     parts: Vec<Box<dyn Part>>,
     /// Known tractions along x and y on this body \[Pa\], in C order.
     pub(super) known: Option<[Vec<f64>; 2]>,
-    /// Present where the body has free ends, and bears pressure.
-    ends: Option<EndErrors>,
+    /// Errors of what free ends add.
+    ends: EndErrors,
 }
 
 /// The pressure that a plan is made for, and the body below it.
@@ -237,7 +237,7 @@ impl StressPlan {
         weights: &Weights,
         options: &StressOptions,
     ) -> Result<Array2<f64>> {
-        if self.ends.is_some() || self.whole.solved.is_some() {
+        if self.ends.any_counted() || self.whole.solved.is_some() {
             return Err(Error::Inconsistent(
                 "derivatives of stresses need a body without free ends, under a pressure that is uniform over cells",
             ));
@@ -261,11 +261,10 @@ impl StressPlan {
         let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
         let cells = self.whole.uncertainties(places, (friction, uniform), window);
-        let Some(ends) = &self.ends else {
-            return cells;
-        };
-        let ends: Array1<f64> = places.iter().map(|place| ends.at(place.depth)).collect();
-        Some(cells.map_or(ends.clone(), |cells| cells + &ends))
+        match (cells, self.ends.at(places)) {
+            (Some(cells), Some(ends)) => Some(cells + ends),
+            (cells, ends) => cells.or(ends),
+        }
     }
 
     /// Largest ratios of known tractions along x and along y to the pressure: the coefficient of friction where cells slip.
