@@ -298,6 +298,8 @@ impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let (axis, figure) = match *self {
             Self::GridEdge | Self::SharpEdge | Self::FreeEnd | Self::CoatedEnd => (0, 0.0),
+            Self::UnknownStations => (0, 0.0),
+            Self::EndlessCrown { at } => (0, at),
             Self::SharpEnd { axis } | Self::MapRim { axis } => (axis, 0.0),
             Self::Coarse { axis, cells } => (axis, cells as f64),
             Self::CoarseSpots { axis, cells } => (axis, cells),
@@ -326,6 +328,8 @@ impl<'de> Deserialize<'de> for Warning {
             Self::OutsideGrid { depth: figure },
             Self::PeakError { error: figure },
             Self::Stations { error: figure },
+            Self::UnknownStations,
+            Self::EndlessCrown { at: figure },
             Self::LargeMotion { size: figure },
         ];
         let found = all.iter().find(|warning| warning.kind() == kind);

@@ -199,6 +199,18 @@ pub enum Error {
         /// Edges of cells next to it \[m\].
         edges: [f64; 2],
     },
+    /// Layers with a free end that are thicker than the period of a grid.
+    #[error(
+        "layers of a body with free ends must be at most as thick as the period of the grid along y, {}, were {}: take a \
+         longer period, which holds more than one of the shape's, a grid that does not repeat, or leave out the ends",
+        plain(*period), plain(*thickness)
+    )]
+    ThickEnd {
+        /// Thickness of all layers of the body \[m\].
+        thickness: f64,
+        /// Period along y \[m\].
+        period: f64,
+    },
     /// A body that ends where the shape that it carries goes on.
     #[error(
         "ends of the counterbody must not lie within the shape that it carries: it ends at x = {end:e}, and the shape \

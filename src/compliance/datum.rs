@@ -159,6 +159,9 @@ fn open_direction(grid: &Grid) -> Option<usize> {
 
 /// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
 /// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
+///
+/// Rows beyond a free end, which bear no pressure, are left out: the mirror image acts between the others alone, and with
+/// rows beyond, the sum of both is not positive definite below stiff layers that are thick compared with the grid.
 fn total_pressure(
     (coefficients, additions): (&Array2<f64>, &[Addition]),
     grid: &Grid,
@@ -169,10 +172,24 @@ fn total_pressure(
     let convolution = convolution.plus(additions.to_vec());
     let inverse = convolution.approximation(coefficients, repeats).inverse;
     let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
+    let [rows, columns] = grid.shape();
+    let beyond: Vec<usize> =
+        (0..rows).filter(|row| !additions.iter().all(|ends| ends.has(*row))).collect();
+    let leave_out = |values: &mut [f64]| {
+        beyond.iter().for_each(|row| values[row * columns..(row + 1) * columns].fill(0.0));
+    };
+    let mut uniform = vec![1.0; coefficients.len()];
+    leave_out(&mut uniform);
     let pressure = linear_cg::solve(
-        &vec![1.0; coefficients.len()],
-        |input, out| convolution.apply_slices(input, out, &mut first),
-        |input, out| inverse.apply_slices(input, out, &mut second),
+        &uniform,
+        |input, out| {
+            convolution.apply_slices(input, out, &mut first);
+            leave_out(out);
+        },
+        |input, out| {
+            inverse.apply_slices(input, out, &mut second);
+            leave_out(out);
+        },
         TOLERANCE,
         &mut || ControlFlow::Continue(()),
     );

@@ -60,6 +60,24 @@ fn layers_factor(body: &HalfSpace, k: f64) -> f64 {
     (here.c11 / below.c11).cbrt() * (here.c22 / below.c22).cbrt().powi(2)
 }
 
+/// Largest error that was measured of what an end adds to the displacement of a body whose moduli have this ratio at most;
+/// `None` where none was.
+fn model_error(contrast: f64) -> Option<f64> {
+    match contrast {
+        mild if mild <= 4.0 => Some(0.04),
+        high if high <= 10.0 => Some(0.09),
+        _ => None,
+    }
+}
+
+/// Share of what an end adds that is not known: all of it where no error was measured.
+pub(crate) fn unknown_share(body: &HalfSpace) -> f64 {
+    match body.layers().is_empty() {
+        true => 0.0,
+        false => model_error(contrast(body)).unwrap_or(1.0),
+    }
+}
+
 /// Largest ratio of the moduli of a body, at least 1; 1 for a body without layers.
 fn contrast(body: &HalfSpace) -> f64 {
     let layers = body.layers().iter().map(|layer| layer.material());

@@ -15,13 +15,17 @@ const BEYOND: f64 = 2.0;
 /// Tolerance of solutions of which only the difference counts.
 const LOOSE: f64 = 1e-5;
 
-/// Error of the peak, relative to it, from which on there is a warning.
+/// Error of the peak, relative to it, from which on there is a warning although the report states it.
 const UNCERTAIN: f64 = 0.1;
+
+/// Error of the peak, relative to it, from which on there is a warning where the report states no error: that at which an
+/// automatic grid is fine enough.
+const UNSTATED: f64 = 0.01;
 
 impl Contact {
     /// Presses the [alternatives](Surface::alternatives) of `shape` into the body as it was pressed for `solution`, and
-    /// counts how far their solutions differ as discretisation errors. They are unknown where an alternative has no
-    /// solution.
+    /// counts how far their solutions differ as discretisation errors. Where those of the cells are not known, a warning
+    /// tells of the peak's. All are unknown where an alternative has no solution.
     pub(crate) fn compare(
         &self,
         solution: &mut Solution,
@@ -30,11 +34,8 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) {
-        let Some(known) = solution.report.discretisation else {
-            return;
-        };
         let others = shape.alternatives();
-        if others.is_empty() {
+        if others.is_empty() || !solution.report.converged() {
             return;
         }
         let options = Options {
@@ -49,6 +50,7 @@ impl Contact {
             let solved = self.solve_alone(other, motion, &options, progress);
             let Some(other) = solved.ok().filter(|other| other.report.converged()) else {
                 solution.report.discretisation = None;
+                solution.report.warnings.push(Warning::UnknownStations);
                 return;
             };
             for ((most, other), own) in most.iter_mut().zip(numbers(&other)).zip(own) {
@@ -59,8 +61,11 @@ impl Contact {
         }
         let ([error, approach, load], [peak, ..]) = (most, own);
         let between = Discretisation { peak_pressure: Some(error), approach, load };
-        solution.report.discretisation = Some(known.plus(between));
-        if known.peak_pressure.is_some() && error > UNCERTAIN * peak {
+        let known = solution.report.discretisation;
+        solution.report.discretisation = known.map(|known| known.plus(between));
+        let permitted = if known.is_some() { UNCERTAIN } else { UNSTATED };
+        let is_singular = solution.report.warnings.iter().any(Warning::is_singular);
+        if !is_singular && error > permitted * peak {
             solution.report.warnings.push(Warning::Stations { error: error / peak });
         }
     }

@@ -246,7 +246,7 @@ impl HalfSpace {
     ///
     /// # Errors
     /// Unless the coordinates are finite and the first is below the second; where the substrate is rigid or free, and
-    /// where springs join layers.
+    /// where an interface is not bonded.
     pub fn with_ends(self, ends: [Option<f64>; 2]) -> Result<Self> {
         for end in ends.into_iter().flatten() {
             finite("ends", end)?;
@@ -263,10 +263,10 @@ impl HalfSpace {
             ends != [None; 2] && self.substrate == Substrate::Free,
             "ends must not be given for a plate with a free base: what its end does is not known",
         )?;
-        let springs = |layer: &Layer| matches!(layer.interface, Interface::Spring(_));
         refuse_if(
-            ends != [None; 2] && self.layers.iter().any(springs),
-            "ends must not be given for a body whose layers are joined by springs: what its end does is not known",
+            ends != [None; 2] && !self.is_bonded(),
+            "ends must not be given for a body with an interface that slips or has springs: what its end does is not \
+             known; take \"bonded\" interfaces, or no ends",
         )?;
         Ok(Self { ends: ends.map(|end| end.map(|x| x + 0.0)), ..self })
     }
@@ -301,6 +301,11 @@ impl HalfSpace {
     /// Total thickness of the layers \[m\].
     pub fn thickness(&self) -> f64 {
         self.layers.iter().map(Layer::thickness).sum()
+    }
+
+    /// Whether all layers are bonded to what lies below.
+    pub(crate) fn is_bonded(&self) -> bool {
+        self.layers.iter().all(|layer| layer.interface == Interface::Bonded)
     }
 
     /// Whether layers above some interface slip freely on what lies below.

@@ -76,6 +76,12 @@ pub trait Surface: fmt::Debug + Send + Sync {
         self.base().map_or([f64::INFINITY; 2], Surface::radii)
     }
 
+    /// Range of x \[m\] over which a roller is straight whose ends only a crown rounds, and which has no length; `None` for
+    /// other shapes. nacre warns where such a roller is loaded on its crown alone.
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        self.base()?.endless_crown()
+    }
+
     /// The grid of a measured surface; `None` for other shapes.
     fn grid(&self) -> Option<Grid> {
         self.base()?.grid()
@@ -168,6 +174,10 @@ where
         (**self).radii()
     }
 
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        (**self).endless_crown()
+    }
+
     fn grid(&self) -> Option<Grid> {
         (**self).grid()
     }
@@ -252,6 +262,10 @@ impl<S: Surface> Surface for Shifted<S> {
             marks.iter_mut().for_each(|mark| *mark += by);
         }
         marks
+    }
+
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        self.shape.endless_crown().map(|flat| flat.map(|x| x + self.by[0]))
     }
 
     fn grid(&self) -> Option<Grid> {
@@ -353,6 +367,10 @@ impl<S: Surface> Surface for Superposition<S> {
     fn radii(&self) -> [f64; 2] {
         let radii = self.0.iter().map(Surface::radii);
         radii.fold([f64::INFINITY; 2], |[ax, ay], [bx, by]| [ax.min(bx), ay.min(by)])
+    }
+
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        self.0.iter().find_map(Surface::endless_crown)
     }
 
     fn grid(&self) -> Option<Grid> {

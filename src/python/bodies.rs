@@ -269,13 +269,14 @@ class! {
     ///     Layers from the surface down.
     /// ends : tuple of float, optional
     ///     Coordinates x of free ends [m], the lower one first: the body is cut off there, and nothing holds
-    ///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides.
+    ///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides. A body with ends
+    ///     needs bonded interfaces.
     ///
     /// Raises
     /// ------
     /// ValueError
     ///     If the substrate is rigid or free and there is no layer, or there are ends; if the interface of the lowest layer
-    ///     of a plate is not bonded; if the ends are not finite or not in ascending order, or layers are joined by springs.
+    ///     of a plate is not bonded; if the ends are not finite or not in ascending order, or an interface is not bonded.
     ///
     /// Notes
     /// -----

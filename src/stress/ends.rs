@@ -12,14 +12,17 @@ use ndarray::Array2;
 use super::half_space::{HalfSpacePlan, Part};
 use super::options::StressProgress;
 use super::section::Span;
-use crate::compliance::ends::Where;
+use crate::compliance::ends::{Where, unknown_share};
+use crate::compliance::response::interior::Place;
 use crate::error::Result;
 use crate::model::body::Substrate;
 use crate::numerics::rounding::cells_within;
 
+mod bound;
 mod face;
 mod pressures;
 
+use bound::EndBound;
 use face::Face;
 use pressures::{EndImages, FOLLOWED, NearEnd, STRIP, Strip, excess_part};
 
@@ -29,12 +32,21 @@ pub(super) struct EndStress {
     /// The body without ends under mirror images and excesses, beside each end the same on finer cells instead; then
     /// the faces. Empty where the ends add nothing.
     pub(super) parts: Vec<Box<dyn Part>>,
-    pub(super) errors: Option<EndErrors>,
+    pub(super) errors: EndErrors,
 }
 
 /// What is known of the errors of the stress that ends add.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct EndErrors {
+    /// Errors of ends that are counted; none where there is none.
+    counted: Option<CountedErrors>,
+    /// What is not known of the single ends: of the model of those with layers a share, of those that are far all.
+    unknown: Vec<EndBound>,
+}
+
+/// What is known of the errors of the stress that counted ends of a bare body add.
+#[derive(Debug)]
+struct CountedErrors {
     /// Length of the contact's cells along x \[m\].
     spacing: f64,
     /// Largest pressure \[Pa\].
@@ -50,8 +62,8 @@ pub(super) struct EndErrors {
 /// farther down (`tests/stress/ends.rs`).
 const ERRORS: [f64; 2] = [3e-3, 0.2];
 
-/// Distance of the load from an end, relative to the longer side of the contact, from which on the end adds less than
-/// 1e-3 of the peak pressure: the image of a force p b² at 20 b.
+/// Distance of the load from an end, relative to the longer side of the contact, from which on the end is not counted. Below
+/// it, a bare body has 1e-3 of the peak pressure from the end at most; the uncertainty has what is left out.
 const FAR_END: f64 = 10.0;
 
 impl EndStress {
@@ -77,12 +89,17 @@ impl EndStress {
         let mut images = EndImages::new(grid);
         let known = [0, 1].map(|k| body.ends()[k].filter(|_| span.faces[k].is_some()));
         let (mut parts, mut faces) = (Vec::<Box<dyn Part>>::new(), Vec::<Box<dyn Part>>::new());
+        let mut errors = EndErrors::default();
         for (end, sign) in body.ends().into_iter().zip([1.0, -1.0]) {
             let Some(end) = end else { continue };
             let near = NearEnd::new((&pressure, width), grid, (end, sign), material);
-            let Some(near) = near.filter(|near| near.nearest <= FAR_END * size) else {
+            let Some(near) = near else { continue };
+            let is_far = near.nearest > FAR_END * size;
+            let share = if is_far { 1.0 } else { unknown_share(body) };
+            errors.unknown.extend(EndBound::new(whole, &endless, (near.nearest, size), share)?);
+            if is_far {
                 continue;
-            };
+            }
             images.add_mirror(&pressure, end);
             let excess = near.followed(Where::Surface, dx, threads);
             let far = cells_within(FAR_END * near.reach / FOLLOWED, dx);
@@ -98,16 +115,32 @@ impl EndStress {
             }
         }
         if faces.is_empty() {
-            return Ok(Some(Self::default()));
+            return Ok(Some(Self { parts, errors }));
         }
         parts.push(Box::new(images.part(&endless, threads)?));
         parts.extend(faces);
-        let errors = Some(EndErrors::of(whole));
+        errors.counted = Some(CountedErrors::of(whole));
         Ok(Some(Self { parts, errors }))
     }
 }
 
 impl EndErrors {
+    /// Whether an end is counted.
+    pub(super) fn any_counted(&self) -> bool {
+        self.counted.is_some()
+    }
+
+    /// Estimated error \[Pa\] of the stress that the ends add at a place, where it is worst; none where the body has no ends.
+    pub(super) fn at(&self, place: &Place) -> Option<f64> {
+        if self.counted.is_none() && self.unknown.is_empty() {
+            return None;
+        }
+        let counted = self.counted.as_ref().map_or(0.0, |errors| errors.at(place.depth));
+        Some(counted + self.unknown.iter().map(|end| end.at(place)).sum::<f64>())
+    }
+}
+
+impl CountedErrors {
     fn of(whole: &HalfSpacePlan) -> Self {
         Self {
             spacing: whole.grid.spacing()[0],
@@ -125,7 +158,7 @@ impl EndErrors {
     /// Estimated error \[Pa\] of the stress that the ends add at the depth `z`, at the worst place, which is beside
     /// the face. Two ends a distance L apart, superposed, leave W/πL² of the load W: for ν = 0 and a pressure along all of
     /// the body, where they should change nothing, 0.97 and 0.86 of that at L = 20 and 10 half-widths.
-    pub(super) fn at(&self, z: f64) -> f64 {
+    fn at(&self, z: f64) -> f64 {
         let [deep, most] = ERRORS;
         let cells = (z / self.spacing).min(1.0);
         self.peak * (deep / cells.powi(2)).min(most) + self.left_out

@@ -56,8 +56,8 @@ pub struct StressPlan {
     parts: Vec<Box<dyn Part>>,
     /// Known tractions along x and y on this body \[Pa\], in C order.
     pub(super) known: Option<[Vec<f64>; 2]>,
-    /// Present where the body has free ends, and bears pressure.
-    ends: Option<EndErrors>,
+    /// Errors of what free ends add.
+    ends: EndErrors,
 }
 
 /// The pressure that a plan is made for, and the body below it.
@@ -239,7 +239,7 @@ impl StressPlan {
         weights: &Weights,
         options: &StressOptions,
     ) -> Result<Array2<f64>> {
-        if self.ends.is_some() || self.whole.solved.is_some() {
+        if self.ends.any_counted() || self.whole.solved.is_some() {
             return Err(Error::Inconsistent(
                 "derivatives of stresses need a body without free ends, under a pressure that is uniform over cells",
             ));
@@ -276,8 +276,7 @@ impl StressPlan {
         let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
         let errors = self.whole.errors(place, (friction, uniform));
-        let of_ends = self.ends.as_ref().map(|ends| ends.at(place.depth));
-        match of_ends {
+        match self.ends.at(place) {
             None => errors,
             Some(of_ends) => Some(errors.unwrap_or_default().plus(of_ends)),
         }

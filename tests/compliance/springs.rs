@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use nacre::ends::QuarterSpace;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::response::{
     Asymptotes, Compliance, Response, asymptote_derivatives, frequency_response,
@@ -318,8 +319,21 @@ fn springs_and_plates_are_checked() -> Result<()> {
     let ends = [Some(0.0), None];
     let plate = HalfSpace::new(Substrate::Free, [layer.clone()])?;
     assert!(plate.with_ends(ends).is_err());
-    let joined = layer.with_interface(spring(1e15, 1e14)?);
-    assert!(HalfSpace::new(steel, [joined.clone()])?.with_ends(ends).is_err());
+    let bonded = || HalfSpace::new(steel, [layer.clone(), layer.clone()]);
+    assert!(
+        bonded()?.with_ends(ends).is_ok() && QuarterSpace::new(bonded()?, 0.0, [1.0; 2]).is_ok()
+    );
+    // Any interface that slips or has springs, under any number of layers.
+    let joined = layer.clone().with_interface(spring(1e15, 1e14)?);
+    let slips = layer.clone().with_interface(Interface::Frictionless);
+    for one in [&joined, &slips] {
+        for layers in [vec![one], vec![&layer, one], vec![one, &layer]] {
+            let body = HalfSpace::new(steel, layers.into_iter().cloned())?;
+            assert!(body.clone().with_ends(ends).is_err());
+            assert!(body.clone().with_ends([None; 2]).is_ok());
+            assert!(QuarterSpace::new(body, 0.0, [1.0; 2]).is_err());
+        }
+    }
 
     let body = HalfSpace::new(steel, [joined])?;
     let changed = body.with_value(BodyParameter::TangentialStiffness(0), 2e14)?;

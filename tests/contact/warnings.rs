@@ -1,8 +1,8 @@
 //! Warnings stand where they must, and not elsewhere.
 
 use nacre::{
-    Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Sphere,
-    Surface, Warning,
+    Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Setup,
+    Sphere, Surface, Warning,
 };
 use ndarray::Array2;
 
@@ -34,6 +34,43 @@ fn map(height: impl Fn(f64, f64) -> f64) -> Result<HeightMap> {
 /// Radius of a sphere, and its load for a contact of a radius of 20 cells.
 const RADIUS: f64 = 1e4;
 const LOAD: f64 = 4.0 / 3.0 * 8e3 / RADIUS;
+
+/// A crown without end carries any load; where that lies on it alone, far from the middle, the length of the roller is missing.
+/// The roller of Spinu et al. touches its crown up to 12.7 mm with a flat part of 9.565 mm, and is right.
+#[test]
+fn a_roller_on_an_endless_crown_is_warned_of() -> Result<()> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let options = Options { tolerance: 1e-5, cells: Some(1 << 16), ..Options::default() };
+    let kinds = |shape: &dyn Surface, at: f64| -> Result<Vec<&'static str>> {
+        let motion = Motion::load(1e3).with_eccentricity([Some(at), None]);
+        let solution =
+            nacre::solve_with(shape, &steel.into(), &Setup::default(), &motion, &options)?;
+        Ok(solution.report.warnings.iter().map(Warning::kind).collect())
+    };
+    let spinu = Roller::new(5e-3, 19.13e-3, 7.5)?;
+    let crowned = Roller::new(5e-3, 0.0, 1.0)?;
+    for (shape, at, warns) in [
+        (&spinu as &dyn Surface, 2.87e-3, false),
+        (&spinu, -2.87e-3, false),
+        (&spinu, 0.1, true),
+        (&spinu, -0.1, true),
+        (&spinu, 0.03, true),
+        (&crowned, 1e-3, false),
+        (&crowned, 0.03, true),
+        (&spinu.clone().shifted(0.1, 0.0)?, 0.1, false),
+        (&spinu.clone().shifted(0.1, 0.0)?, 0.0, true),
+        // A length ends the crown, and here the contact.
+        (&spinu.clone().with_length(0.3)?, 0.1, false),
+    ] {
+        let found = kinds(shape, at)?;
+        assert_eq!(found.contains(&"endless crown"), warns, "{shape:?}, {at}: {found:?}");
+    }
+    let motion = Motion::load(1e3).with_eccentricity([Some(0.1), None]);
+    let solution = nacre::solve_with(&spinu, &steel.into(), &Setup::default(), &motion, &options)?;
+    let text: Vec<String> = solution.report.warnings.iter().map(Warning::to_string).collect();
+    assert!(text.iter().any(|text| text.contains("length") && text.contains("1.000e-1")));
+    Ok(())
+}
 
 /// The width of the whole contact says nothing about that of its asperities.
 #[test]

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use nacre::{
-    Contact, Elastic, Grid, HalfSpace, Member, Motion, Options, Result, Section, Setup, Sphere,
-    Stress, StressOptions, StressPlan, Surface,
+    Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Result, Section, Setup,
+    Sphere, Stress, StressOptions, StressPlan, Surface,
 };
 use ndarray::{Array2, Array3, Axis};
 
@@ -112,6 +112,61 @@ fn a_far_end_changes_nothing() -> Result<()> {
         let apart = (whole - ended).fold(0.0, |worst: f64, d| worst.max(d.abs()));
         // The image's force, 2.7, at a distance of 40: 2.7/2π/40² and the excess of about the same.
         assert!(apart < 1e-3, "{apart:e}");
+    }
+    Ok(())
+}
+
+/// What an end adds is left out from ten contact widths on. The uncertainty has it: it holds what the same end adds a little
+/// nearer, where it is counted, and is at most twenty times as large, with layers that are thick and thin, hard and soft. At
+/// ends that are counted, bodies with layers have a share of it.
+#[test]
+fn what_is_left_out_of_far_ends_is_in_the_uncertainty() -> Result<()> {
+    let grid = Grid::new([24, 24], [4.5, 4.5])?.centered_at([1.6, 0.0])?;
+    // 16 of the cells bear pressure, from x = 0.1 to 3.1.
+    let (pressure, width) = (smooth(&grid), 3.0);
+    let base = Elastic::new(1.0, 0.3)?;
+    let coated = |ratio: f64, thickness: f64| {
+        HalfSpace::new(base, [Layer::new(Elastic::new(ratio, 0.3)?, thickness)?])
+    };
+    let bodies =
+        [HalfSpace::from(base), coated(4.0, 15.0)?, coated(10.0, 0.3)?, coated(0.25, 3.0)?];
+    let options = StressOptions::default();
+    for body in bodies {
+        let depths = [1e-3, 1.4, 6.0, 40.0];
+        let at = |distance: Option<f64>| {
+            let body = body.clone().with_ends([distance.map(|d| 0.1 - d * width), None])?;
+            StressPlan::plan(&body, &grid, &pressure, None)?.stress(&depths, &options)
+        };
+        let (whole, counted, left_out) = (at(None)?, at(Some(9.9))?, at(Some(10.1))?);
+        let errors = |stress: &Stress| stress.uncertainty.as_ref().map(|all| all.to_vec());
+        let (found, counted_errors) = (errors(&left_out), errors(&counted));
+        let (Some(found), Some(counted_errors)) = (found, counted_errors) else {
+            panic!("bodies with ends state their errors");
+        };
+        assert!(errors(&whole).is_none(), "a uniform pressure has no other error");
+        for (k, depth) in depths.into_iter().enumerate() {
+            let pairs = counted.components.iter().zip(&whole.components);
+            let added = pairs.map(|(ended, whole)| largest(&(ended - whole), k, 0..24));
+            let added = added.fold(0.0, f64::max);
+            let bound = found[k];
+            assert!(
+                added < bound && bound < 20.0 * added,
+                "{body:?}, {depth}: {added:e} {bound:e}"
+            );
+            // 4 % at ratios of 4, 9 % at 10; the end is 2 % nearer.
+            let share = match body.layers().first().map(|layer| layer.material().young()) {
+                None => 0.0,
+                Some(10.0) => 0.09,
+                Some(_) => 0.04,
+            };
+            assert!(counted_errors[k] >= share * bound, "{body:?}, {depth}");
+            // What is stated of bare ends, over a peak of 1: at the surface, and from one cell on.
+            let of_bare = if k == 0 { 0.2 } else { 3e-3 };
+            assert!(counted_errors[k] < of_bare + 1.1 * share * bound, "{body:?}, {depth}");
+        }
+        for (whole, left_out) in whole.components.iter().zip(&left_out.components) {
+            assert_eq!(whole, left_out);
+        }
     }
     Ok(())
 }

@@ -122,7 +122,7 @@ class Body(Table):
     ends: Ends | None = Field(
         None,
         description="Coordinates x of free ends [m], the lower one first; -inf or inf where the "
-        "body goes on, as it does at both sides by default.",
+        "body goes on, as it does at both sides by default. Interfaces must then be bonded.",
     )
 
 

@@ -119,7 +119,8 @@ class Report(Result):
     has the error 0. The peak pressure has none, `None`, where the pressure is singular: at a sharp
     edge of the shape, or where the grid cuts the contact; a warning says so. `None` altogether
     where no coarser grid was solved: on small grids, from a given pressure, by another algorithm,
-    where surfaces yield, or without convergence.
+    where surfaces yield, or without convergence. An error above 1 % of the peak from what lies
+    between the stations of a sampled profile is then a warning.
     """
     free_ends: dict[str, bool | float | None] | None
     """How free ends of the bodies are counted; `None` where there are none.
@@ -135,7 +136,8 @@ class Report(Result):
     """Kinds of the warnings, without their numbers: words by which warnings are counted.
 
     They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
-    "coarse spots", "large contact", "outside grid", "peak error" and "stations".
+    "coarse spots", "large contact", "outside grid", "peak error", "stations", "unknown stations"
+    and "endless crown".
     """
     grid: core.Grid
     """Grid of the solve."""

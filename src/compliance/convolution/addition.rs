@@ -110,6 +110,11 @@ impl Addition {
         Self { window: first + rows.start..first + rows.end, ..self.clone() }
     }
 
+    /// Whether a row takes part.
+    pub(crate) fn has(&self, row: usize) -> bool {
+        !self.row(row).weights.is_empty()
+    }
+
     fn row(&self, row: usize) -> &RowWeights {
         &self.rows[self.window.start + row]
     }

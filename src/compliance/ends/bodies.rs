@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use super::quarter_space::{Nodes, coefficients};
 use super::waves::Along;
-use super::{contrast, plate};
+use super::{contrast, model_error, plate};
 use crate::compliance::convolution::{Addition, RowWeights};
 use crate::compliance::response::Body;
 use crate::error::{Error, Result};
@@ -97,17 +97,14 @@ impl Ends {
     pub(crate) fn form(&self, width: f64) -> Option<FreeEnds> {
         let plates = !self.plates.is_empty();
         let is_short = |plate: &Plate| plate.ends[1] - plate.ends[0] < 0.25 * width;
-        let contrasts = self.ends.iter().map(|end| contrast(&end.ending.body));
-        let error = match contrasts.reduce(f64::max)? {
-            equal if equal <= 1.0 => Some(match plates {
-                true if self.plates.iter().any(is_short) => 3e-3,
-                true => 1e-3,
-                false => 1e-5,
-            }),
-            mild if mild <= 4.0 => Some(0.04),
-            high if high <= 10.0 => Some(0.09),
-            _ => None,
+        let exact = match plates {
+            true if self.plates.iter().any(is_short) => 3e-3,
+            true => 1e-3,
+            false => 1e-5,
         };
+        let bodies = self.ends.iter().map(|end| &end.ending.body);
+        let contrast = bodies.map(contrast).reduce(f64::max)?;
+        let error = if contrast > 1.0 { model_error(contrast) } else { Some(exact) };
         Some(FreeEnds { plates, error })
     }
 
@@ -142,7 +139,8 @@ impl Ends {
     /// Checks that the ends lie on edges of the cells of `grid`, or outside them.
     ///
     /// # Errors
-    /// Where one does not; where fewer than two rows of cells are left; in line contact.
+    /// Where one does not; where fewer than two rows of cells are left; in line contact; where the grid repeats along y,
+    /// [`Error::ThickEnd`].
     pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
         if !self.any() {
             return Ok(());
@@ -151,6 +149,13 @@ impl Ends {
             return Err(Error::Inconsistent(
                 "ends must not be given in line contact, whose strips go on along x",
             ));
+        }
+        // A pressure that is uniform over the period has the factor of the bare substrate, though layers that are thick
+        // compared with the period bear it.
+        let thicknesses = self.ends.iter().map(|end| end.ending.body.thickness());
+        let (thickness, period) = (thicknesses.fold(0.0, f64::max), grid.size()[1]);
+        if grid.is_periodic()[1] && thickness > period {
+            return Err(Error::ThickEnd { thickness, period });
         }
         let (count, spacing) = (grid.shape()[0] as f64, grid.spacing()[0]);
         let place = |x: f64| (x - start(grid)) / spacing;

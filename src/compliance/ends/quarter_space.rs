@@ -14,7 +14,7 @@ use super::waves::{Along, WaveRule, Width};
 use super::{VANISHED, layers_factor};
 use crate::compliance::convolution::{RowWeights, pair};
 use crate::compliance::influence::{CellInfluence, coefficients_apart};
-use crate::error::{Error, Result, finite, not_negative, positive};
+use crate::error::{Error, Result, finite, not_negative, positive, refuse_if};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
@@ -198,7 +198,7 @@ impl QuarterSpace {
     /// length l and half-width b \[m\].
     ///
     /// # Errors
-    /// On a rigid substrate; unless the distance is at least 0, and all lengths are finite and the last two above 0.
+    /// On a rigid substrate; where an interface is not bonded; unless the distance is at least 0, and all lengths are finite and the last two above 0.
     pub fn new(
         body: impl Into<HalfSpace>,
         distance: f64,
@@ -210,6 +210,10 @@ impl QuarterSpace {
                 "body must have an elastic substrate: the face of a layer on a rigid base is not free",
             ));
         };
+        refuse_if(
+            !body.is_bonded(),
+            "body must have bonded interfaces: what its end does where layers slip or have springs is not known",
+        )?;
         not_negative("distance", distance)?;
         positive("length", length)?;
         positive("half_width", half_width)?;

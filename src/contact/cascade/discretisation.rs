@@ -36,6 +36,13 @@
 //! length of about h M^⅓ and presses it on over h: the pressure of the outermost cells rises M^⅓ times. The
 //! error of the peak is what this exceeds the peak by.
 //!
+//! # Peak between cells
+//!
+//! The peak is that of a cell, whose centre may be half a cell beside the largest pressure. In line contact this error and
+//! that of the cells' pressures are of opposite signs and nearly the same size, so that changes between grids do not show
+//! either. What a parabola through three cells exceeds the peak by is added: without it, 8 % of 252 errors of bare and coated
+//! bodies are above their estimate, by up to a factor of 1.9, with it none.
+//!
 //! # Rim
 //!
 //! The rim jumps from cell to cell, so that changes from grid to grid may be small by chance. A contact n cells
@@ -269,7 +276,8 @@ impl Unresolved {
         // Work of the pressure on the form of the indentation, without what moves the contact as a whole.
         let form = (deepest * force - work).abs();
         let relative = if excess > 0.0 { (excess / form).min(1.0) } else { 0.0 };
-        let rim = along_x.rim.max(along_y.rim);
+        // Strips of a line contact have no rim across x.
+        let rim = if grid.is_line() { along_y.rim } else { along_x.rim.max(along_y.rim) };
         let concentrated = (rim * self.stiffening.cbrt() - peak).max(0.0);
         let starts =
             if grid.is_line() { along_y.starts } else { along_x.starts.max(along_y.starts) };
@@ -282,7 +290,22 @@ impl Unresolved {
             let part = excess / work.abs() + rim_error;
             (0.0, part.min(1.0) * force * grid.cell_area())
         };
-        Discretisation { peak_pressure: Some(peak * relative + concentrated), approach, load }
+        let between = if grid.is_line() { beside_centres(pressure.row(0).as_slice()) } else { 0.0 };
+        let peak_pressure = Some(peak * relative + concentrated + between);
+        Discretisation { peak_pressure, approach, load }
+    }
+}
+
+/// What the parabola through the largest of these pressures and its neighbours exceeds it by.
+fn beside_centres(pressures: Option<&[f64]>) -> f64 {
+    let triples = pressures.into_iter().flat_map(|pressures| pressures.windows(3));
+    let highest = triples.max_by(|a, b| a[1].total_cmp(&b[1]));
+    let Some([before, most, after]) = highest else { return 0.0 };
+    let bend = 2.0 * most - before - after;
+    if *most >= before.max(*after) && bend > 0.0 {
+        (after - before).powi(2) / (8.0 * bend)
+    } else {
+        0.0
     }
 }
 

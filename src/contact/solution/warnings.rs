@@ -69,6 +69,13 @@ pub enum Warning {
         /// Estimated error, relative to the peak.
         error: f64,
     },
+    /// A profile through fewer of the stations of a sampled profile has no solution, so that no error is known.
+    UnknownStations,
+    /// A roller is loaded beyond its flat part, on a crown that has no end.
+    EndlessCrown {
+        /// Coordinate along x at which the load acts, from the middle of the roller \[m\].
+        at: f64,
+    },
     /// Creepages, with spin, or a twist are not small.
     LargeMotion {
         /// Largest creepage in the contact, or twist \[rad\].
@@ -109,6 +116,8 @@ impl Warning {
             Self::OutsideGrid { .. } => "outside grid",
             Self::PeakError { .. } => "peak error",
             Self::Stations { .. } => "stations",
+            Self::UnknownStations => "unknown stations",
+            Self::EndlessCrown { .. } => "endless crown",
             Self::LargeMotion { .. } => "large motion",
         }
     }
@@ -202,6 +211,16 @@ impl fmt::Display for Warning {
                  profile: give more stations, the corners of true edges, or a smoothing length against noise",
                 100.0 * error
             ),
+            Self::UnknownStations => write!(
+                f,
+                "the error of the peak pressure is not known: with a profile through fewer of its stations there is no \
+                 such contact; give more stations"
+            ),
+            Self::EndlessCrown { at } => write!(
+                f,
+                "the load acts {at:.3e} from the middle of the roller, beyond its flat part, and the contact does not reach \
+                 back to the middle: the roller lies on its crown alone, which has no end; give the roller its length",
+            ),
             Self::LargeMotion { size } => write!(
                 f,
                 "the creepage or twist is not small: it reaches {size:.2}, of which the linear theory of elasticity leaves \
@@ -272,6 +291,11 @@ pub(crate) fn warnings(
     if is_cut {
         warnings.push(Warning::SharpEdge);
     }
+    if let Some(flat) = shape.endless_crown()
+        && !matches!(extent[0], Extent::CutOff(_))
+    {
+        warnings.extend(on_crown(pressure, grid, flat));
+    }
     if bodies.layered {
         warnings.push(Warning::CoatedEnd);
     }
@@ -286,6 +310,24 @@ pub(crate) fn warnings(
         warnings.push(Warning::CoarseSpots { axis, cells });
     }
     warnings
+}
+
+/// The warning of a contact on the crown alone of a roller that is straight over the range `flat` of x. A true roller ends
+/// before: a load beyond the flat part of a roller, which does not even touch the middle, turns it on its end.
+fn on_crown(pressure: &Array2<f64>, grid: &Grid, flat: [f64; 2]) -> Option<Warning> {
+    let middle = 0.5 * (flat[0] + flat[1]);
+    let (mut load, mut moment, mut reached) = (0.0, 0.0, [f64::INFINITY, f64::NEG_INFINITY]);
+    for (x, row) in grid.x().iter().zip(pressure.rows()) {
+        let force = row.sum();
+        if force > 0.0 {
+            (load, moment) = (load + force, moment + force * x);
+            reached = [reached[0].min(*x), reached[1].max(*x)];
+        }
+    }
+    let (at, half) = (moment / load, 0.5 * grid.spacing()[0]);
+    let beyond = at < flat[0] || at > flat[1];
+    let apart = reached[0] - half > middle || reached[1] + half < middle;
+    (beyond && apart).then_some(Warning::EndlessCrown { at: at - middle })
 }
 
 /// The warning of a contact that reaches the end of a shape on side `k` of an axis; `None` where all bodies end there.

@@ -251,6 +251,16 @@ impl Surface for Roller {
         [x, Extent::Within([-half, half])]
     }
 
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        match (&self.profile, self.length) {
+            (Profile::Crowned(crowned), None) => {
+                let half = 0.5 * crowned.flat_length();
+                Some([-half, half])
+            }
+            _ => None,
+        }
+    }
+
     fn marks(&self) -> [Vec<f64>; 2] {
         [self.profile.marks(), Vec::new()]
     }

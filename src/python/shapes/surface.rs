@@ -23,6 +23,9 @@ impl Surface for Shape {
     fn radii(&self) -> [f64; 2] {
         self.with(|shape| shape.radii())
     }
+    fn endless_crown(&self) -> Option<[f64; 2]> {
+        self.with(|shape| shape.endless_crown())
+    }
     fn grid(&self) -> Option<Grid> {
         self.with(|shape| shape.grid())
     }

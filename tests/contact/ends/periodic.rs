@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use nacre::{
-    Contact, Elastic, Grid, HalfSpace, HeightMap, Motion, Result, Solution, ends::QuarterSpace,
+    Contact, Elastic, Grid, HalfSpace, HeightMap, Motion, Result, Setup, Solution,
+    ends::QuarterSpace,
 };
 use ndarray::{Array2, concatenate};
 
@@ -12,7 +13,7 @@ use super::{pair, tight, unit};
 use crate::support::checks::{difference, largest};
 use crate::support::random::uniform;
 use crate::support::reference::{cases, number};
-use crate::support::settings::{Controls, converged, plan, stack};
+use crate::support::settings::{Controls, converged, plan, pressed, stack};
 
 /// Error of the displacement that is stated for one end.
 const STATED: f64 = 1e-5;
@@ -93,6 +94,40 @@ fn bodies() -> Result<Vec<HalfSpace>> {
         coated.clone().with_ends([Some(0.5), None])?,
         coated.with_ends([Some(0.0), Some(4.0)])?,
     ])
+}
+
+/// Layers that are thicker than the period carry what is uniform along y, for which the model of an end with layers takes the
+/// substrate; they are refused, and what the message advises helps: a longer period, a grid that does not repeat, no ends.
+#[test]
+fn layers_thicker_than_the_period_are_refused() -> Result<()> {
+    let hard = stack(Elastic::new(50e9, 0.3)?, [[500e9, 0.3, 2e-5]])?;
+    let ended = hard.clone().with_ends([None, Some(3.6e-6)])?;
+    let side = 1.26e-5;
+    let grid = |times: usize| Grid::new([28, 8 * times], [side, times as f64 * side]);
+    // Curved along x, where the body ends.
+    let shape = |repeats: bool| {
+        let x = grid(1)?.x();
+        let heights = Array2::from_shape_fn([28, 8], |(i, _)| -x[i] * x[i] / 2.6e-3);
+        HeightMap::new(heights, grid(1)?.spacing())?.periodic([false, repeats])
+    };
+    for (body, grid, is_refused) in [
+        (&ended, grid(1)?.periodic([false, true])?, true),
+        (&ended, grid(2)?.periodic([false, true])?, false),
+        (&ended, grid(1)?, false),
+        (&hard, grid(1)?.periodic([false, true])?, false),
+    ] {
+        let contact = Contact::plan(body, grid, Setup::default());
+        if is_refused {
+            let message = contact.map(|_| ()).map_err(|error| error.to_string());
+            let expected = "at most as thick as the period of the grid along y, 1.26e-5, were 2e-5";
+            assert!(message.clone().is_err_and(|text| text.contains(expected)), "{message:?}");
+            continue;
+        }
+        let shape = shape(grid.is_periodic()[1])?;
+        let solution = pressed(&contact?, &shape, &Motion::load(5e-2))?;
+        assert!(solution.peak_pressure() > 0.0, "{grid:?}");
+    }
+    Ok(())
 }
 
 /// Twice a period is the same: the displacement to 1e-8, where panels of waves and sums over images err, and pressure,

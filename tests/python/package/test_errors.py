@@ -39,6 +39,8 @@ VALUES = {
     "HalfSpace(nacre.FREE, [Layer(STEEL, 1.0, 'frictionless')])": r"interface of the lowest .*",
     "HalfSpace(nacre.FREE, [Layer(STEEL, 1.0)], ends=(0.0, None))": r"ends must not .*free base",
     "HalfSpace(STEEL, [Layer(STEEL, 1.0, Spring(1.0))], ends=(0.0, None))": r"ends .*springs",
+    "HalfSpace(STEEL, [Layer(STEEL, 1.0, 'frictionless')], ends=(None, 0.0))": r"ends must not"
+    r" .*slips.*bonded",
     "solve(BALL, PLATE, load=1.0)": r"must not have a free base.*RIGID.*periodic",
     "solve(BALL, STEEL, PLATE, load=1.0)": r"must not have a free base",
     "Contact(PLATE, GRID)": r"must not have a free base",

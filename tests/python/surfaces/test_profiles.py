@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -109,6 +110,44 @@ def test_the_peak_of_a_sampled_profile_is_within_its_error() -> None:
     fine = np.array([numbers for numbers in closeness if numbers[0] >= 101])
     assert np.median(fine[:, 1]) < 1e-4
     assert np.median(fine[:, 2]) < 2e-3
+
+
+WAVY = np.linspace(-LENGTH / 2, LENGTH / 2, 9)
+"""Stations 1.25 mm apart, on waves of 3 mm: 2.4 % of the peak lie between them."""
+
+
+def wavy(x: Array) -> Array:
+    """Return the drops of a crown with waves."""
+    return 2e-6 * (x / 5e-3) ** 2 + 1e-6 * np.cos(2 * np.pi * x / 3e-3)
+
+
+@MARK("shape", [(128, 32), (128, 63), (40, 40), (128, 64), (130, 130)])
+@MARK("keywords", [{}, {"algorithm": "polonsky-keer"}])
+def test_the_error_between_stations_is_known_on_every_grid(
+    shape: tuple[int, int], keywords: dict[str, Any]
+) -> None:
+    grid = nacre.Grid(shape, (LENGTH, 2e-4))
+
+    def solved(x: Array) -> nacre.Solution:
+        roller = nacre.Roller(RADIUS, length=LENGTH, profile=nacre.SampledProfile(x, wavy(x)))
+        contact = nacre.Contact(STEEL, grid, STEEL)
+        return contact.solve(roller, load=300.0, **keywords)
+
+    with warnings.catch_warnings(record=True):
+        warnings.simplefilter("always")
+        few, many = solved(WAVY), solved(np.linspace(-LENGTH / 2, LENGTH / 2, 2001))
+    off = abs(few.peak_pressure - many.peak_pressure)
+    assert off > 0.01 * many.peak_pressure
+    told = [w for w in few.report.warnings if "between the stations" in w]
+    if few.report.discretisation is None:
+        [text] = told
+        percent = re.search(r"error of (\d+) %", text)
+        assert percent is not None
+        assert off < 0.01 * (int(percent[1]) + 0.5) * few.peak_pressure
+        # Where nothing is lost between the stations, nothing is said.
+        assert "stations" not in many.report.warning_kinds
+    else:
+        assert off < (few.report.discretisation["peak_pressure"] or 0.0)
 
 
 def test_the_peak_between_stations_is_that_of_hertz() -> None:
