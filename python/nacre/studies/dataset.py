@@ -95,7 +95,9 @@ def assembled(
                 inner = (2,)
         dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
         if isinstance(output, str) and output in units:
-            dataset[name].attrs["units"] = symbol(units[output])
+            # Results of bearings are in SI, whatever the units of the case.
+            own = units[output] if kinds["bears"] else symbol(units[output])
+            dataset[name].attrs["units"] = own
     taken = {*outputs, *map(str, dataset.coords)}
     for name, quantity in (
         {} if kinds["indents"] or kinds["bears"] else errors(outputs, taken)
@@ -112,7 +114,7 @@ def assembled(
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",
-        "unit_system": system().name,
+        "unit_system": "SI" if kinds["bears"] else system().name,
     }
     return dataset
 
