@@ -46,10 +46,13 @@ LARGEST = {
     "groove_radius": 20.0,
 }
 """Lengths that no bearing exceeds [m]: in mills elements have 0.2 m, slewing rings have 15 m."""
-SOFTEST, SOFTEST_LAYER = 1e9, 1e6
-"""Least modulus of an element or a ring, that of soft plastics, and of a layer, of rubber [Pa]."""
-LIGHTEST = 100.0
-"""Least density of an element [kg/m³], a tenth of that of plastics."""
+SMALLEST = 50e-6
+"""Diameter below that of any element [m]: balls of micromachines have 0.28 mm."""
+SOFTEST, SOFTEST_LAYER, STIFFEST = 1e9, 1e6, 2e12
+"""Least modulus of an element or a ring, that of soft plastics, and of a layer, of rubber; largest
+modulus, above that of diamond [Pa]."""
+LIGHTEST, HEAVIEST = 100.0, 25e3
+"""Least and largest density of an element [kg/m³]: a tenth of that of plastics; above osmium's."""
 
 
 def above(name: str, value: Any, least: float = 0.0) -> float:
@@ -211,9 +214,9 @@ class Bearing(ABC):
                 (f"{name}.layers[{k}]", one.material, SOFTEST_LAYER) for k, one in enumerate(layers)
             ]
             for place, material, least in moduli:
-                if isinstance(material, core.Elastic) and material.young < least:
+                if isinstance(material, core.Elastic) and not least <= material.young <= STIFFEST:
                     raise ValueError(
-                        f"{place} must have a modulus of at least {least:g} Pa: {_si()}; "
+                        f"{place} must have a modulus from {least:g} to {STIFFEST:g} Pa: {_si()}; "
                         f"got {material.young:g}"
                     )
             for k, one in enumerate(layers):
@@ -222,9 +225,14 @@ class Bearing(ABC):
                         f"{name}.layers[{k}] must be thinner than an element, "
                         f"{self.diameter / 2:g} m: {_si()}; got {one.thickness:g}"
                     )
-        if self.density < LIGHTEST:
+        if not LIGHTEST <= self.density <= HEAVIEST:
             raise ValueError(
-                f"density must be at least {LIGHTEST:g} kg/m³: {_si()}; got {self.density!r}"
+                f"density must be from {LIGHTEST:g} to {HEAVIEST:g} kg/m³: {_si()}; "
+                f"got {self.density!r}"
+            )
+        if self.diameter < SMALLEST:
+            raise ValueError(
+                f"diameter must be at least {SMALLEST:g} m: {_si()}; got {self.diameter!r}"
             )
 
     def _check_given_pitch(self) -> None:

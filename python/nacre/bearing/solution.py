@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.units import printable, symbol, written
+from nacre._tools.units import printable, symbol
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
 from nacre.bearing.laws import LAMINAE, bodies_of
@@ -547,7 +547,7 @@ class BearingSolution(Tabular):
             if not math.isnan(getattr(self, name)):
                 rows.append((kinds[name].label, display.estimated(self, name, kinds[name].si())))
         if self.speed:
-            rows.append((kinds["cage_speed"].label, written(self.cage_speed, "rad/s")))
+            rows.append((kinds["cage_speed"].label, display.number(self.cage_speed, "rad/s")))
         report = self.report
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
         return [
@@ -580,7 +580,7 @@ class BearingSolution(Tabular):
         lines = [["element", *(name for _, name, _ in columns)]]
         for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
             values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
-            lines.append([f"{j}", *(written(value, row.si()) for row, value in values)])
+            lines.append([f"{j}", *(display.number(value, row.si()) for row, value in values)])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
         return display.text(self._rows(), self.report.warnings) + printable(table)
 

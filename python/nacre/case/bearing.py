@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
+from nacre._tools.units import System, size_of
 from nacre.bearing import (
     AngularContactBall,
     CylindricalRoller,
@@ -35,6 +37,66 @@ KINDS: dict[str, type[Solvable]] = {
 """Bearings by their names in case files."""
 SOLVE = described(Solvable.solve)
 FILMS = described(film_thickness)
+
+
+UNITS: dict[str, str] = (
+    dict.fromkeys(
+        (
+            *("diameter", "length", "pitch_diameter", "raceway_diameters", "raceway_crown"),
+            *("profile_radius", "groove_radius", "clearance", "shoulder_height", "thickness"),
+            *("displacement", "roughness", "radius", "amplitude", "flat_length", "z_m"),
+            *("profile.x", "SampledProfile.x", "drop", "corners", "smoothing", "ends"),
+        ),
+        "m",
+    )
+    | dict.fromkeys(("force", "capacity", "load"), "N")
+    | dict.fromkeys(("young", "yield_stress", "strength", "shear_yield", "contact_modulus"), "Pa")
+    | {"moment": "N m", "density": "kg/m³", "film.speed": "m/s"}
+    | {"viscosity": "Pa s", "pressure_viscosity": "1/Pa"}
+    | dict.fromkeys(("normal", "tangential"), "Pa/m")
+)
+"""SI units of the numbers at keys, or of all in the tables there; the others have none, or rad."""
+
+
+def sizes_of(units: str) -> dict[str, float]:
+    """Return the sizes in SI of the units that are consistent with those of a case."""
+    system = System(units)  # which checks them
+    parts = ("N", "m", "Pa") if system.name == "SI" else tuple(units.split("-"))
+    force, length, stress = (size[1] for part in parts if (size := size_of(part)))
+    return {
+        "N": force,
+        "m": length,
+        "Pa": stress,
+        "N m": force * length,
+        "N/m": force / length,
+        "m/s": length,
+        "Pa s": stress,
+        "1/Pa": 1 / stress,
+        "Pa/m": stress / length,
+        "kg/m³": stress / length**2,  # ρ v² is a stress
+    }
+
+
+def scaled(data: Any, sizes: Mapping[str, float]) -> Any:
+    """Return data in which the numbers at the keys of a bearing are multiplied by their sizes."""
+
+    def inner(data: Any, path: tuple[str, ...], size: float) -> Any:
+        if isinstance(data, dict):
+            return {
+                key: inner(value, (*path, key), sizes.get(_unit((*path, key)), size))
+                for key, value in data.items()
+            }
+        if isinstance(data, list):
+            return [inner(value, path, size) for value in data]
+        is_number = isinstance(data, float) or (type(data) is int and size != 1)
+        return data * size if is_number else data
+
+    return inner(data, (), 1.0)
+
+
+def _unit(path: tuple[str, ...]) -> str:
+    """Return the SI unit of the numbers at a path, if it is not that of the table around it."""
+    return UNITS.get(".".join(path[-2:])) or UNITS.get(path[-1], "")
 
 
 class InSpace(Directions):
@@ -169,20 +231,15 @@ else:
 
 
 class BearingCase(Keys):
-    """Keys and tables of the case file of a bearing, for ``nacre solve``; its numbers are in SI."""
+    """Keys and tables of the case file of a bearing, for ``nacre solve``.
+
+    Its numbers are in the units of the case, densities in those of force times time² over length⁴:
+    t/mm³ in "N-mm-MPa". They are converted to SI, in which bearings are.
+    """
 
     solved: ClassVar[tuple[str, ...]] = ("materials", "bearing")
 
     bearing: AnyBearing = Field(description="Bearing, and what is asked of it.")
-
-    @model_validator(mode="after")
-    def _in_metres(self) -> BearingCase:
-        if self.units not in ("SI", "N-m-Pa"):
-            raise ValueError(
-                f'units must be "SI" for a bearing, whose standards are in N and m; '
-                f"got {self.units!r}"
-            )
-        return self
 
     @model_validator(mode="after")
     def _with_contacts(self) -> BearingCase:
@@ -193,8 +250,19 @@ class BearingCase(Keys):
             )
         return self
 
+    def _si(self) -> BearingCase:
+        """Return the same case in SI."""
+        if System(self.units).name == "SI":
+            return self
+        data = self.model_dump(exclude={"units", "sweep"}, exclude_unset=True)
+        return type(self).model_validate(scaled(data, sizes_of(self.units)))
+
     def arguments(self) -> dict[str, Any]:
-        """Return the bearing and the keywords of its ``solve``."""
+        """Return the bearing and the keywords of its ``solve``, in SI."""
+        return self._si()._arguments()
+
+    def _arguments(self) -> dict[str, Any]:
+        """Return the bearing and the keywords of its ``solve``, where all numbers are in SI."""
         given = self.bearing.model_dump(
             exclude={"kind", "solve", "life", "film"}, exclude_unset=True
         )
@@ -219,6 +287,6 @@ class BearingCase(Keys):
         return None if self.bearing.life is None else self.bearing.life.keywords()
 
     def film(self) -> dict[str, Any] | None:
-        """Return the ring and the keywords of the film, or None where none is asked for."""
-        asked = self.bearing.film
+        """Return the ring and keywords of the film in SI, or None where none is asked for."""
+        asked = self._si().bearing.film
         return None if asked is None else {"ring": asked.ring, **asked.keywords()}

@@ -18,12 +18,14 @@ from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
+from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
-from nacre.results.display import SLIGHT
+from nacre.results.display import SLIGHT, shown_in
 from nacre.results.listed import Listed
 from nacre.results.outputs import ERROR, check_direction
+from nacre.results.quantities import BEARING
 from nacre.studies import default_threads
 
 app = typer.Typer(
@@ -157,11 +159,30 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         state = {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
-        print(json.dumps(_plain(state), indent=2))
+        print(json.dumps(_plain(_in_units(state, added, described.units)), indent=2))
     else:
-        print("\n\n".join(map(str, (solution, *added.values()))))
+        with shown_in(described.units):
+            print("\n\n".join(map(str, (solution, *added.values()))))
     for path in save:
         solution.save(path)
+
+
+def _in_units(state: dict[str, Any], added: dict[str, Listed], units: str) -> dict[str, Any]:
+    """Return the state of a solved bearing, which is in SI, in the units of its case."""
+    sizes = {unit: 1 / size for unit, size in sizes_of(units).items()}
+    made = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}
+    tables = [(made, [(row.name, row.si()) for row in BEARING])]
+    for name, one in added.items():
+        made[name] = dict(state[name])
+        tables.append((made[name], [(row.name, one._si(row)) for row in one._QUANTITIES]))
+    for table, kinds in tables:
+        for name, unit in kinds:
+            if unit in sizes and table.get(name) is not None:
+                table[name] = (np.asarray(table[name]) * sizes[unit]).tolist()
+    rows = np.array([sizes["N"]] * 3 + [sizes["N m"]] * 2)
+    columns = np.array([sizes["m"]] * 3 + [1.0] * 2)
+    made["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
+    return made
 
 
 def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:

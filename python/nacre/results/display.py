@@ -7,7 +7,9 @@ import functools
 import html
 import io
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -15,7 +17,17 @@ import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import SI, Within, energy, printable, rounded, symbol, written
+from nacre._tools.units import (
+    SI,
+    Scale,
+    Within,
+    display_units,
+    energy,
+    printable,
+    rounded,
+    symbol,
+    written,
+)
 from nacre.results.quantities import CONTACT, FRICTION, Quantity
 
 if TYPE_CHECKING:
@@ -38,6 +50,9 @@ SLIGHT = 1e-8
 """Share of a vector below which a component is printed as 0."""
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
+_shown: ContextVar[str | None] = ContextVar(
+    "units in which numbers in SI are printed", default=None
+)
 UNFINISHED = "stopped before all depths were done"
 
 
@@ -50,6 +65,25 @@ def in_si(told: Callable[P, T]) -> Callable[P, T]:
             return told(*args, **kwargs)
 
     return inside
+
+
+@contextmanager
+def shown_in(units: str) -> Iterator[None]:
+    """Print numbers that are in SI in other units within the context."""
+    token = _shown.set(units)
+    try:
+        yield
+    finally:
+        _shown.reset(token)
+
+
+def number(value: float, unit: str, digits: int = 4) -> str:
+    """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
+    if (units := _shown.get()) is None:
+        return written(value, unit, digits)
+    with display_units(units):
+        scale = Scale.given(value, unit)
+    return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
 
 
 def numbers(solution: Solution) -> list[tuple[str, str]]:
@@ -218,7 +252,7 @@ def shown(values: Sequence[float]) -> list[float]:
 
 def pair(values: Iterable[float], unit: str) -> str:
     """Return components with their units."""
-    return f"({', '.join(written(value, unit) for value in values)})"
+    return f"({', '.join(number(value, unit) for value in values)})"
 
 
 def _fallback(report: Report) -> str:
@@ -487,9 +521,9 @@ def estimated(solution: Any, name: str, unit: str) -> str:
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
-        return f"{written(value, unit)} (error not known: see the warning)"
+        return f"{number(value, unit)} (error not known: see the warning)"
     share = abs(error / value) if value else 0.0
-    return written(value, unit) + (f" ± {rounded(100 * share, 1)} %" if share > NOISE else "")
+    return number(value, unit) + (f" ± {rounded(100 * share, 1)} %" if share > NOISE else "")
 
 
 def _approach(solution: Solution) -> str:

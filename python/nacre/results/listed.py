@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from nacre._tools.units import printable, written
+from nacre._tools.units import printable
 from nacre.results import display, files
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import AXIS, Quantity
@@ -110,7 +110,7 @@ class Listed(Tabular, Warned, is_base=True):
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the quantities that are printed, with units."""
         return [
-            (row.label, (display.pair if row.dims else written)(row.of(self), self._si(row)))
+            (row.label, (display.pair if row.dims else display.number)(row.of(self), self._si(row)))
             for row in self._QUANTITIES
             if row.label
         ]

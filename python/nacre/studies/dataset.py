@@ -110,7 +110,9 @@ def assembled(
                 inner = (2,)
         dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
         if isinstance(output, str) and output in units:
-            dataset[name].attrs["units"] = symbol(units[output])
+            # Results of bearings are in SI, whatever the units of the case.
+            own = units[output] if kinds["bears"] else symbol(units[output])
+            dataset[name].attrs["units"] = own
     taken = {*outputs, *map(str, dataset.coords)}
     estimated = ESTIMATED_OF_RINGS if kinds["bears"] else () if kinds["indents"] else ESTIMATED
     for name, quantity in errors(outputs, taken, estimated).items():
@@ -130,7 +132,7 @@ def assembled(
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",
-        "unit_system": system().name,
+        "unit_system": "SI" if kinds["bears"] else system().name,
     }
     return dataset
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -21,6 +21,9 @@ from nacre.bearing import (
     film_thickness,
 )
 from nacre.case import Case, CaseError
+from nacre.case.bearing import TABLES, UNITS, sizes_of
+from nacre.case.schema import Material
+from nacre.case.tables import Directions
 from support import Capture, command, written
 
 CASE = """
@@ -130,6 +133,171 @@ def test_arguments_are_those_of_the_bearing() -> None:
         count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, osculation=(0.515, 0.525)
     )
     assert ball["bearing"] == made
+
+
+MILLIMETRES = """
+units = "N-mm-MPa"
+
+[materials]
+steel = { young = 210e3, poisson = 0.3 }
+dlc = { young = 300e3, poisson = 0.25 }
+
+[bearing]
+kind = "cylindrical_roller"
+count = 14
+diameter = 10
+length = 9.6
+pitch_diameter = 65
+clearance = 41e-3
+raceway_crown = { inner = 50e3 }
+capacity = 50000
+density = 7.85e-9
+inner = { substrate = "steel", layers = [{ material = "dlc", thickness = 3e-3 }] }
+profile = { kind = "sampled", x = [-4.8, 0, 4.8], drop = [0.01, 0, 0.01] }
+
+[bearing.solve]
+force = { x = 4450, y = 0 }
+tilt = { y = 5e-4 }
+speed = 3
+cells = [40, 24]
+
+[bearing.film]
+speed = 8000
+viscosity = 0.02e-6
+pressure_viscosity = 20e-3
+roughness = 0.1e-3
+"""
+
+
+def test_other_units_are_converted_once() -> None:
+    case = Case(tomllib.loads(MILLIMETRES))
+    found, steel = case.arguments(), nacre.Elastic(young=210e9, poisson=0.3)
+    bearing = found["bearing"]
+    expected = {
+        "diameter": 10e-3,
+        "length": 9.6e-3,
+        "pitch_diameter": 65e-3,
+        "clearance": 41e-6,
+        "capacity": 50e3,
+        "density": 7850.0,
+        "count": 14,
+    }
+    for name, value in expected.items():
+        assert getattr(bearing, name) == pytest.approx(value, rel=1e-15)
+    assert bearing.raceway_crown == (50.0, None)
+    assert bearing.inner.layers[0].thickness == pytest.approx(3e-6, rel=1e-15)
+    assert bearing.inner.layers[0].material.young == pytest.approx(300e9, rel=1e-15)
+    assert bearing.inner.substrate == bearing.outer == steel
+    np.testing.assert_allclose(bearing.profile.drop, (10e-6, 0.0, 10e-6), rtol=1e-15)
+    np.testing.assert_allclose(bearing.profile.x, (-4.8e-3, 0.0, 4.8e-3), rtol=1e-15)
+    assert found["force"] == (4450.0, 0.0, None)
+    assert (found["tilt"], found["speed"], found["cells"]) == ((None, 5e-4), 3.0, (40, 24))
+    film = case.film() or {}
+    assert film.pop("ring") == "inner"
+    expected = {"speed": 8.0, "viscosity": 0.02, "pressure_viscosity": 20e-9, "roughness": 0.1e-6}
+    assert film == pytest.approx(expected, rel=1e-15)
+    # A pound-force, an inch: density in lbf s²/in⁴.
+    imperial = Case(tomllib.loads(MILLIMETRES)).in_units("lbf-in-psi")
+    with pytest.raises(CaseError, match="bearing: diameter must be at most"):
+        imperial(**{"bearing.diameter": 12.0})
+    pounds = sizes_of("lbf-in-psi")
+    assert pounds["kg/m³"] == pytest.approx(0.45359237 * 9.80665 / 0.0254**4, rel=1e-12)
+    assert pounds["N m"] == pytest.approx(0.45359237 * 9.80665 * 0.0254, rel=1e-12)
+
+
+def test_each_number_of_a_case_has_a_unit() -> None:
+    """Keys without one are known: counts, ratios, angles and speeds in rad."""
+    plain = {
+        *("count", "rows", "poisson", "rating_factor", "osculation", "contact_angle", "tolerance"),
+        *("max_iterations", "cells", "tilt", "rotation", "speed", "end_factor", "k1", "k2"),
+    }
+
+    def numbers(table: Any, path: tuple[str, ...]) -> set[str]:
+        found: set[str] = set()
+        for name, field in table.model_fields.items():
+            kinds = [kind for kind in parts(field.annotation) if hasattr(kind, "model_fields")]
+            for kind in kinds:
+                if not issubclass(kind, Directions):
+                    found |= numbers(kind, (name,))
+            own = set(parts(field.annotation)) & {float, int}
+            if own or any(issubclass(kind, Directions) for kind in kinds):
+                found.add(".".join((*path, name)))
+        return found
+
+    def parts(hint: Any) -> list[Any]:
+        inner = [part for one in get_args(hint) for part in parts(one)]
+        return inner or [hint]
+
+    keys = set().union(*(numbers(table, ()) for table in TABLES.values()))
+    keys |= numbers(Material, ())
+    assert {"diameter", "solve.force", "profile.x", "layers.thickness", "film.speed"} <= keys
+    for key in keys:
+        path = tuple(key.split("."))
+        named = UNITS.get(".".join(path[-2:])) or UNITS.get(path[-1])
+        assert (named is not None) != (path[-1] in plain and key != "film.speed"), key
+
+
+def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:
+    metres = BALL.replace("solve =", "shoulder_height = 3e-3\nlife = {}\nsolve =")
+    changes = (
+        ("[bearing]", 'units = "N-mm-MPa"\n[bearing]'),
+        ("11.5e-3", "11.5"),
+        ("43.5e-3", "43.5"),
+        ("shoulder_height = 3e-3", "shoulder_height = 3"),
+        ("z = 1000", "z = 1000.0"),
+    )
+    millimetres = metres
+    for old, new in changes:
+        assert old in millimetres
+        millimetres = millimetres.replace(old, new, 1)
+    told = {}
+    for name, text in (("SI", metres), ("N-mm-MPa", millimetres)):
+        path = written(tmp_path, text)
+        assert command("solve", path, "--json") == 0
+        told[name] = json.loads(capsys.readouterr().out)
+        assert told[name]["units"] == name
+        assert command("solve", path, "--save", tmp_path / f"{name}.nc") == 0
+        told[f"{name} in words"] = capsys.readouterr().out
+    one, other = told["SI"], told["N-mm-MPa"]
+    for name, factor in (
+        ("displacement", 1e3),
+        ("force", 1.0),
+        ("peak_pressures", 1e-6),
+        ("approaches", 1e3),
+        ("contact_angles", 1.0),
+    ):
+        np.testing.assert_allclose(other[name], np.multiply(one[name], factor), rtol=1e-8)
+    # N/m and N; N and N m: with mm, 1e-3 and 1; 1 and 1e3.
+    blocks = np.array([[1e-3] * 3 + [1.0] * 2] * 3 + [[1.0] * 3 + [1e3] * 2] * 2)
+    largest = np.abs(other["tangent"]).max()
+    np.testing.assert_allclose(
+        other["tangent"], blocks * one["tangent"], rtol=1e-8, atol=1e-9 * largest
+    )
+    for name in ("revolutions", "equivalent_load", "capacity"):
+        assert other["life"][name] == pytest.approx(one["life"][name], rel=1e-8)
+    assert other["bearing"]["DeepGrooveBall"]["diameter"] == pytest.approx(11.5, rel=1e-15)
+    assert other["bearing"]["DeepGrooveBall"]["element"]["Elastic"]["young"] == 210e3
+    pressure = np.max(other["peak_pressures"])
+    assert f"peak pressure  {pressure:.4g} MPa" in told["N-mm-MPa in words"]
+    assert f"peak pressure  {pressure / 1e3:.4g} GPa" in told["SI in words"]
+    # Files are in SI.
+    loaded = nacre.load(tmp_path / "N-mm-MPa.nc")
+    np.testing.assert_allclose(loaded.peak_pressures, one["peak_pressures"], rtol=1e-8)
+
+
+def test_a_study_in_other_units_names_them(tmp_path: Path) -> None:
+    text = MILLIMETRES.replace("cells = [40, 24]", 'model = "iso16281"').partition("[bearing.film]")
+    study = 'parameters."bearing.clearance" = [20e-3, 41e-3]\noutputs = ["peak_pressure"]'
+    case = Case.read(written(tmp_path, f"{text[0].replace('speed = 3', '')}\n[sweep]\n{study}"))
+    with nacre.display_units(case.units):
+        found = quiet(nacre.sweep, case, progress=False, **case.study())
+    assert found.peak_pressure.attrs["units"] == "Pa"
+    assert 1e9 < float(found.peak_pressure[0]) < 3e9
+    expected = quiet(
+        case(**{"bearing.clearance": 20e-3})["bearing"].solve,
+        **{k: v for k, v in case.arguments().items() if k != "bearing"},
+    )
+    assert float(found.peak_pressure[0]) == pytest.approx(expected.peak_pressure, rel=1e-12)
 
 
 def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Capture) -> None:
@@ -243,7 +411,12 @@ def test_other_rollers_are_solved_and_swept(
         ("count = 14", "count = 30", "bearing: count must be at most 20"),
         ("diameter = 10e-3", "diametre = 1", "bearing.diametre: there is no such key"),
         ('kind = "cylindrical_roller"', 'kind = "sleeve"', "bearing.kind: must be one of"),
-        ("[materials]", 'units = "N-mm-MPa"\n[materials]', 'units must be "SI" for a bearing'),
+        ("[materials]", 'units = "N-mm-Pa"\n[materials]', "units must be consistent"),
+        (
+            "[materials]",
+            'units = "N-mm-MPa"\n[materials]',
+            r"bearing: inner must have a modulus from 1e\+09 to 2e\+12",
+        ),
         ('edge = "pressure"', 'edge = "sharp"', "bearing.life.edge: must be"),
         ("viscosity = 0.02", "viscocity = 0.02", "bearing.film.viscocity: there is no such key"),
         ("viscosity = 0.02", "", "bearing.film.viscosity: this key is missing"),
