@@ -399,8 +399,8 @@ class Problem:
         largest = float((np.abs(moved) * kinematics.lengths).max())
         shorter = largest > farthest > 0
         if shorter:
-            ring, own = ring * (farthest / largest), own * (farthest / largest)
-        beside = (np.abs(moved) * kinematics.lengths).max(axis=1) * min(1.0, farthest / largest)
+            ring, own, moved = (way * (farthest / largest) for way in (ring, own, moved))
+        beside = (np.abs(moved) * kinematics.lengths).max(axis=1)
         return ring, own * self.limits(state, own, beside)[:, None], shorter
 
     def limits(self, state: State, step: Array, beside: Array | float = 0.0) -> Array:
