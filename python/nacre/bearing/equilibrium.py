@@ -337,19 +337,14 @@ class Problem:
     def settled(self, state: State, tolerance: float) -> State:
         """Return the state with the elements in equilibrium at this place of the ring.
 
-        Each element makes Newton's steps of its own, which are as long as twice the deflections or
-        gaps of its contacts at most, and are made again at a quarter where its energy rises.
+        Each element makes Newton's steps of its own, which are made again at a quarter where its
+        energy rises.
         """
-        lengths, share = self.kinematics.lengths, np.ones(len(state.own))
+        share = np.ones(len(state.own))
         for _ in range(SETTLING):
             if state.unsettled <= ELEMENTS * tolerance:
                 break
-            deep = (
-                np.abs(state.places[..., 0]) + np.abs(state.places[..., 1]) * self.kinematics.half
-            )
-            size = np.abs(state.back[0] * lengths).max(axis=1)
-            limit = FARTHEST * deep.max(axis=1) / np.where(size > 0, size, 1.0)
-            step = state.back[0] * np.minimum(share, limit)[:, None]
+            step = state.back[0] * np.minimum(share, self.limits(state, state.back[0]))[:, None]
             tried = self.state(state.ring, state.own + step)
             lower = tried.energies <= state.energies + FLAT * tried.reaction.energy.sum(1)
             share = np.where(lower, 1.0, share / 4)
@@ -385,8 +380,7 @@ class Problem:
     def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
         """Return Newton's step of the ring and of the elements, and whether it was shortened.
 
-        The ring goes no farther than `reach` times the deepest place of a contact, nor do the
-        elements where they do not settle afterwards.
+        The ring goes no farther than `reach` times the deepest place of a contact.
         """
         free, kinematics = self.free, self.kinematics
         ring = np.zeros(5)
@@ -402,12 +396,24 @@ class Problem:
         own = step + follow @ ring
         moved = kinematics.motion @ ring
         farthest = reach * max(state.deepest, 0.0)
-        limited = [moved] if self.settles else [moved, own]
-        largest = max(float((np.abs(way) * kinematics.lengths).max()) for way in limited)
+        largest = float((np.abs(moved) * kinematics.lengths).max())
         shorter = largest > farthest > 0
         if shorter:
-            ring, own = ring * (farthest / largest), own * (farthest / largest)
-        return ring, own, shorter
+            ring, own, moved = (way * (farthest / largest) for way in (ring, own, moved))
+        beside = (np.abs(moved) * kinematics.lengths).max(axis=1)
+        return ring, own * self.limits(state, own, beside)[:, None], shorter
+
+    def limits(self, state: State, step: Array, beside: Array | float = 0.0) -> Array:
+        """Return the shares of steps of elements that are not too long for them ``(Z,)``.
+
+        They are as long as twice the deflections or gaps of their contacts, and what the ring moves
+        `beside` them.
+        """
+        size = np.abs(step * self.kinematics.lengths).max(axis=1)
+        places = np.abs(state.places)
+        deep = (places[..., 0] + places[..., 1] * self.kinematics.half).max(axis=1)
+        share: Array = np.minimum(1.0, (FARTHEST * deep + beside) / np.where(size > 0, size, 1.0))
+        return share
 
     def solve(
         self,

@@ -322,11 +322,11 @@ class Bearing(ABC):
     def cage_speed(self, speed: float, rotating: Ring = "inner") -> float:
         """Return the speed of the cage where one ring rotates and the elements roll [rad/s].
 
-        ``ω_c = ω (1 ∓ γ)/2`` with the upper sign where the inner ring rotates, the lower one where
-        the outer one does, and ``γ = D cos α/d_m``: Harris and Kotzalas, Essential Concepts of
-        Bearing Technology (2006), chapter 10, doi:10.1201/9781420006599. Written with the radii of
-        both tracks, ``(1 − γ)/2 = r_i/(r_i + r_e)``, it holds for tapered rollers too, whose γ is
-        ``D cos(α − β)/d_m`` (derived here).
+        The middle of an element moves half as fast as the track that drives it, as the other one
+        stands still: ``ω_c = ω r/(r_i + r_e)`` with the radius r of the driving track, derived
+        here. With ``γ = D cos α/d_m`` it is ``ω (1 − γ)/2`` where the inner ring rotates, as NTN's
+        instruction manual HV0002 has it in table 5.2, and ``ω (1 + γ)/2`` where the outer one does;
+        of tapered rollers γ is ``D cos(α − β)/d_m``.
 
         Parameters
         ----------
