@@ -227,7 +227,7 @@ def _scan(
 
 def _below(heights: Array) -> Array:
     """Return distances from the highest of the heights that were measured."""
-    return heights.max(initial=-np.inf, where=np.isfinite(heights)) - heights
+    return float(heights.max(initial=-np.inf, where=np.isfinite(heights))) - heights
 
 
 def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:

@@ -26,7 +26,7 @@ COUNT = 1.0 + np.arange(40)
 UNEVEN = X + 0.1 * np.random.default_rng(2).random(40)
 
 
-def table(*columns: Array, head: str = "", mark: str = ",", comma: bool = False) -> str:
+def table(*columns: npt.NDArray[Any], head: str = "", mark: str = ",", comma: bool = False) -> str:
     lines = [mark.join(f"{number:.4f}" for number in row) for row in zip(*columns, strict=True)]
     text = "\n".join(lines) + "\n"
     return (f"{head}\n" if head else "") + (text.replace(".", ",") if comma else text)
@@ -58,7 +58,7 @@ def test_a_profile_with_other_columns_is_no_map(text: str, ending: str, tmp_path
     path = written(tmp_path / f"a.{ending}", text)
     for options in ({"unit": "um", "spacing": 1e-6}, {"unit": "um"}):
         with pytest.raises(ValueError, match=r"holds a profile, .* SampledProfile.read"):
-            nacre.HeightMap.read(path, **options)  # type: ignore[arg-type]
+            nacre.HeightMap.read(path, **options)
 
 
 @MARK(
@@ -195,6 +195,7 @@ def test_a_curve_has_names_and_units_in_other_languages(tmp_path: Path) -> None:
     curve = read_curve(written(tmp_path / "a.txt", text))
     np.testing.assert_allclose(curve.depth, [0, 10.5e-9, 20e-9], rtol=1e-12)
     np.testing.assert_allclose(curve.force, [0, 0.25e-3, 0.75e-3], rtol=1e-12)
+    assert curve.time is not None
     np.testing.assert_allclose(curve.time, [0, 0.5, 1])
 
 
@@ -251,7 +252,7 @@ def nanoscope(cells: int) -> bytes:
     head += ["@2:Z scale: V [Sens. Zscan] (0.0067 V/LSB) 22.0 V"]
     head += ["@2:Z offset: V [Sens. Zscan] (0.0067 V/LSB) 0 V", "*File list end"]
     text = "".join(f"\\{line}\r\n" for line in head).encode("latin-1") + b"\x1a"
-    return text + bytes(offset - len(text)) + raw.tobytes()
+    return bytes(text + bytes(offset - len(text)) + raw.tobytes())
 
 
 @MARK("ending", ["000", "017", "123", "di", "dat", "txt", ""])
@@ -294,7 +295,7 @@ def test_a_line_scan_of_an_instrument_is_a_profile(tmp_path: Path) -> None:
         nacre.HeightMap.read(path)
     z = 0.3e-6 * np.sin(0.5 * np.arange(1, 61) / 4)
     for options in ({}, {"height": 0}, {"height": "Default"}, {"unit": "um"}):
-        profile = nacre.SampledProfile.read(path, **options)  # type: ignore[arg-type]
+        profile = nacre.SampledProfile.read(path, **options)
         np.testing.assert_allclose(profile.x, 0.5e-3 * np.arange(60), atol=1e-15)
         np.testing.assert_allclose(profile.drop, z.max() - z, atol=1e-15)
     with pytest.raises(ValueError, match=r"channel must be one of 0 .Default., got 3"):
