@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
+import unicodedata
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -16,8 +17,20 @@ MISSING = frozenset(
 )
 """Words, in small letters, that stand for a point that was not measured."""
 
-SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s"}
-LENGTHS = {"Å": 1e-10, "micron": 1e-6, "microns": 1e-6}
+PREFIXES = {"pico": 1e-12, "nano": 1e-9, "micro": 1e-6, "milli": 1e-3, "mili": 1e-3, "mil": 1e-3}
+PREFIXES |= {"centi": 1e-2, "zenti": 1e-2, "": 1.0, "kilo": 1e3, "quilo": 1e3, "mega": 1e6}
+WORD = re.compile(
+    rf"({'|'.join(PREFIXES)})[ -]?"
+    r"(?:(met(?:er|re|ro|ri|r)(?:n|s)?)|(newtons?)|(secs?|second(?:[eio]|es)?s?|segundos?|sekunden?))"
+)
+"""Units in words without accents, in some languages: metres, newtons and seconds."""
+LENGTHS = (
+    (re.compile(r"angstr[oø]ms?|å"), 1e-10),
+    (re.compile(r"microns?|micron[ei]|micras?"), 1e-6),
+    (re.compile(r"inch(es)?"), 0.0254),
+    (re.compile(r"mils?"), 2.54e-5),
+)
+"""Other names of lengths; a mil is a thousandth of an inch."""
 FORCES = {"gf": 9.80665e-3, "mgf": 9.80665e-6, "kgf": 9.80665}
 """Grams-force in newtons: the gram times the standard acceleration of free fall, 9.80665 m/s²."""
 UNIT_LAST = (
@@ -26,6 +39,8 @@ UNIT_LAST = (
     re.compile(r"(.+?)(?:\s*,\s*|\s+in\s+|[_\s]+)(\S+)"),
 )
 """Names that end in a unit: ``Depth (nm)``, ``h/µm``, and ``h_nm``, ``Load, mN``, ``h in µm``."""
+CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x19\x1c-\x1f]")
+"""Bytes that no text has but for its padding: those of white space, end of file and escape are."""
 LONGEST_HEADING = 200
 """Most characters of a heading with a unit: the time that it takes grows with a power of it."""
 
@@ -41,6 +56,24 @@ class Column(NamedTuple):
     """Unit: in a name one of length, force or time, in a row of units any."""
 
 
+def is_text(content: bytes) -> bool:
+    """Return whether the bytes of a file are text, in an encoding that `decoded` knows."""
+    is_wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or wide(content)
+    return bool(is_wide) or not CONTROLS.search(content.rstrip(b"\0\x1a\r\n "))
+
+
+def wide(content: bytes) -> str | None:
+    """Return the kind of UTF-16 without a mark that bytes seem to be, or None.
+
+    Every second byte of numbers and English in UTF-16 is zero.
+    """
+    start = content[:1000]
+    for name, zeros in (("utf-16-le", start[1::2]), ("utf-16-be", start[::2])):
+        if zeros.count(0) > 0.5 * len(zeros) > 0 and start.count(0) <= 0.5 * len(start):
+            return name
+    return None
+
+
 def decoded(path: Path, encoding: str | None = None) -> str:
     """Return the text of a file in UTF-8, UTF-16 or else Windows' extension of Latin-1."""
     content = path.read_bytes()
@@ -53,12 +86,9 @@ def decoded(path: Path, encoding: str | None = None) -> str:
             ) from None
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return content.decode("utf-16", errors="replace")
-    # Every second byte of numbers and English in UTF-16 is zero.
-    start = content[:1000]
-    for name, zeros in (("utf-16-le", start[1::2]), ("utf-16-be", start[::2])):
-        if zeros.count(0) > 0.5 * len(zeros) > 0 and start.count(0) <= 0.5 * len(start):
-            return content.decode(name, errors="replace")
-    if 0 in start:
+    if (name := wide(content)) is not None:
+        return content.decode(name, errors="replace")
+    if not is_text(content):
         raise ValueError(
             f"{str(path)!r} must be text, got binary data; export it as text or CSV from the "
             f"instrument's program"
@@ -88,18 +118,24 @@ def unit_of(text: str) -> tuple[str, float] | None:
     """
     # A text in UTF-8 that was once read as Latin-1 has "Âµ".
     text = text.strip().replace("μ", "µ").replace("Âµ", "µ")
-    text = SECONDS.get(text.lower(), text)
+    letters = unicodedata.normalize("NFKD", text.lower().rstrip("."))
+    word = "".join(c for c in letters if not unicodedata.combining(c)).replace("mikro", "micro")
+    if match := WORD.fullmatch(word):
+        return ("m" if match[2] else "N" if match[3] else "s"), PREFIXES[match[1]]
+    for names, size in LENGTHS:
+        if names.fullmatch(word) or names.fullmatch(text.lower()):
+            return "m", size
     if len(text) > 1 and text.startswith("u"):
         text = "µ" + text[1:]
     if text == "min":
         return "s", 60.0
     if text.endswith("s") and text[:-1] in {"", "m", "µ"}:
         return "s", SIZES[text[:-1]]
-    if text in LENGTHS:
-        return "m", LENGTHS[text]
     if text in FORCES:
         return "N", FORCES[text]
     known = size_of(text)
+    if known is None and text in ("MM", "UM", "NM"):  # headings are often in capitals
+        known = size_of(text.lower().replace("u", "µ"))
     return known if known is not None and known[0] in ("m", "N") else None
 
 

@@ -22,9 +22,12 @@ DIMENSIONS = {"depth": "m", "force": "N", "time": "s"}
 """Quantities of a curve, which are keywords of `read`, and their SI units."""
 UNIT_NAMES = {"m": "length", "N": "force", "s": "time"}
 NAMES = {
-    "depth": ("depth", "displacement", "indentation", "penetration", "disp", "displ", "h"),
-    "force": ("force", "load", "f", "p"),
-    "time": ("time", "t"),
+    "depth": (
+        *("depth", "displacement", "indentation", "penetration", "disp", "displ"),
+        *("eindringtiefe", "tiefe", "profondeur", "profundidad", "profondità", "h"),
+    ),
+    "force": ("force", "load", "prüfkraft", "kraft", "last", "fuerza", "carga", "forza", "f", "p"),
+    "time": ("time", "zeit", "temps", "tiempo", "tempo", "t"),
 }
 """Names of columns in small letters, the best first. The words among them may be part of a name."""
 OTHER_QUANTITIES = frozenset(

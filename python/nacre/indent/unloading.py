@@ -265,7 +265,9 @@ def _power_law(below: Array, force: Array) -> tuple[Array, Array]:
 
     def law(numbers: Array) -> Array:
         load, slope, power = numbers
-        return load * np.maximum(1 - slope * below / (power * load), 0.0) ** power - force
+        return np.asarray(
+            load * np.maximum(1 - slope * below / (power * load), 0.0) ** power - force
+        )
 
     # A line through both ends of the part is less steep, and its force larger, than the law.
     start = np.array([1.0, float(np.ptp(force) / np.ptp(below)), 1.5])

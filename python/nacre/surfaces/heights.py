@@ -54,13 +54,21 @@ SPACING = re.compile(
 )
 """Names of the distance between points."""
 AXES = (
-    frozenset({"x", "lateral", "position", "distance"}),
+    frozenset("x|lateral|position|distance|abstand|weg|abscisse|posición|posizione".split("|")),
     frozenset({"y"}),
-    frozenset({"z", "height", "heights", "h", "topography", "elevation"}),
+    frozenset("z|height|heights|h|topography|elevation|höhe|hauteur|altura|altezza".split("|")),
 )
 """First words of headings of x, y and z."""
 NUMBERED = frozenset("|i|id|index|line|n|no|nr|number|point|profile|row|scan|trace".split("|"))
 """Headings of a column that counts."""
+TIMES = frozenset(
+    "time|zeit|temps|tiempo|tempo|speed|velocity|geschwindigkeit|vitesse|velocidad|velocità"
+    "|temperature|temperatur|température|temperatura|force|kraft|t".split("|")
+)
+"""Headings of columns beside a profile that are neither places nor heights."""
+FEWEST_LINES, LEAST_ORDERED = 5, 9
+"""Fewest lines that are a map whatever their order, and points of which two lines of a rough map
+would be in order once in 10⁹ times: 2/10! each."""
 SENTINELS = (
     *(-25.4, -25400, -25400000, 2147483640, 2147483647, -2147483648, 32767, -32767, -32768),
     *(9999, -9999, 99999, -99999, 999999, -999999, 1e30, -1e30, 1e37, -1e37, 1e38, -1e38),
@@ -69,6 +77,11 @@ SENTINELS = (
 OFF, LEAST_JITTERED = 0.05, 12
 """Largest distance of a point from its place on the grid, in steps, and the fewest points of a grid
 that is recognised although its points are off."""
+COLUMNS = re.compile(r"ColumnDef\s*=\s*(.+)", re.IGNORECASE)
+MARKS = frozenset("\"'*!>?")
+"""Signs with which programs mark points, as that of the MiniProf does with a quotation mark."""
+FIRST_MARK = re.compile(r"^[\"'*!>?]\s*(?=[+-]?\.?\d)")
+LAST_MARK = re.compile(r"(?<=[\d.])\s+[\"'*!?]$")
 SAMPLE = 1000
 """Lines from which the separator is found, spread evenly."""
 
@@ -200,7 +213,8 @@ class Text:
                     table.rows.append([np.nan, *top])  # places along a line, and a word beside
                     table.lines.append(found.above.pop()[0])
                     near.pop()
-                table.headings, table.title = _headings(near, mark, len(row))
+                used = len(row) - _trailing(line, mark)
+                table.headings, table.title = _headings(near, mark, len(row), used)
                 near = []
                 found.tables.append(table)
             table.rows.append(row)
@@ -245,10 +259,21 @@ class Text:
             raise ValueError(f"{str(self.path)!r} must hold numbers, got none")
         texts = dict(lines)
         for table in self.tables:
-            # A mark at the end of every line separates nothing.
-            if mark and table.width > 1 and all(texts[n].endswith(mark) for n in table.lines):
-                table.rows = [row[:-1] for row in table.rows]
+            # Marks at the end of every line separate nothing.
+            blank = min(_trailing(texts.get(n, ""), mark) for n in table.lines)
+            if blank := min(blank, table.width - 1):
+                table.rows = [row[:-blank] for row in table.rows]
                 table.headings = table.headings[: table.width]
+            if not table.headings:
+                table.headings = self._defined(table.width)
+
+    def _defined(self, width: int) -> list[Column]:
+        """Return the columns that a line ``ColumnDef=X,Y`` names, as that of a MiniProf does."""
+        for _, line in self.above:
+            if match := COLUMNS.fullmatch(line):
+                names = [name.strip() for name in match[1].split(",")]
+                return [column_of(name) for name in names[:width]] if len(names) >= width else []
+        return []
 
     def chosen(self, channel: str | int | None) -> Table:
         """Return the table that a channel names, or the only one that the head describes."""
@@ -516,20 +541,39 @@ def is_counter(values: Array) -> bool:
 
 
 def _is_profile(headings: Sequence[Column], values: Array) -> bool:
-    """Return whether a table has two columns or lines, one of which are places in order."""
+    """Return whether a table has places in order and one height at each, with times or numbers.
+
+    Without names, two columns are a profile if one is in order; three or four are if all but one or
+    two are, as those of a time, a place and a counter.
+    """
     words = first_words(headings)
-    if len(words) == 2 and words[0] in AXES[0] and words[1] in AXES[2]:
+    places, across, up = (any(word in names for word in words) for names in AXES)
+    others = [word for word in words if word in TIMES | NUMBERED]
+    if places and up and not across and len(words) <= len(others) + 2:
+        return True
+    if any(word in TIMES for word in words) and len(words) <= FEWEST_LINES:
         return True
     for table in (values.T, values):
         lines = table[1:] if len(table) == 3 and is_counter(table[0]) else table
-        if len(lines) != 2 or lines.shape[1] < 4:
-            continue
-        for line in lines:
-            steps = np.diff(line[np.isfinite(line)])
-            ordered = line.size > 4 and ((steps >= 0).all() or (steps <= 0).all())
-            if (ordered and np.count_nonzero(steps) > 0.5 * steps.size) or _rises_evenly(line):
-                return True
+        ordered = [line for line in lines if _is_ordered(line)]
+        if len(lines) == 2 and lines.shape[1] >= 4 and ordered:
+            return True
+        strict = [line for line in lines if line.size > LEAST_ORDERED and is_strict(line)]
+        if 2 < len(lines) <= FEWEST_LINES and 1 < len(strict) < len(lines):
+            return True
     return False
+
+
+def _is_ordered(line: Array) -> bool:
+    steps = np.diff(line[np.isfinite(line)])
+    rises = line.size > 4 and ((steps >= 0).all() or (steps <= 0).all())
+    return bool(rises and np.count_nonzero(steps) > 0.5 * steps.size) or _rises_evenly(line)
+
+
+def is_strict(line: Array) -> bool:
+    """Return whether each number is above, or each below, the one before."""
+    steps = np.diff(line)
+    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def _refuse_profile(name: str, headings: Sequence[Column], values: Array) -> None:
@@ -564,15 +608,32 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
     return values
 
 
-def _headings(near: Sequence[str], mark: str | None, width: int) -> tuple[list[Column], str]:
-    """Return the names of columns by the lines above a table, and the title above those."""
+def _trailing(line: str, mark: str | None) -> int:
+    """Return how many marks between fields a line ends in."""
+    return len(line) - len(line.rstrip(mark)) if mark else 0
+
+
+def _headings(
+    near: Sequence[str], mark: str | None, width: int, used: int
+) -> tuple[list[Column], str]:
+    """Return the names of columns by the lines above a table, and the title above those.
+
+    The first row has fields in the columns that are `used`, and marks alone in the rest.
+    """
     if not near:
         return [], ""
-    names = fields_of(near[-1], mark or " ")
+
+    def named(line: str) -> list[str]:
+        names = fields_of(line, mark or " ")
+        while len(names) > used and not names[-1]:
+            names.pop()
+        return names + [""] * (width - len(names)) if used <= len(names) < width else names
+
+    names = named(near[-1])
     units: list[str] = []
     if len(near) > 1 and len(names) == width and all(_bare_unit(text) for text in names if text):
         units, near = names, near[:-1]
-        names = fields_of(near[-1], mark or " ")
+        names = named(near[-1])
     if len(names) != width or not any(names):
         return [], near[-1]
     columns = [column_of(text) for text in names]
@@ -618,8 +679,15 @@ def _content(
             if colon:
                 said.setdefault(name.lower(), value)
         elif stripped.strip():
-            lines.append((number, stripped))
+            lines.append((number, _unmarked(stripped)))
     return said, comments, lines
+
+
+def _unmarked(line: str) -> str:
+    """Return a line without the mark of a point in front of its numbers, or behind them."""
+    if line.count('"') > 1:
+        return line
+    return LAST_MARK.sub("", FIRST_MARK.sub("", line)) if MARKS & set(line) else line
 
 
 def _row(text: str, mark: str | None) -> tuple[list[float] | None, list[str]]:

@@ -7,14 +7,19 @@ import io
 import re
 import warnings
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre._tools.text import is_text
 from nacre.surfaces.heights import Heights, Text
+
+Array = npt.NDArray[np.float64]
+Taken = TypeVar("Taken")
 
 TABLES = ("asc", "xyz")
 """Formats of SurfaceTopography for tables in text, which take any numbers for heights."""
@@ -22,6 +27,8 @@ ENDINGS = ("txt", "asc", "dat")
 """Endings of tables in text, some of which other formats have, too."""
 HEADED = ("di", "ezd", "nmm", "mnt")
 """Formats without a mark at the beginning, which may begin with text."""
+NANOSCOPE = re.compile(rb"[\\?]\*File list")
+"""First line of a NanoScope image, whose ending is a number."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -33,6 +40,35 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
     them knows is a table. Readers of formats without a mark are asked where no reader has the
     ending. Readers without heights are passed over.
     """
+
+    def table(likely: bool) -> Heights | None:
+        try:
+            text = Text.of(path)
+        except ValueError as error:
+            has_numbers = not re.search("must be text|got none$", str(error))
+            if has_numbers and (not likely or path.suffix.lower().lstrip(".") in ENDINGS):
+                raise
+            return None
+        return _table(text, channel)
+
+    return _first(path, channel, lambda reader: _heights(reader, channel), table)
+
+
+def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:
+    """Return places and heights of a line in an instrument's file, and the unit of the file."""
+    return _first(path, channel, lambda reader: _line(reader, channel), lambda likely: None)
+
+
+def _first(
+    path: Path,
+    channel: str | int | None,
+    take: Callable[[Any], Taken],
+    table: Callable[[bool], Taken | None],
+) -> Taken:
+    """Return what the first reader of SurfaceTopography has that knows the file.
+
+    `table` reads text that no likely reader knows; it is called with whether there were some.
+    """
     with extra("surfaces"), warnings.catch_warnings():
         warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
         from SurfaceTopography.IO import MagicMatch, readers
@@ -40,46 +76,48 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
     content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
     others = [reader for reader in readers if reader.format() not in TABLES]
     match = {reader: reader.can_read(content[:512]) for reader in others}
-    likely = [reader for reader in others if ending in (reader.file_extensions() or ())]
+    headed = [one for one in others if one.format() == "di" and NANOSCOPE.match(content)]
+    likely = [one for one in others if ending in (one.file_extensions() or ())]
+    likely = headed + [one for one in likely if one not in headed]
     likely += [one for one in others if match[one] == MagicMatch.YES and one not in likely]
     reasons: dict[str, str] = {}
 
-    def found(asked: Sequence[Any]) -> Heights | None:
+    def taken(asked: Sequence[Any]) -> Taken | None:
         for reader in asked:
             try:
                 with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
-                    return _heights(opened, channel)
+                    return take(opened)
             except Unfound as error:
                 raise ValueError(f"{error}, got {channel!r}") from None
+            except Other as error:
+                raise ValueError(f"{str(path)!r} {error}") from None
             except Exception as error:  # readers raise anything for a damaged or another file
                 said = f"no {error}" if isinstance(error, KeyError) else str(error)
                 reasons[reader.name()] = said or type(error).__name__
         return None
 
-    if (heights := found(likely)) is not None:
-        return heights
+    if (found := taken(likely)) is not None:
+        return found
     told = "; ".join(f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items())
-    is_text = 0 not in content or 0 not in content[:1000:2] or 0 not in content[1:1000:2]
-    if is_text:
-        try:
-            text = Text.of(path)
-        except ValueError as error:
-            is_table = not re.search("must be text|got none$", str(error))
-            if is_table and (not likely or ending in ENDINGS):
-                raise
-        else:
-            return _table(text, channel)
+    is_plain = is_text(content)
+    if is_plain and (found := table(bool(likely))) is not None:
+        return found
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
         raise ValueError(f"{str(path)!r} cannot be read: {told}")
     maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
-    if (heights := found([one for one in maybe if not is_text or one.format() in HEADED])) is None:
-        if likely:
-            raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {told}")
-        raise ValueError(
-            f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
-            ".csv and .xyz"
-        )
-    return heights
+    found = taken([one for one in maybe if not is_plain or one.format() in HEADED])
+    if found is not None:
+        return found
+    if likely:
+        raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {told}")
+    raise ValueError(
+        f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
+        ".csv and .xyz"
+    )
+
+
+class Other(ValueError):
+    """Heights of another dimension than is asked for; the message goes on after a file's name."""
 
 
 class Unfound(ValueError):
@@ -101,9 +139,9 @@ def _table(text: Text, channel: str | int | None) -> Heights:
     own = text.matrix(first)
     if not text.above and channel is None:
         return own._replace(is_metric=False)
-    # Without what was left out.
-    lines = [row[-own.heights.shape[0] :] for row in first.rows[-own.heights.shape[1] :]]
-    first.lines, first.rows = first.lines[-len(lines) :], lines
+    # Without what was left out, with a line for each y, and between the same lines of the file.
+    first.rows = own.heights.T.tolist()
+    first.lines = np.linspace(first.lines[0], first.lines[-1], len(first.rows)).tolist()
     try:
         with AscReader(io.StringIO(text.plain())) as reader:
             found = _heights(reader, channel)
@@ -140,6 +178,13 @@ def _mended(path: Path) -> str | io.BytesIO:
 def _heights(reader: Any, channel: str | int | None) -> Heights:
     """Return the heights of a channel, which must be a map."""
     maps = [one for one in reader.channels if one.dim == 2]
+    lines = [one for one in reader.channels if one.dim == 1]
+    if lines and not maps:
+        raise Other(
+            f"holds a profile, places beside heights, not a map: a surface must have two "
+            f"dimensions, got a line in the channel {lines[0].name!r}; SampledProfile.read reads "
+            f"it for a Roller"
+        )
     if not maps:
         names = ", ".join(repr(one.name) for one in reader.channels) or _others(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
@@ -149,6 +194,24 @@ def _heights(reader: Any, channel: str | int | None) -> Heights:
     sizes = {"physical_sizes": tuple(map(float, found.nb_grid_pts))} if lacking else {}
     heights = of_topography(found.topography(**sizes))
     return heights._replace(spacing=None) if lacking else heights
+
+
+def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | None]:
+    """Return places and heights of a channel, which must be a line, and their unit."""
+    lines = [one for one in reader.channels if one.dim == 1]
+    if not lines:
+        raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
+    known = {one.name for one in lines}
+    default = reader.default_channel
+    chosen = lines[0] if channel is None and default not in lines else _channel(reader, channel)
+    if chosen.dim != 1:
+        raise Unfound(f"height must be one of the channels {', '.join(sorted(known))}")
+    line = chosen.topography()
+    places, heights = (
+        np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
+        for values in (line.positions(), line.heights())
+    )
+    return places, heights, line.unit if isinstance(line.unit, str) else None
 
 
 def _others(reader: Any) -> str:

@@ -84,19 +84,19 @@ class _Level:
     def apply(self, field: Array) -> Array:
         """Return the weighted differences of a field to its neighbours, summed at each point."""
         count = field.size
-        forth = np.bincount(self.first, self.weights * field[self.second], count)
-        back = np.bincount(self.second, self.weights * field[self.first], count)
+        forth = _sums(self.first, self.weights * field[self.second], count)
+        back = _sums(self.second, self.weights * field[self.first], count)
         return self.degrees * field - forth - back
 
     def cycle(self, load: Array) -> Array:
         """Return nearly the field whose differences are `load`, linear and symmetric in it."""
         if load.size <= COARSEST:
-            return np.linalg.solve(self._dense, load)
+            return np.asarray(np.linalg.solve(self._dense, load), np.float64)
         field = DAMPING * load / self.degrees
         for _ in range(SWEEPS - 1):
             field += DAMPING * (load - self.apply(field)) / self.degrees
         block, coarser = self._coarser
-        rest = np.bincount(block, load - self.apply(field), coarser.degrees.size)
+        rest = _sums(block, load - self.apply(field), coarser.degrees.size)
         field += STIFFER * coarser.cycle(rest)[block]
         for _ in range(SWEEPS):
             field += DAMPING * (load - self.apply(field)) / self.degrees
@@ -116,15 +116,20 @@ class _Level:
         count = chosen.size
         pairs = np.sort([block[self.first], block[self.second]], axis=0)
         between = pairs[0] != pairs[1]
-        inner = np.bincount(pairs[0, ~between], self.weights[~between], count)
+        inner = _sums(pairs[0, ~between], self.weights[~between], count)
         keys, link = np.unique(pairs[0, between] * count + pairs[1, between], return_inverse=True)
         return block, type(self)(
             (x[chosen], y[chosen]),
             keys // count,
             keys % count,
-            np.bincount(link, self.weights[between], keys.size),
-            np.bincount(block, self.degrees, count) - 2 * inner,
+            _sums(link, self.weights[between], keys.size),
+            _sums(block, self.degrees, count) - 2 * inner,
         )
+
+
+def _sums(index: Indices, terms: Array, count: int) -> Array:
+    """Return the sums of terms with the same index."""
+    return np.asarray(np.bincount(index, terms, count), np.float64)
 
 
 def _finest(
@@ -142,7 +147,7 @@ def _finest(
         heights = known.take(here, axis), known.take(there, axis)
         for end, height in zip(ends, heights[::-1], strict=True):
             degrees += np.bincount(end[end >= 0], minlength=count)
-            sums += np.bincount(end[end >= 0], height[end >= 0], count)
+            sums += _sums(end[end >= 0], height[end >= 0], count)
         both = (ends[0] >= 0) & (ends[1] >= 0)
         links.append((ends[0][both], ends[1][both]))
     first, second = np.concatenate(links, axis=1)

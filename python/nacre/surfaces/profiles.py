@@ -1,9 +1,10 @@
-"""Profiles of rollers, wheels and rails in text files."""
+"""Profiles of rollers, wheels and rails, in text and in files of instruments."""
 
 from __future__ import annotations
 
 import os
 import re
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,9 +12,23 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
-from nacre._tools.text import decoded
+from nacre._tools.text import decoded, is_text
 from nacre._tools.typing import Vector
-from nacre.surfaces.heights import AXES, METRES, Table, Text, first_words, is_counter, metres
+from nacre._tools.units import written
+from nacre.surfaces.heights import (
+    AXES,
+    LEAST_MEASURED,
+    METRES,
+    NUMBERED,
+    TIMES,
+    Table,
+    Text,
+    first_words,
+    is_counter,
+    is_strict,
+    metres,
+    without_sentinels,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -21,6 +36,13 @@ DROPS = frozenset({"drop", "drops", "relief"})
 """First words of headings of drops."""
 SIMPACK = (".prr", ".prw")
 """Endings of Simpack's profiles of rails and of wheels."""
+IN_BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
+"""What ends a heading in brackets: a unit, known or not."""
+MINIPROF = (".ban", ".whl")
+"""Endings of MiniProf's profiles of rails and of wheels."""
+FAR, LEAST_REST = 1000.0, 5
+"""Distance of a drop from all others, over their span, from which it is no height, and fewest
+others: profiles with a step or a chamfer have other points on it."""
 
 
 def read_profile(
@@ -34,24 +56,27 @@ def read_profile(
     corners: Vector | None = None,
     smoothing: float | None = None,
 ) -> core.SampledProfile:
-    r"""Read a measured profile of a roller from a text file.
+    r"""Read a measured profile of a roller from a file.
 
     Lines above the table, names and units of columns, delimiter and decimal mark are found from
-    the file. Simpack's profiles of rails (``.prr``) and wheels (``.prw``) are known.
+    the file, and signs with which a program marks points are skipped. Simpack's profiles of rails
+    (``.prr``) and wheels (``.prw``) are known, and MiniProf's (``.ban``, ``.whl``) are in mm. Line
+    scans in other files of instruments are read by SurfaceTopography, with
+    ``nacre-contact[surfaces]``.
 
     Parameters
     ----------
     path : str or path
-        Text file with a column of positions, and one of drops or of heights.
+        Text file with a column of positions, and one of drops or of heights; or a line scan.
     unit : str or pair of str, optional
         Unit of the columns ("um", "mm", ...), or of the positions and of the other column, where
-        the file names none.
+        the file names none. Heights without a unit have that of the positions.
     x : str or int, optional
         Column of the positions: its name or its number from 0. By default the one with the name x,
-        or the first.
+        or the only one in order.
     drop, height : str or int, optional
         Column of the drops, or of heights, of which the drop is the distance from the highest. By
-        default the one with such a name.
+        default the one with such a name. Of line scans `height` is the channel.
     smooth, corners, smoothing : optional
         How the stations are joined, true edges [m], and a wavelength against noise [m], as those of
         `SampledProfile`.
@@ -67,6 +92,12 @@ def read_profile(
         If the table, a column or a unit cannot be found, or a position comes twice.
     FileNotFoundError
         If there is no such file.
+
+    Warns
+    -----
+    NacreWarning
+        If points were not measured, and are bridged; if one height is far from all others, as a
+        mark of a missing point is; if heights name no unit.
 
     Examples
     --------
@@ -85,10 +116,12 @@ def read_profile(
         )
     if path.suffix.lower() in SIMPACK:
         places, drops = _simpack(path)
-    else:
+    elif is_text(path.read_bytes()):
         places, drops = _table(path, unit, x, drop, height)
+    else:
+        places, drops = _scan(path, unit, x, drop, height)
     order = np.argsort(places, kind="stable")
-    places, drops = places[order], drops[order]
+    places, drops = _measured(path, places[order], drops[order])
     twice = np.flatnonzero(np.diff(places) <= 0)
     if twice.size:
         raise ValueError(
@@ -115,16 +148,46 @@ def _table(
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _named(words, AXES[0])
-    place = _column(path, table, "x", x, first if first is not None else counted)
+    if first is None:
+        rest = [k for k in range(counted, table.width) if is_strict(values[:, k])]
+        timed = [k for k in rest if words and words[k] in TIMES | NUMBERED]
+        rest = [k for k in rest if k not in timed]
+        is_clear = table.width - counted == 2 or len(rest) < 2
+        first = (rest[0] if timed and rest else counted) if is_clear else None
+    place = _column(path, table, "x", x, first)
     is_drop = drop is not None or (height is None and _named(words, DROPS) is not None)
     if is_drop:
         other = _column(path, table, "drop", drop, _named(words, DROPS))
     else:
         other = _column(path, table, "height", height, _named(words, AXES[2]))
+    sizes = _sizes(path, table, unit, place, other)
+    heights = without_sentinels(values[:, other]) * sizes[1]
+    return values[:, place] * sizes[0], heights if is_drop else _below(heights)
+
+
+def _sizes(
+    path: Path, table: Table, unit: str | tuple[str, str] | None, place: int, other: int
+) -> list[float]:
+    """Return the units of positions and of heights [m]."""
     lengths = unit if isinstance(unit, tuple) else (unit, unit)
+    usual = "mm" if path.suffix.lower() in MINIPROF else None
+    known = [
+        given or (table.headings[column].unit if table.headings else None) or usual
+        for column, given in ((place, lengths[0]), (other, lengths[1]))
+    ]
+    heading = table.headings[other].heading if table.headings else ""
+    if known[1] is None and (bracket := IN_BRACKETS.search(heading)):
+        known[1] = bracket[1]
+    if known[0] is not None and known[1] is None and metres(known[0]) is not None:
+        known[1] = known[0]
+        warnings.warn(
+            f"the heights of {str(path)!r} name no unit, and were read in that of the positions, "
+            f"{known[0]}: unit= can be a pair",
+            core.NacreWarning,
+            stacklevel=5,
+        )
     sizes = []
-    for name, column, given in (("x", place, lengths[0]), ("heights", other, lengths[1])):
-        said = given or (table.headings[column].unit if table.headings else None)
+    for name, said in zip(("x", "heights"), known, strict=True):
         size = metres(said or "")
         if size is None:
             got = "names none" if said is None else f"got {said!r}"
@@ -133,11 +196,70 @@ def _table(
                 f"unit= can be a pair"
             )
         sizes.append(size)
-    found = values[:, [place, other]] * sizes
-    found = found[np.isfinite(found).all(axis=1)]
-    if len(found) < 2:
-        raise ValueError(f"{str(path)!r} must have two measured points, got {len(found)}")
-    return found[:, 0], found[:, 1] if is_drop else found[:, 1].max() - found[:, 1]
+    return sizes
+
+
+def _scan(
+    path: Path,
+    unit: str | tuple[str, str] | None,
+    x: str | int | None,
+    drop: str | int | None,
+    height: str | int | None,
+) -> tuple[Array, Array]:
+    """Return positions and drops of a line scan in a file of an instrument [m]."""
+    from nacre.surfaces.instruments import line_scan
+
+    for keyword, column in (("x", x), ("drop", drop)):
+        if column is not None:
+            raise ValueError(
+                f"{keyword} must be left out for the line scan in {str(path)!r}, whose heights are "
+                f"a channel, got {column!r}"
+            )
+    places, heights, named = line_scan(path, height)
+    lengths = unit if isinstance(unit, tuple) else (unit, unit)
+    sizes = [metres(given or named or "") for given in lengths]
+    if sizes[0] is None or sizes[1] is None:
+        raise ValueError(
+            f"unit must be one of {', '.join(METRES)} for {str(path)!r}, which names {named!r}"
+        )
+    return places * sizes[0], _below(without_sentinels(heights) * sizes[1])
+
+
+def _below(heights: Array) -> Array:
+    """Return distances from the highest of the heights that were measured."""
+    return float(heights.max(initial=-np.inf, where=np.isfinite(heights))) - heights
+
+
+def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
+    """Return what was measured, and warn of the rest, and of a drop far from all others."""
+    measured = np.isfinite(places) & np.isfinite(drops)
+    count, points = int((~measured).sum()), places.size
+    places, drops = places[measured], drops[measured]
+    if len(places) < 2 or len(places) < LEAST_MEASURED * points:
+        raise ValueError(
+            f"{str(path)!r} must have at least half its points measured, and two, got "
+            f"{len(places)} of {points}"
+        )
+    if count:
+        gap = float(np.diff(places).max())
+        warnings.warn(
+            f"{count} of {points} points of {str(path)!r} are missing and were bridged smoothly, "
+            f"the widest gap is {written(gap, 'm')}",
+            core.NacreWarning,
+            stacklevel=4,
+        )
+    farthest = float(drops[np.argmax(np.abs(drops - np.median(drops)))])
+    rest = drops[drops != farthest]
+    away = float(np.abs(farthest - rest).min()) if rest.size else 0.0
+    if rest.size >= LEAST_REST and away > FAR * np.ptp(rest):
+        far, span = written(farthest, "m"), written(float(np.ptp(rest)), "m")
+        warnings.warn(
+            f"{points - count - rest.size} of {points} drops of {str(path)!r}, {far}, is far from "
+            f"the others, which span {span}: is it the mark of a missing point?",
+            core.NacreWarning,
+            stacklevel=4,
+        )
+    return places, drops
 
 
 def _named(words: Sequence[str], known: frozenset[str]) -> int | None:
