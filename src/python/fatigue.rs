@@ -1,6 +1,6 @@
 //! Shakedown and fatigue of histories, for `nacre.fatigue`.
 
-use ndarray::{Array1, Array2, ArrayD, Axis};
+use ndarray::{Array1, Array2, ArrayD, Ix3};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -68,15 +68,16 @@ fn each<T: Send + 'static>(
     work: impl Fn(&[State]) -> crate::Result<T> + Send + Sync + 'static,
 ) -> PyResult<Vec<T>> {
     let given: ArrayD<f64> = real_array("history", history)?;
-    if given.ndim() != 3 || given.shape()[2] != 6 {
-        return Err(PyValueError::new_err(format!(
-            "history must have the shape (…, times, 6), got {:?}",
-            given.shape()
-        )));
-    }
+    let shape = given.shape().to_vec();
+    let given = given.into_dimensionality::<Ix3>().ok().filter(|given| given.dim().2 == 6);
+    let given = given.ok_or_else(|| {
+        PyValueError::new_err(format!("history must have the shape (…, times, 6), got {shape:?}"))
+    })?;
     let histories: Vec<Vec<State>> = given
-        .axis_iter(Axis(0))
-        .map(|one| one.axis_iter(Axis(0)).map(|state| std::array::from_fn(|k| state[k])).collect())
+        .outer_iter()
+        .map(|one| {
+            one.rows().into_iter().map(|state| [0, 1, 2, 3, 4, 5].map(|k| state[k])).collect()
+        })
         .collect();
     let threads = Threads::new(None)?;
     let found = background::run(py, None, move |caller: &mut background::Caller<(f64,)>| {

@@ -90,6 +90,31 @@ fn one_direction_and_the_line() -> Result<()> {
         assert!((p - line.pressure[[0, j]]).abs() < 1e-6 * peak);
     }
     near!(found.approach, line.approach, 1e-9);
+    // A period has no first cell: what depends on it is no number, and the other direction keeps its own.
+    let ([mx, my], [ex, ey], [x, y]) =
+        (found.moment(), found.eccentricity(), found.contact_extent());
+    assert!(mx.is_nan() && ex.is_nan() && x.iter().all(|end| end.is_nan()));
+    let half = 0.5 * grid.size()[1];
+    assert!(my.abs() < 1e-6 * found.load() * half && ey.abs() < 1e-6 * half);
+    for (end, due) in y.into_iter().zip(line.contact_extent()[1]) {
+        near!(end, due, 1e-6);
+    }
+    Ok(())
+}
+
+/// The ends of a spot are those of the spot until it goes on from the last cell to the first.
+#[test]
+fn a_spot_that_wraps_has_no_ends() -> Result<()> {
+    let grid = Grid::new([32, 32], [1.0, 1.0])?.periodic([true; 2])?;
+    let contact = plan(Elastic::new(1.0, 0.3)?, grid)?;
+    for (at, wraps) in [(0.0, false), (0.5, true)] {
+        let height = |x: f64, y: f64| 1e-3 * ((2.0 * PI * (x - at)).cos() + (2.0 * PI * y).cos());
+        let found = contact.solve(&map(&grid, height)?, &Motion::load(1e-4), &tight())?;
+        let [x, y] = found.contact_extent();
+        assert_eq!(x[0].is_nan() && x[1].is_nan(), wraps);
+        assert!((y[0] + y[1]).abs() < 1e-6 && y[1] > 0.0);
+        assert!(found.moment().into_iter().chain(found.eccentricity()).all(f64::is_nan));
+    }
     Ok(())
 }
 

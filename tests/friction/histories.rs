@@ -75,12 +75,39 @@ fn a_resumed_history_is_the_same() -> Result<()> {
     let whole = contact.slide(&ball()?, &steps, &options, None)?;
     let begun = contact.slide(&ball()?, &steps[..2], &options, None)?;
     let rest = contact.slide(&ball()?, &steps[2..], &options, begun.last())?;
+    // What has slipped belongs to its bodies.
+    for body in [coated(3.0, 0.1)?, material(0.3)?.into()] {
+        let other = Contact::plan(body, grid, one_thread(material(0.3)?))?;
+        let refused = other.slide(&ball()?, &steps[2..], &options, begun.last());
+        assert!(matches!(refused, Err(Error::Inconsistent(text)) if text.contains("body")));
+    }
     assert!(whole.iter().all(|solution| solution.report.converged()));
     for (a, b) in whole.iter().zip(begun.iter().chain(&rest)) {
         assert_eq!(a.traction, b.traction);
         assert_eq!(a.motion, b.motion);
         assert_eq!(a.normal.pressure, b.normal.pressure);
     }
+    Ok(())
+}
+
+/// With coupling, the energy of the normal contact and what the tractions add are all of it: on the contact the normal
+/// displacement is δ − h, by the pressure and by the tractions.
+#[test]
+fn the_energy_of_coupled_contacts_is_that_of_all_displacements() -> Result<()> {
+    let contact = unlike(40, 2.6)?;
+    let step = press(load(0.3)).with_force([Some(0.5 * FRICTION * load(0.3)), None]);
+    let solution = slide(&contact, step, &precise(1e-10))?;
+    assert!(solution.report.coupled);
+    let (grid, normal) = (contact.grid(), &solution.normal);
+    let (x, y) = (grid.x(), grid.y());
+    let sunk = |i: usize, j: usize| normal.approach - 0.5 * (x[i].powi(2) + y[j].powi(2)) / RADIUS;
+    let twice: f64 = normal.pressure.indexed_iter().map(|((i, j), p)| p * sunk(i, j)).sum();
+    let [along, across] = [0, 1].map(|k| (&solution.traction[k] * &solution.displacement[k]).sum());
+    let due = 0.5 * grid.cell_area() * (twice + along + across);
+    let pressed = 0.5 * grid.cell_area() * (&normal.pressure * &normal.displacement).sum();
+    near!(pressed + solution.tangential_energy(), due, 1e-8);
+    // Without the coupling it would be another number by more than a hundredth.
+    assert!(solution.report.coupling_energy.abs() > 1e-2 * solution.tangential_energy().abs());
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import pairwise
 from math import pi
 from typing import Any
 
@@ -43,6 +44,56 @@ def test_a_small_creepage_makes_the_force_of_kalkers_coefficients() -> None:
         area = np.count_nonzero(rolled.pressure) / 32**2 / pi
         # 64 cells across: 0.45 % above the limit, of the first order.
         assert rolled.force[axis] / (1e-6 * area) == pytest.approx(coefficient, rel=6e-3)
+
+
+# Histories.
+
+
+def test_a_history_goes_on_with_the_same_bodies_alone() -> None:
+    layer = nacre.HalfSpace(STEEL, [nacre.Layer(SOFT, 1e-6)])
+    first = CONTACT.slide(BALL, **HELD, steps=pulled(1.0))
+    wrong: list[Any] = [(SOFT, SOFT), (STEEL, None), (STEEL, SOFT), (layer, STEEL)]
+    for body, counterbody in wrong:
+        contact = nacre.Contact(body, GRID, counterbody)
+        for initial in (first, first[-1], nacre.types.History.from_dict(first.to_dict())):
+            with pytest.raises(ValueError, match="initial must be a solution of the body"):
+                contact.slide(BALL, **HELD, steps=pulled(0.5), initial=initial)
+            with pytest.raises(ValueError, match="initial must be a solution of the body"):
+                contact.roll(
+                    BALL, **HELD, creepage=(1e-4, 0.0), direction="+x", cells=2, initial=initial
+                )
+        with pytest.raises(ValueError, match="initial must be a solution of the body"):
+            nacre.slide(BALL, body, counterbody, **HELD, force=(0.5, None), initial=first)
+    # Equal bodies are the same ones, as are those of a file.
+    again = nacre.Elastic(STEEL.young, STEEL.poisson)
+    saved = nacre.types.History.from_dict(first.to_dict())
+    ends = [
+        nacre.slide(BALL, body, body, grid=GRID, **HELD, force=(0.5, None), initial=initial)
+        for body, initial in ((STEEL, first), (again, saved))
+    ]
+    np.testing.assert_array_equal(ends[0].traction, ends[1].traction)
+
+
+@pytest.mark.parametrize("soft", [nacre.Elastic(3e9, 0.2), STEEL])
+def test_work_is_stored_or_dissipated(soft: nacre.Elastic) -> None:
+    """Unlike bodies couple pressure and tractions: the energy of both together is conserved."""
+    grid = nacre.Grid((32, 32), (6e-4, 6e-4)) if soft is not STEEL else GRID
+    contact = nacre.Contact(soft, grid, STEEL)
+    forces = np.linspace(0.0, 2.5, 26)
+    steps = contact.slide(
+        BALL, load=10.0, friction=0.3, steps=pulled(*forces.tolist()), tolerance=1e-9
+    )
+    work = sum(
+        0.5 * (a.force[0] + b.force[0]) * (b.shift[0] - a.shift[0])
+        + 10.0 * (b.approach - a.approach)
+        for a, b in pairwise(steps)
+    )
+    lost = sum(step.dissipated for step in steps[1:])
+    stored = steps[-1].elastic_energy - steps[0].elastic_energy
+    # Trapezia of 25 steps, and slip against the traction at the end of a step.
+    assert stored + lost == pytest.approx(work, rel=5e-3)
+    assert stored > 0.5 * work
+    assert (steps[-1].report.coupling_energy != 0) == (soft is not STEEL)
 
 
 # Fields.

@@ -70,6 +70,22 @@ def test_a_history_keeps_the_grid_of_its_dent() -> None:
         CONTACT.solve(BALL, load=10.0, hardness=LIMIT, initial=first)
 
 
+def test_a_dent_belongs_to_its_bodies() -> None:
+    soft = nacre.Elastic(3e9, 0.35)
+    first = nacre.solve(BALL, STEEL, grid=GRID, load=100.0, hardness=LIMIT)
+    for body, counterbody in ((soft, None), (STEEL, STEEL)):
+        with pytest.raises(ValueError, match="initial must be a solution of the body"):
+            nacre.solve(BALL, body, counterbody, load=10.0, initial=first)
+        contact = nacre.Contact(body, GRID, counterbody)
+        with pytest.raises(ValueError, match="initial must be a solution of the body"):
+            contact.solve(BALL, load=10.0, initial=first)
+    # The pressure of other bodies is but a place to start from.
+    fresh = nacre.solve(BALL, STEEL, grid=GRID, load=10.0)
+    other = nacre.solve(BALL, soft, grid=GRID, load=10.0, initial=fresh)
+    direct = nacre.solve(BALL, soft, grid=GRID, load=10.0)
+    assert other.approach == pytest.approx(direct.approach, rel=1e-7)
+
+
 def test_each_cell_may_have_its_hardness() -> None:
     cells = np.full(GRID.shape, LIMIT)
     cells[:24] = np.inf

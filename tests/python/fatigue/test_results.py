@@ -14,6 +14,8 @@ import nacre
 from bodies import BALL, DLC, ROD, STEEL, quiet
 from nacre import fatigue, plot
 from nacre.case import Case, CaseError
+from nacre.fatigue.history import Rolling
+from nacre.fatigue.summary import ROUNDS
 from support import Capture, command, written
 
 GRID = nacre.Grid.line(64, 1.5e-4)
@@ -244,6 +246,13 @@ def test_wrong_tables_are_named(old: str, new: str, message: str, tmp_path: Path
 
 
 PERIODIC = nacre.Grid((16, 16), (1e-4, 1e-4), periodic=(True, True))
+DENT = nacre.Grid((20, 20), (2e-4, 2e-4))
+
+
+def dented() -> nacre.Solution:
+    return quiet(nacre.solve, BALL, STEEL, grid=DENT, load=10.0, hardness=1e9)
+
+
 WRONG: dict[str, tuple[Any, type[Exception], str]] = {
     "criterion": (lambda: assessed(criteria=["DangVan"]), TypeError, "criteria must hold DangVan"),
     "criteria": (lambda: assessed(criteria=LIMITS), TypeError, "criteria must be a sequence"),
@@ -272,6 +281,21 @@ WRONG: dict[str, tuple[Any, type[Exception], str]] = {
         ValueError,
         "solution must not be periodic",
     ),
+    "yielded": (
+        lambda: fatigue.assess(dented()),
+        ValueError,
+        "solution must be one whose surfaces have not yielded",
+    ),
+    "yielded before": (
+        lambda: fatigue.assess(nacre.solve(BALL, STEEL, load=1.0, initial=dented())),
+        ValueError,
+        "solution must be one whose surfaces have not yielded",
+    ),
+    "yielded map": (
+        lambda: fatigue.shakedown_map(dented(), friction=[0.1]),
+        ValueError,
+        "solution must be one whose surfaces have not yielded",
+    ),
     "map": (
         lambda: fatigue.shakedown_map(SOLUTION, friction=[]),
         ValueError,
@@ -290,6 +314,45 @@ def test_wrong_input_is_named(name: str) -> None:
     call, kind, message = WRONG[name]
     with pytest.raises(kind, match=message):
         quiet(call)
+
+
+def test_a_hardness_that_is_not_reached_is_none() -> None:
+    hard = nacre.solve(ROD, COAT, load=1e5, grid=GRID, hardness=1e12)
+    assert quiet(fatigue.assess, hard, depths=DEPTHS) == assessed(criteria=[], shear_yield=None)
+
+
+def test_a_map_has_the_bits_of_single_frictions_and_shares_their_stresses(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    frictions = [0.0, 0.08, 0.15, 0.3, 0.5]
+    calls: list[int] = []
+    evaluate = Rolling.stress
+
+    def counted(self: Rolling, depths: Any, *rest: Any) -> Any:
+        calls.append(len(depths))
+        return evaluate(self, depths, *rest)
+
+    monkeypatch.setattr(Rolling, "stress", counted)
+    whole = quiet(fatigue.shakedown_map, SOLUTION, friction=frictions)
+    # The depths of a layer, and its refinements, in one go each: surface, inside, lower face.
+    assert len(calls) <= len(whole.names) * (3 + ROUNDS)
+    for k, friction in enumerate(frictions):
+        one = quiet(fatigue.shakedown_map, SOLUTION, friction=[friction])
+        for name in ("limits", "first_yield", "depths"):
+            np.testing.assert_array_equal(getattr(whole, name)[:, k], getattr(one, name)[:, 0])
+        summary = quiet(fatigue.assess, SOLUTION, friction=friction)
+        needs = [layer.shakedown[0] for layer in summary.layers]
+        np.testing.assert_array_equal(whole.limits[:, k], whole.peak_pressure / np.array(needs))
+
+
+def test_a_map_keeps_what_the_cells_do_not_resolve() -> None:
+    coarse = quiet(nacre.solve, ROD, COAT, load=2e4, grid=nacre.Grid.line(24, 3e-4))
+    shallow = [1e-7, 1e-6]
+    with pytest.warns(nacre.NacreWarning, match="uncertain due to the size of the cells") as caught:
+        found = fatigue.shakedown_map(coarse, friction=[0.1, 0.3], depths=shallow)
+    assert {*found.report.warnings} == {str(one.message) for one in caught}
+    assert fatigue.ShakedownMap.from_dict(found.to_dict()) == found
+    assert "warning: in layers[0] DLC" in str(found)
 
 
 def test_a_rigid_base_has_layers_alone() -> None:
