@@ -746,8 +746,9 @@ class Stressed:
             Largest estimated error of the extremes, as a part of them, such as 0.05. Patches that
             hold the places where value and error together exceed an extreme by more are solved
             again on finer cells, until the error is below it or a patch has as many cells as the
-            grid or 512 × 512, whichever is more. By default the cells of the grid are used. Not for `nacre.slide` and
-            `nacre.roll`, periodic grids, surfaces that have yielded, given coefficients.
+            grid or 512 × 512, whichever is more. By default the cells of the grid are used. Not for
+            `nacre.slide` and `nacre.roll`, periodic grids, surfaces that have yielded, given
+            coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
             seconds.
