@@ -193,9 +193,9 @@ impl HalfSpacePlan {
         Some(self.solved.as_ref()?.subcell.errors(&self.body, place, friction))
     }
 
-    /// Error of the stress everywhere, from the width of the contact.
-    pub(super) fn error_of_width(&self) -> f64 {
-        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.error_of_width())
+    /// Error of the stress at a depth \[Pa\] due to the width of the contact in cells, at all places.
+    pub(super) fn width_error(&self, depth: f64) -> f64 {
+        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.width_error(depth))
     }
 
     /// Largest steps of the pressure that are felt in the cells of `window`.

@@ -157,6 +157,9 @@ impl Refined<'_> {
         let half_width = plan.whole.half_width();
         let scope = Scope { records: true, ..Scope::of(&plan) };
         let mut of_grid = request.evaluate(&plan, scope, &mut progress);
+        if !of_grid.finished {
+            return Ok(of_grid.summary(body, strengths));
+        }
         let mut progress = |part: f64| asked.tell(0.5 + 0.5 * part);
         // Parts of the grid that finer cells stand for, and the extremes of these.
         let mut cores: Vec<Window> = Vec::new();
@@ -165,9 +168,6 @@ impl Refined<'_> {
         loop {
             let all = of_patches.as_ref().map_or_else(|| of_grid.clone(), |of| of_grid.with(of));
             let summary = all.summary(body, strengths);
-            if !summary.finished {
-                return Ok(summary);
-            }
             let suspects = Suspects { all: &all, bounds: &of_grid.bounds, cores: &cores };
             let suspects = self.suspects(&suspects, &settled, (summary.least_value(), half_width));
             if suspects.is_empty() {
@@ -194,11 +194,12 @@ impl Refined<'_> {
             };
             let [core, _] = margins;
             cores.push(core);
-            of_patches = Some(of_patches.map_or(fine.clone(), |of| of.with(&fine)));
-            if fine.finished {
-                let scope = Scope { without: &cores, records: true, ..Scope::of(&plan) };
-                of_grid = request.evaluate(&plan, scope, &mut progress);
+            let scope = Scope { without: &cores, records: true, ..Scope::of(&plan) };
+            of_grid = request.evaluate(&plan, scope, &mut progress);
+            if !(fine.finished && of_grid.finished) {
+                return Ok(StressSummary { finished: false, ..summary });
             }
+            of_patches = Some(of_patches.map_or(fine.clone(), |of| of.with(&fine)));
         }
     }
 
@@ -287,7 +288,7 @@ impl Refined<'_> {
         let scope = Scope {
             beside: Some(beside),
             half_width: whole.whole.half_width(),
-            of_width: if patch.is_whole { 0.0 } else { whole.whole.error_of_width() },
+            contact: if patch.is_whole { &plan } else { whole },
             ..Scope::of(&plan)
         };
         Ok(Some(request.evaluate(&plan, scope, progress)))

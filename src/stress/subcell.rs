@@ -129,9 +129,9 @@ impl SubcellStress {
         self.uncertainty.steps(&self.given, &self.margin.window(window))
     }
 
-    /// Error of the stress everywhere, from the width of the contact.
-    pub(super) fn error_of_width(&self) -> f64 {
-        self.uncertainty.of_width
+    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, depth: f64) -> f64 {
+        self.uncertainty.width_error(depth)
     }
 
     /// Largest steps of the pressure that are felt in each cell.

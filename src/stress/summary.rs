@@ -325,20 +325,20 @@ pub(super) struct Scope<'a> {
     pub(super) without: &'a [Window],
     /// Half-width of the contact, for which depths are chosen.
     pub(super) half_width: f64,
-    /// Error of the stress of what is beside the plan.
-    pub(super) of_width: f64,
+    /// The plan whose cells tell the width of the contact.
+    pub(super) contact: &'a StressPlan,
     /// Whether the bounds of each cell are recorded.
     pub(super) records: bool,
 }
 
-impl Scope<'_> {
+impl<'a> Scope<'a> {
     /// All cells of a plan.
-    pub(super) fn of(plan: &StressPlan) -> Self {
+    pub(super) fn of(plan: &'a StressPlan) -> Self {
         Self {
             beside: None,
             without: &[],
             half_width: plan.whole.half_width(),
-            of_width: 0.0,
+            contact: plan,
             records: false,
         }
     }
@@ -597,7 +597,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// The errors at `place`, of tractions that are known `within` cells or uniform over them.
     fn errors_at(&self, place: &Place, within: bool) -> Option<StepErrors> {
         let errors = self.plan.errors(place, self.friction, within)?;
-        Some(errors.plus(self.scope.of_width))
+        Some(errors.plus(self.scope.contact.whole.width_error(place.depth)))
     }
 
     /// Whether a cell counts.

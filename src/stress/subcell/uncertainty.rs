@@ -27,9 +27,9 @@
 //! At an edge that is reconstructed, the loads of cells are followed over some cells only ([`super::near`]). What is left
 //! out falls off as the inverse cube of the distance from the edge, which is added.
 //!
-//! The edge is known to a part of a cell, and with it the width of the contact. The pressure everywhere, and the stress at
-//! depths of up to a half-width, has the error c/n² of the largest pressure in a contact n cells wide; farther below, the error
-//! falls as the square of the depth, at least as fast as the stress.
+//! The edge is known to a part of a cell, and with it the width of the contact. Extremes at depths of up to a half-width have
+//! the error c/n² of the largest pressure in a contact n cells wide; farther below, it falls as the square of the depth, at
+//! least as fast as the stress.
 
 use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place};
@@ -66,8 +66,10 @@ const TRACTION_SHARE: f64 = 0.5;
 /// side are left out, it is at most 3.2e-4 of the step, less than half of what this bounds. Computed here.
 const LEFT_OUT: f64 = 0.05;
 
-/// Error of the stress over the largest pressure, times the square of the cells across a contact.
-const WIDTH_ERROR: f64 = 0.25;
+/// Error of extremes over the largest pressure, times the square of the cells across a contact. Chosen by trial: of 489
+/// extremes of 76 random contacts of 16 to 64 cells across, bare and coated, points and lines, whose other errors are below
+/// half a per cent, 99 % are within it and these.
+const WIDTH_ERROR: f64 = 0.3;
 
 /// Wavenumber of the longest waves of a step, times the side of a cell.
 const LONGEST: f64 = 1.5;
@@ -90,7 +92,7 @@ pub(super) struct Uncertainty {
     /// Distance to which the loads of cells at an edge are followed.
     followed: f64,
     /// Error of the stress down to the depth of half the width of the contact, due to that width.
-    pub(super) of_width: f64,
+    of_width: f64,
     half_width: f64,
     known: Vec<Known>,
     /// Waves along x and along y.
@@ -231,6 +233,12 @@ impl Uncertainty {
         around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
     }
 
+    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, depth: f64) -> f64 {
+        let beyond = (self.half_width / depth.max(self.half_width)).powi(2);
+        if self.of_width > 0.0 { self.of_width * beyond } else { 0.0 }
+    }
+
     /// How well the pressure is known in the worse of two cells.
     fn worse(&self, a: usize, b: usize) -> usize {
         self.known[a].max(self.known[b]) as usize
@@ -296,10 +304,7 @@ impl Uncertainty {
     ) -> StepErrors {
         let friction = friction[0].hypot(friction[1]);
         let material = place.material;
-        // Farther below, stresses of the same force differ less.
-        let beyond = (self.half_width / place.depth.max(self.half_width)).powi(2);
-        let everywhere = if self.of_width > 0.0 { self.of_width * beyond } else { 0.0 };
-        let mut errors = StepErrors { everywhere, ..StepErrors::default() };
+        let mut errors = StepErrors::default();
         for axis in 0..2 {
             for wave in &self.waves[axis] {
                 let fields = wave.column.at(body, place);

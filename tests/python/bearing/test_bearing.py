@@ -273,6 +273,16 @@ def test_raceways_stand_for_pitch_and_clearance() -> None:
     assert bearing.raceways == (27.5e-3, 37.5205e-3)
 
 
+@pytest.mark.parametrize("count", [19, 20, 24, 25])
+def test_elements_that_touch_fill_the_circle(count: int) -> None:
+    # By rounding, 20 and 24 are less than a diameter apart, and 25 are one more than have room.
+    diameter = ROLLERS["diameter"]
+    full = ROLLERS | {"pitch_diameter": diameter / math.sin(math.pi / count), "count": count}
+    assert CylindricalRoller(**full).count == count
+    with pytest.raises(ValueError, match=f"count must be at most {count}:"):
+        CylindricalRoller(**full | {"count": count + 1})
+
+
 WRONG: list[tuple[type[Any], dict[str, Any], str]] = [
     (CylindricalRoller, {"count": 21}, "count must be at most 20"),
     (CylindricalRoller, {"count": 1}, "count must be at least 2, got 1"),

@@ -60,8 +60,8 @@ class Case(NamedTuple):
 def random_case(seed: int) -> Case:
     """Return a contact of 16 to 64 cells across, or to 24 where only a few are tried.
 
-    A cylinder or a paraboloid presses on up to two layers of 0.1 to 2 half-widths with 1/4 to 4 times
-    the modulus of the substrate, without friction or with a coefficient of up to 0.5.
+    A cylinder or a paraboloid presses on up to two layers of 0.1 to 2 half-widths with 1/4 to 4
+    times the modulus of the substrate, without friction or with a coefficient of up to 0.5.
     """
     numbers = np.random.default_rng(seed)
 
