@@ -144,11 +144,22 @@ pub(super) fn items<'py, T: FromPyObjectOwned<'py>>(
 /// with another meaning is refused: masked arrays, numbers with a unit, other labels beside x or y.
 #[pyfunction]
 pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    nested(name, value, 0)
+}
+
+/// Most dimensions of an array of NumPy, which refuses lists in more lists.
+const MOST_AXES: usize = 64;
+
+/// [`plain`] of what stands in lists of this `depth`.
+fn nested<'py>(name: &str, value: Bound<'py, PyAny>, depth: usize) -> PyResult<Bound<'py, PyAny>> {
     if value.is_exact_instance_of::<PyFloat>() || value.cast_exact::<PyUntypedArray>().is_ok() {
         return Ok(value);
     }
     if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
-        let items = value.try_iter()?.map(|item| plain(name, item?));
+        if depth == MOST_AXES {
+            return Ok(value);
+        }
+        let items = value.try_iter()?.map(|item| nested(name, item?, depth + 1));
         let items = items.collect::<PyResult<Vec<_>>>()?;
         return Ok(PyList::new(value.py(), items)?.into_any());
     }

@@ -191,7 +191,9 @@ fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<
         return Ok(Vec::new());
     };
     // A Series names the layers by its index.
-    if let Some(to_dict) = given.getattr_opt("to_dict")? {
+    if given.hasattr("index")?
+        && let Some(to_dict) = given.getattr_opt("to_dict")?
+    {
         given = to_dict.call0()?;
     }
     let layers = body.layers().len();

@@ -100,7 +100,8 @@ class Rolling:
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = threads
         rolls = normal.report.rolling_direction or (0.0, 1.0)
-        self.direction = rolls if direction is None else direction
+        x_part, y_part = rolls if direction is None else core.vector("direction", 2, direction)
+        self.direction = core.real("direction", x_part), core.real("direction", y_part)
         self.pressure = np.asarray(normal.pressure)
         self.peak_pressure = normal.peak_pressure
         self.tractions = None if tractions is None else np.asarray(tractions)

@@ -269,7 +269,10 @@ def chosen_tables(
     Of several, those without a depth or a force are left out where none is asked for by number.
     """
     if segment is not None and segment != "all":
-        segment = core.integer("segment", segment)
+        try:
+            segment = core.integer("segment", segment)
+        except TypeError:
+            raise TypeError(f"segment must be a number or 'all', got {segment!r}") from None
     if len(found) == 1 and segment in (None, "all"):
         parts = _parts(found[0]) if segment else []
         return dict(enumerate(parts or found))

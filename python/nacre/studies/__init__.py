@@ -204,7 +204,10 @@ def sweep(
     if unknown := set(assessed) - RATED:
         raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
     if not isinstance(version, str | None):
-        version = core.integer("version", version)
+        try:
+            version = core.integer("version", version)
+        except TypeError:
+            raise TypeError(f"version must be a text or an integer, got {version!r}") from None
     identity = identified(wanted, asked, assessed, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:

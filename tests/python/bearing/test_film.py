@@ -265,7 +265,7 @@ def test_wrong_numbers_are_named(name: str) -> None:
         with pytest.raises(ValueError, match=f"^{name} must be finite and above 0, got"):
             film_thickness(BALL, **OIL | {name: wrong})
     given: dict[str, Any] = OIL | {name: "x"}
-    with pytest.raises(TypeError, match=f"^{name} must be a number, got 'x'"):
+    with pytest.raises(TypeError, match=f"^{name} must be a real number, got 'x'"):
         film_thickness(BALL, **given)
 
 

@@ -324,10 +324,9 @@ def test_a_keyword_of_the_wrong_type_and_a_missing_file_are_named(tmp_path: Path
     for wrong in (True, "extend"):
         with pytest.raises(TypeError, match=f"segment must be a number or 'all', got {wrong!r}"):
             read(path, segment=wrong)  # type: ignore[arg-type]
-    with pytest.raises(
-        TypeError, match=r"depth must be the name or the number of a column, got 1.0"
-    ):
-        read(path, depth=1.0)  # type: ignore[call-overload]
+    for wrong in (True, 0.5):
+        with pytest.raises(TypeError, match=f"depth must be a name or a number, got {wrong!r}"):
+            read(path, depth=wrong)  # type: ignore[call-overload]
     with pytest.raises(FileNotFoundError, match=r"none\.csv"):
         read(tmp_path / "none.csv")
 
@@ -416,7 +415,7 @@ def test_a_curve_is_checked(
 
 def test_a_curve_is_made_of_real_numbers_and_a_text() -> None:
     for wrong in (["1", "2", "3"], [1j, 2, 3], [True, False, True], [None, 1, 2]):
-        with pytest.raises(TypeError, match="depth must be real numbers, got "):
+        with pytest.raises(TypeError, match="depth must be a real array, got dtype "):
             Curve(wrong, [1, 2, 3])  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="name must be a text, got 3"):
         Curve([1, 2, 3], [1, 2, 3], name=3)  # type: ignore[arg-type]
