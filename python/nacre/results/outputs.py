@@ -88,6 +88,9 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
 
 ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
+ROLLING = {name: name for name in ("force", "torque", "creepage", "stick_share")}
+ROLLING |= {"dissipated": "power"}
+"""Those of steady rolling, and the names of their errors; those of a pair are of its length."""
 ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
@@ -158,7 +161,9 @@ def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str
     return {
         name + ERROR: output
         for name, output in outputs.items()
-        if isinstance(output, str) and output in ESTIMATED and name + ERROR not in taken
+        if isinstance(output, str)
+        and output in (*ESTIMATED, *ROLLING)
+        and name + ERROR not in taken
     }
 
 
@@ -197,8 +202,9 @@ def evaluated(
         found[name] = np.asarray(value, dtype=np.float64).tolist()
     normal: Any = getattr(solution, "normal", solution)
     estimates = normal.report.discretisation or {}
+    rolling = (normal is not solution and solution.report.discretisation) or {}
     for name, quantity in errors(outputs, outputs).items():
-        estimate = estimates.get(quantity)
+        estimate = estimates.get(quantity, rolling.get(ROLLING.get(quantity, "")))
         found[name] = np.nan if estimate is None else float(estimate)
     return found
 

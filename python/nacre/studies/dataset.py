@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import symbol, system
 from nacre.results import quantities
-from nacre.results.outputs import AXES, ERROR, RING_AXES, Output, errors
+from nacre.results.outputs import AXES, ERROR, RING_AXES, ROLLING, Output, errors
 from nacre.studies.journal import Record
 
 if TYPE_CHECKING:
@@ -100,10 +100,14 @@ def assembled(
     for name, quantity in (
         {} if kinds["indents"] or kinds["bears"] else errors(outputs, taken)
     ).items():
+        if quantity in ROLLING and not kinds["rolls"]:
+            continue
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
-        dataset[name].attrs = {"units": symbol(units[quantity]), "long_name": words}
+        dataset[name].attrs = {"long_name": words}
+        if quantity in units:
+            dataset[name].attrs["units"] = symbol(units[quantity])
     for name, texts in {
         "error": [r.get("error", "") for r in records],
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
