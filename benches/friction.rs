@@ -55,16 +55,31 @@ impl Pair {
     }
 
     fn roll(&self, friction: f64, creepage: f64) -> FrictionSolution {
-        let rolling = Rolling {
+        self.rolled(&Rolling {
             creepage: [Some(creepage * self.bears()), None],
             ..Rolling::new(Motion::load(self.load), friction, RollingDirection::PlusX)
-        };
-        let solution = self.contact.roll(&self.ball, &rolling, &options());
+        })
+    }
+
+    /// Lateral creepage against spin, with the pole of the motion in the contact.
+    fn spin(&self) -> FrictionSolution {
+        self.rolled(&Rolling {
+            creepage: [None, Some(-CREEPAGE * self.bears())],
+            spin: SPIN * self.bears(),
+            ..Rolling::new(Motion::load(self.load), FRICTION, RollingDirection::PlusX)
+        })
+    }
+
+    fn rolled(&self, rolling: &Rolling) -> FrictionSolution {
+        let solution = self.contact.roll(&self.ball, rolling, &options());
         let solution = solution.expect("valid");
         assert!(solution.report.converged());
         solution
     }
 }
+
+/// Spin over the largest force, with which its motion at the edge is some times the creepage.
+const SPIN: f64 = 0.34;
 
 /// Creepage over the largest force with which some half of the contact slips.
 const CREEPAGE: f64 = 0.17;
@@ -87,6 +102,7 @@ fn friction(c: &mut Criterion) {
                 ("reversal", pair.slide(0.375, Some(&before))),
                 ("rolling", pair.roll(FRICTION, CREEPAGE)),
                 ("adhesion", pair.roll(1e3, CREEPAGE)),
+                ("spin", pair.spin()),
             ];
             for (problem, solution) in counts {
                 println!("{problem}/{name}/{cells}: {} convolutions", solution.report.convolutions);
@@ -100,6 +116,7 @@ fn friction(c: &mut Criterion) {
                 b.iter(|| pair.slide(0.625, Some(&before)));
             });
             group.bench_function(id("rolling"), |b| b.iter(|| pair.roll(FRICTION, CREEPAGE)));
+            group.bench_function(id("spin"), |b| b.iter(|| pair.spin()));
             group.bench_function(id("adhesion"), |b| b.iter(|| pair.roll(1e3, CREEPAGE)));
         }
         let body = Pair::new(coated, 16).expect("valid").body;

@@ -23,7 +23,7 @@ pub use plan::Contact;
 pub use problem::bounds::Hardness;
 pub(crate) use problem::patch::{block, bounds};
 pub(crate) use solution::tangent::Tangent;
-pub use solution::warnings::Warning;
+pub use solution::warnings::{Unestimated, Warning};
 pub use solution::{Balance, Progress, Report, Solution};
 pub use solver::{Solver, Termination};
 

@@ -7,7 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::contact::Warning;
+use crate::contact::{Unestimated, Warning};
 use crate::error::{Error, Result};
 use crate::model::body::{HalfSpace, Interface, Layer, Spring, Substrate};
 use crate::model::grid::Grid;
@@ -294,6 +294,10 @@ struct WarningData {
     figure: f64,
 }
 
+/// Reasons why rolling has no estimate, by their numbers in a file.
+const REASONS: [Unestimated; 3] =
+    [Unestimated::Coarse, Unestimated::Unsolved, Unestimated::Coefficients];
+
 impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let (axis, figure) = match *self {
@@ -307,6 +311,7 @@ impl Serialize for Warning {
             Self::OutsideGrid { depth } => (0, depth),
             Self::PeakError { error } | Self::Stations { error } => (0, error),
             Self::LargeMotion { size } => (0, size),
+            Self::Unestimated { reason } => (reason as usize, 0.0),
         };
         WarningData { kind: self.kind().into(), axis, figure }.serialize(serializer)
     }
@@ -332,9 +337,14 @@ impl<'de> Deserialize<'de> for Warning {
             Self::EndlessCrown { at: figure },
             Self::LargeMotion { size: figure },
         ];
+        let unestimated = || {
+            let reason = *REASONS.get(axis)?;
+            Some(Self::Unestimated { reason }).filter(|warning| warning.kind() == kind)
+        };
         let found = all.iter().find(|warning| warning.kind() == kind);
         found
             .copied()
+            .or_else(unestimated)
             .ok_or_else(|| D::Error::custom(format!("no warning is of the kind {kind:?}")))
     }
 }

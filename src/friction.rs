@@ -14,14 +14,18 @@
 //! s/V = W − [u(x) − u(x + d)]/d          W = ξ e + η z × e + φ (−y, x)
 //! ```
 //!
+//! of which `second_order` says where it holds in a cell.
+//!
 //! Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), doi:10.1007/978-94-015-7889-9. Bodies are
 //! half-spaces with any layers ([`crate::compliance::traction`]).
 //!
 //! | file | what |
 //! |---|---|
 //! | `step` | what is asked for |
+//! | `second_order` | rolling to second order in the length of a cell |
 //! | `newton` | tractions for a pressure: Coulomb's law in cells, the operators of sliding and of rolling, Newton's linear systems |
 //! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
+//! | `halved` | from a solution on cells of twice the length: a start, and the discretisation error |
 //! | `session` | pressure and tractions in turn |
 //! | `solution` | what comes out |
 //! | `creep` | Kalker's coefficients |
@@ -33,7 +37,9 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
+mod halved;
 mod newton;
+mod second_order;
 mod session;
 mod solution;
 mod step;
@@ -41,7 +47,7 @@ mod task;
 
 pub use creep::{CreepCoefficients, CreepWatch, creep_coefficients};
 pub use session::{FrictionProgress, Last};
-pub use solution::{FrictionReport, FrictionSolution, TangentialMotion};
+pub use solution::{FrictionDiscretisation, FrictionReport, FrictionSolution, TangentialMotion};
 pub use step::{Friction, FrictionOptions, Move, Rolling, RollingDirection, Step};
 
 use session::Session;

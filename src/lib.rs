@@ -76,7 +76,7 @@ pub use body::{BodyParameter, HalfSpace, Interface, Layer, Spring, Substrate};
 pub use compliance::graded::graded_layers;
 pub use contact::{
     Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,
-    Solver, Termination, Warning, solve,
+    Solver, Termination, Unestimated, Warning, solve,
 };
 pub use convolution::Convolution;
 pub use error::{Error, Result};

@@ -12,4 +12,5 @@ mod friction {
     mod lines;
     mod random;
     mod rolling;
+    mod second_order;
 }

@@ -166,7 +166,9 @@ def creep_curve(
     xarray.Dataset
         Force along and across rolling, torque, share of the contact that sticks, and power over
         the speed of rolling, over ``creepage``; the force along the creepage over friction
-        times load as ``traction_ratio``, NaN where there is neither.
+        times load as ``traction_ratio``, NaN where there is neither. Errors due to the size of the
+        cells are ``force_discretisation``, of the length of the force, ``torque_discretisation``
+        and ``power_discretisation``, NaN where there is no estimate.
 
     Raises
     ------
@@ -228,6 +230,10 @@ def creep_curve(
         "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
         "power_over_speed": ([s.dissipated for s in solutions], symbol(energy(line, rolls=True))),
     }
+    units = {"force": unit, "torque": columns["torque"][1], "power": columns["power_over_speed"][1]}
+    for name, size in units.items():
+        errors = [(s.report.discretisation or {}).get(name, np.nan) for s in solutions]
+        columns[name + "_discretisation"] = (errors, size)
     dataset = xarray.Dataset(
         {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},
         coords={"creepage": values},

@@ -178,17 +178,7 @@ pub(super) fn coarser(fine: &Grid) -> Result<Option<Grid>> {
     if halved == [false; 2] {
         return Ok(None);
     }
-    let (shape, spacing, center) = (fine.shape(), fine.spacing(), fine.center());
-    let cells = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) } else { shape[k] });
-    let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
-    let sides = [0, 1].map(|k| longer[k] * spacing[k] * cells[k] as f64);
-    let grown = [0, 1].map(|k| 0.5 * (sides[k] - fine.size()[k]));
-    let grid = if fine.is_line() {
-        Grid::line(cells[1], sides[1])?
-    } else {
-        Grid::new(cells, sides)?.periodic(fine.is_periodic())?
-    };
-    grid.centered_at([0, 1].map(|k| center[k] + grown[k])).map(Some)
+    fine.coarser(halved).map(Some)
 }
 
 /// A grid with its own influence coefficients.

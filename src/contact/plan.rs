@@ -57,6 +57,8 @@ pub struct Contact {
     pub(super) ends: Ends,
     /// Operators of tractions, made when friction first needs them.
     pub(super) tangential: OnceLock<Arc<Tangential>>,
+    /// The same bodies on cells of twice the length, planned when rolling first needs them.
+    pub(super) halved: OnceLock<Arc<Self>>,
 }
 
 impl Contact {
@@ -95,7 +97,17 @@ impl Contact {
             finer = coarse;
         }
         let unresolved = Unresolved::new(&both, &grid);
-        Ok(Self { body, grid, setup, levels, datum, unresolved, ends, tangential: OnceLock::new() })
+        Ok(Self {
+            body,
+            grid,
+            setup,
+            levels,
+            datum,
+            unresolved,
+            ends,
+            tangential: OnceLock::new(),
+            halved: OnceLock::new(),
+        })
     }
 
     /// The body that shapes are pressed into.
@@ -139,6 +151,21 @@ impl Contact {
         Ok(Arc::clone(self.tangential.get_or_init(|| Arc::new(new))))
     }
 
+    /// The same bodies on cells of twice the length, planned when they are first needed.
+    ///
+    /// # Errors
+    /// As [`Contact::plan`].
+    pub(crate) fn halved(&self) -> Result<Arc<Self>> {
+        if let Some(known) = self.halved.get() {
+            return Ok(Arc::clone(known));
+        }
+        let grid = self.grid.coarser([!self.grid.is_line(), true])?;
+        let threads = Some(self.convolution().threads());
+        let setup = Setup { threads, coefficients: None, ..self.setup.clone() };
+        let new = Self::plan(self.body.clone(), grid, setup)?;
+        Ok(Arc::clone(self.halved.get_or_init(|| Arc::new(new))))
+    }
+
     /// This plan on other threads; all large arrays are shared.
     pub(super) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
         let mut levels: Vec<Level> = Vec::new();
@@ -158,6 +185,7 @@ impl Contact {
             datum: self.datum,
             ends: self.ends.clone(),
             tangential: self.tangential.clone(),
+            halved: OnceLock::new(),
         }
     }
 

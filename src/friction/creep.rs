@@ -210,7 +210,12 @@ impl EllipticContact {
             (given[at], given[cells + at]) = (along * d, across * d);
         }
         let problem = TractionProblem {
-            operator: Operator { window: &window, rolling: Some(RollingDirection::PlusX) },
+            operator: Operator {
+                window: &window,
+                rolling: Some(RollingDirection::PlusX),
+                second_order: None,
+                blends: false,
+            },
             law: &self.law,
             given,
             columns: Vec::new(),

@@ -9,15 +9,19 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use ndarray::Array2;
+use ndarray::{Array2, Zip};
 
+use super::halved::{LEAST, coarse_friction, discretisation, refined};
 use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
-use crate::contact::{Contact, Motion, Options, Report, Solution, Termination, Warning};
-use crate::error::{Error, Result, fraction};
+use crate::contact::{
+    Contact, Motion, Options, Report, Solution, Termination, Unestimated, Warning,
+};
+use crate::error::{Error, Result, fraction, require};
+use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 use crate::numerics::parallel::dot;
 
@@ -32,6 +36,9 @@ const LOOSE: f64 = 0.01;
 
 /// Tolerance of a start.
 const START: f64 = 1e-3;
+
+/// Tolerance on cells of twice the length, over that of the cells: their discretisation differs by far more.
+const LOOSER: f64 = 10.0;
 
 /// The operator of the whole grid rounds otherwise than that of the window.
 const ROUNDING: f64 = 1e-13;
@@ -55,6 +62,9 @@ struct FrictionCourse<'a, 'b> {
 
 impl FrictionCourse<'_, '_> {
     fn tell(&mut self) -> ControlFlow<()> {
+        if self.stopped {
+            return ControlFlow::Break(());
+        }
         self.report.seconds = self.begun.elapsed().as_secs_f64();
         let answer = (self.progress)(&self.report);
         self.stopped |= answer.is_break();
@@ -69,7 +79,12 @@ pub(super) struct Session<'a> {
     tangential: Arc<Tangential>,
     options: FrictionOptions,
     coupled: bool,
+    /// Whether solutions are compared with those of alternatives of the shape.
+    compares: bool,
 }
+
+/// The solution on cells of twice the length, or why there is none.
+type Halved = std::result::Result<FrictionSolution, Unestimated>;
 
 impl<'a> Session<'a> {
     pub(super) fn new(
@@ -78,6 +93,8 @@ impl<'a> Session<'a> {
         options: FrictionOptions,
     ) -> Result<Self> {
         fraction("tolerance", options.tolerance)?;
+        let order = options.order;
+        require("order", order as f64, (1..=2).contains(&order), "1 or 2")?;
         let tangential = contact.tangential()?;
         Ok(Self {
             contact,
@@ -85,6 +102,7 @@ impl<'a> Session<'a> {
             coupled: options.coupling && tangential.is_coupled(),
             tangential,
             options,
+            compares: true,
         })
     }
 
@@ -142,6 +160,7 @@ impl<'a> Session<'a> {
         let task = TractionTask {
             rolling: None,
             is_steady: false,
+            is_second_order: false,
             increments: [0, 1, 2].map(|k| match freedoms[k] {
                 Freedom::Kept => Freedom::Prescribed(0.0),
                 Freedom::Prescribed(value) => Freedom::Prescribed(value - starts[k]),
@@ -170,6 +189,7 @@ impl<'a> Session<'a> {
         Ok(TractionTask {
             rolling: Some(rolling),
             is_steady,
+            is_second_order: self.options.order == 2,
             increments: [along, across, Freedom::Prescribed(rolling.spin)].map(over_a_cell),
             before: before_of(last, self.contact)?,
         })
@@ -190,13 +210,17 @@ impl<'a> Session<'a> {
             begun: Instant::now(),
             report: FrictionReport {
                 coupled: self.coupled,
+                order: if task.is_steady { self.options.order } else { 0 },
                 tolerance,
                 ..FrictionReport::default()
             },
             stopped: false,
             progress,
         };
+        let half = self.halved(task, &mut course);
+        let keeps_shares = task.slides() || task.is_second_order;
         let mut traction = task.before.traction.clone();
+        let mut last_bound: Option<Array2<f64>> = None;
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let mut mixing = Mixing::default();
         let (mut normal, solved) = loop {
@@ -217,16 +241,34 @@ impl<'a> Session<'a> {
                 None => normal.pressure.clone(),
             };
             let bound = bounds(&acting, friction)?;
+            if let Some(last) = last_bound.filter(|_| keeps_shares) {
+                for q in &mut traction {
+                    let share = |q: f64, bound: f64, last: f64| {
+                        if last > 0.0 { q * (bound / last) } else { q }
+                    };
+                    Zip::from(q).and(&bound).and(&last).for_each(|q, b, l| *q = share(*q, *b, *l));
+                }
+            }
             task.check(grid, &bound, tolerance)?;
             task.check_memory(grid, &bound)?;
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
             let [x, y, _] = task.increments.map(Freedom::force);
-            let starts = match is_first && x.hypot(y) > 0.0 && task.slides() {
-                true => self.starts(motion, &normal, [x, y], friction, &traction)?,
-                false => vec![traction.clone()],
+            let starts = match &half {
+                Some(Ok(half)) if is_first => vec![refined(half, grid, &bound)],
+                _ if is_first && x.hypot(y) > 0.0 && task.slides() => {
+                    self.starts(motion, &normal, [x, y], friction, &traction)?
+                }
+                _ => vec![traction.clone()],
             };
-            let pressed = PressedCells { grid, bound: &bound, spreading: &self.spreading(&acting) };
+            let gap = normal.gap();
+            let pressed = PressedCells {
+                grid,
+                bound: &bound,
+                spreading: &self.spreading(&acting),
+                pressure: &normal.pressure,
+                gap: &gap,
+            };
             let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
@@ -238,12 +280,13 @@ impl<'a> Session<'a> {
                 break (normal, solved);
             }
             pressure = Some(acting);
+            last_bound = Some(bound);
         };
-        if known.is_none() && !course.stopped {
+        if self.compares && known.is_none() && !course.stopped {
             let (shape, mut watch) = (self.lifted(&traction), |_: &Report| course.tell());
             self.contact.compare(&mut normal, &shape, motion, &self.pressing(), &mut watch);
         }
-        self.finish(task, friction, normal, solved, course)
+        self.finish(task, friction, (normal, solved), half, course)
     }
 
     /// Tractions for a pressure, with what is left of the convolutions.
@@ -275,8 +318,8 @@ impl<'a> Session<'a> {
         &self,
         task: &TractionTask,
         friction: &Friction,
-        mut normal: Solution,
-        solved: Option<SolvedTask>,
+        (mut normal, solved): (Solution, Option<SolvedTask>),
+        half: Option<Halved>,
         course: FrictionCourse,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
@@ -284,6 +327,8 @@ impl<'a> Session<'a> {
             grid,
             bound: &bounds(&normal.pressure, friction)?,
             spreading: &self.spreading(&normal.pressure),
+            pressure: &normal.pressure,
+            gap: &normal.gap(),
         };
         let mut fields = task.fields(&self.tangential, pressed, solved.as_ref());
         if !fields.are_finite() {
@@ -317,7 +362,7 @@ impl<'a> Session<'a> {
         let warnings = &mut normal.report.warnings;
         warnings.retain(|warning| !matches!(warning, Warning::LargeMotion { .. }));
         warnings.extend(warning);
-        Ok(FrictionSolution {
+        let mut solution = FrictionSolution {
             normal,
             friction: friction.clone(),
             traction: fields.traction,
@@ -325,7 +370,46 @@ impl<'a> Session<'a> {
             slip: fields.slip,
             motion: fields.motion,
             report,
-        })
+        };
+        if let Some(half) = half.filter(|_| solution.report.converged()) {
+            let [along, across, _] = task.increments;
+            let loaded = [along, across].map(|freedom| matches!(freedom, Freedom::Loaded(_)));
+            match half.and_then(|half| discretisation(&solution, &half, loaded)) {
+                Ok(errors) => solution.report.discretisation = Some(errors),
+                Err(reason) => {
+                    solution.normal.report.warnings.push(Warning::Unestimated { reason });
+                }
+            }
+        }
+        Ok(solution)
+    }
+
+    /// Steady rolling to second order on cells of twice the length, which starts from cells of four times the length, and so
+    /// on; `None` for other problems.
+    fn halved(&self, task: &TractionTask, course: &mut FrictionCourse) -> Option<Halved> {
+        let rolling = task.rolling.filter(|_| task.is_steady && task.is_second_order)?;
+        let grid = self.contact.grid();
+        let [rows, columns] = grid.shape();
+        if columns < 2 * LEAST || !grid.is_line() && rows < 2 * LEAST {
+            return Some(Err(Unestimated::Coarse));
+        }
+        if self.contact.setup().coefficients.is_some() {
+            return Some(Err(Unestimated::Coefficients));
+        }
+        let mut solve = || -> Result<FrictionSolution> {
+            let contact = self.contact.halved()?;
+            let tolerance =
+                (LOOSER * self.options.tolerance).min(START.max(self.options.tolerance));
+            let options = FrictionOptions { tolerance, ..self.options };
+            let session =
+                Session { compares: false, ..Session::new(&contact, self.shape, options)? };
+            let friction = coarse_friction(&rolling.friction, grid, contact.grid());
+            let rolling = Rolling { friction, ..rolling.clone() };
+            let task = session.roll(&rolling, true, None)?;
+            let mut progress = |_: &FrictionReport| course.tell();
+            session.settle(&task, &rolling.motion, &rolling.friction, [None; 2], &mut progress)
+        };
+        Some(solve().map_err(|_| Unestimated::Unsolved))
     }
 
     /// The pressure that displaces the surfaces along each other: all of it, or none without coupling.

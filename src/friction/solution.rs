@@ -1,6 +1,6 @@
 //! The solution of a contact with friction.
 
-use ndarray::Array2;
+use ndarray::{Array2, Axis};
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
@@ -34,6 +34,26 @@ pub enum TangentialMotion {
     },
 }
 
+/// Estimated discretisation errors of rolling: differences from the limit of ever finer cells.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct FrictionDiscretisation {
+    /// Error of the force \[N\]: the length of the difference; 0 where both forces are given.
+    pub force: f64,
+    /// Error of the torque \[N m\].
+    pub torque: f64,
+    /// Error of the energy dissipated over the distance rolled \[N\].
+    pub power: f64,
+    /// Error of the creepage: the length of the difference; 0 where both creepages are given.
+    pub creepage: f64,
+    /// Error of the share of the contact that sticks.
+    pub stick_share: f64,
+}
+
 /// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
 /// grid.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -65,6 +85,13 @@ pub struct FrictionReport {
     pub coupled: bool,
     /// Whether all cells in contact slip.
     pub full_slip: bool,
+    /// Estimated discretisation errors of steady rolling to second order. `None` in sliding and in rolling cell by cell,
+    /// and where a warning says why.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub discretisation: Option<FrictionDiscretisation>,
+    /// Order of steady rolling in the length of a cell; 0 in sliding and in rolling cell by cell.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub order: usize,
     /// The tolerance.
     pub tolerance: f64,
     /// Seconds that the step took, without planning.
@@ -205,8 +232,8 @@ impl FrictionSolution {
     /// Torque Σ (x q_y − y q_x) dA of the tractions on the body, about the origin \[N m\].
     pub fn torque(&self) -> f64 {
         let (x, y, [qx, qy]) = (self.grid().x(), self.grid().y(), &self.traction);
-        let along = qy.sum_axis(ndarray::Axis(1)).dot(&x);
-        let across = qx.sum_axis(ndarray::Axis(0)).dot(&y);
+        let along = qy.sum_axis(Axis(1)).dot(&x);
+        let across = qx.sum_axis(Axis(0)).dot(&y);
         (along - across) * self.grid().cell_area()
     }
 
@@ -231,6 +258,12 @@ impl FrictionSolution {
         Array2::from_shape_fn(bound.dim(), |cell| sticks((cell, &self.normal.pressure[cell])))
     }
 
+    /// Share of the cells in contact that stick; 0 where nothing touches.
+    pub fn stick_share(&self) -> f64 {
+        let count = |cells: &Array2<bool>| cells.iter().filter(|cell| **cell).count();
+        count(&self.stick()) as f64 / count(&self.normal.in_contact()).max(1) as f64
+    }
+
     /// Energy that friction dissipates in the step, by area: q · s \[J/m²\]; in rolling, over the distance rolled
     /// \[J/m³\].
     pub fn dissipation(&self) -> Array2<f64> {
@@ -240,8 +273,49 @@ impl FrictionSolution {
 
     /// Energy that friction dissipates in the step \[J\]; in rolling, over the distance rolled \[N\]: times the speed it is
     /// the power.
+    ///
+    /// In steady rolling to second order it is the work of the creepages, less that of what the pressure spreads,
+    ///
+    /// ```text
+    /// Σ q · { W(x) − [u(x − d e) − u(x + d e)]/2d } dA
+    /// ```
+    ///
+    /// to which the tractions' own displacements add nothing: their difference is antisymmetric in q. With full adhesion it
+    /// is the energy that is set free at the trailing edge, of which the slips of cells know nothing. Derived here. The sum
+    /// of [`FrictionSolution::dissipation`] lacks the slip of the cells in which the stick zone ends: some per cent on 40
+    /// cells across the contact, a quarter of it on 80.
     pub fn dissipated(&self) -> f64 {
-        self.dissipation().sum() * self.grid().cell_area()
+        match self.motion {
+            TangentialMotion::Roll { creepage, spin, direction } if self.report.order == 2 => {
+                let [x, y] = self.force();
+                let [ex, ey] = direction.vector();
+                let [along, across] = [x * ex + y * ey, y * ex - x * ey];
+                let turns = if spin != 0.0 { spin * self.torque() } else { 0.0 };
+                let work = along * creepage[0] + across * creepage[1] + turns;
+                work - self.spreading_work(direction)
+            }
+            _ => self.dissipation().sum() * self.grid().cell_area(),
+        }
+    }
+
+    /// Σ q · [u(x − d e) − u(x + d e)]/2d dA, 0 where pressure does not move the surfaces along each other. At the edge of
+    /// the grid the difference is that to the one cell beside.
+    fn spreading_work(&self, direction: RollingDirection) -> f64 {
+        if !self.report.coupled {
+            return 0.0;
+        }
+        let axis = direction.axis();
+        let along = if direction.is_forward() { 1.0 } else { -1.0 };
+        let mut sum = 0.0;
+        for (q, u) in self.traction.iter().zip(&self.displacement) {
+            for (q, u) in q.lanes(Axis(axis)).into_iter().zip(u.lanes(Axis(axis))) {
+                for (k, q) in q.indexed_iter().filter(|(_, q)| **q != 0.0) {
+                    let (low, high) = (k.saturating_sub(1), (k + 1).min(u.len() - 1));
+                    sum += q * along * (u[low] - u[high]) / (high - low) as f64;
+                }
+            }
+        }
+        sum * self.grid().cell_area() / self.grid().spacing()[axis]
     }
 
     /// What tractions add to the elastic energy of the bodies \[J\]: with the normal displacement v that they make,

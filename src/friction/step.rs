@@ -268,10 +268,13 @@ pub struct FrictionOptions {
     pub max_convolutions: usize,
     /// Whether tractions act on the pressure and pressure on the slip where the bodies differ. Default: true.
     pub coupling: bool,
+    /// Order of rolling in the length of a cell: 2, or 1 as in Kalker's program CONTACT, without an estimate of the error.
+    /// Sliding does not depend on it. Default: 2.
+    pub order: usize,
 }
 
 impl Default for FrictionOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-8, max_convolutions: 4000, coupling: true }
+        Self { tolerance: 1e-8, max_convolutions: 4000, coupling: true, order: 2 }
     }
 }

@@ -2,19 +2,19 @@
 //! cell. Its fields on the whole grid, and how well the laws hold there.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use ndarray::{Array2, Axis};
 
 use super::newton::{
     CellState, ConvolutionWatch, Effort, Law, Operator, TractionProblem, TractionResult,
 };
+use super::second_order::SecondOrder;
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};
 use crate::compliance::traction::{Tangential, TangentialWindow};
 use crate::contact::{self, Warning};
 use crate::error::{Error, Result, require};
-use crate::model::grid::{Grid, Window, full_window};
+use crate::model::grid::{Grid, Window, each_cell, full_window};
 use crate::numerics::dense::eliminate;
 use crate::numerics::parallel::check_memory;
 
@@ -35,6 +35,8 @@ pub(super) struct TractionTask<'a> {
     pub(super) rolling: Option<&'a Rolling>,
     /// Whether rolling is steady, so that no state comes before.
     pub(super) is_steady: bool,
+    /// Whether it rolls to second order in the cells.
+    pub(super) is_second_order: bool,
     /// Degrees of freedom along both axes (of the grid, or along and across rolling) and about z: in sliding less what was
     /// before, in rolling over a cell.
     pub(super) increments: [Freedom; 3],
@@ -76,6 +78,9 @@ pub(super) struct PressedCells<'a> {
     pub(super) bound: &'a Array2<f64>,
     /// The pressure that displaces the surfaces along each other.
     pub(super) spreading: &'a Array2<f64>,
+    /// Pressure and gap, which tell where the contact leads.
+    pub(super) pressure: &'a Array2<f64>,
+    pub(super) gap: &'a Array2<f64>,
 }
 
 impl TractionTask<'_> {
@@ -181,7 +186,7 @@ impl TractionTask<'_> {
 
     /// An error where there is too little memory for tractions within `bound`.
     pub(super) fn check_memory(&self, grid: &Grid, bound: &Array2<f64>) -> Result<()> {
-        let window = self.window(PressedCells { grid, bound, spreading: bound });
+        let window = self.window(bound, bound);
         let pressed = window.map_or(0, |[rows, columns]| rows.len() * columns.len());
         let [nx, ny] = grid.shape();
         let of_iteration = if self.slides() { SLIDING_BYTES } else { ROLLING_BYTES };
@@ -190,8 +195,7 @@ impl TractionTask<'_> {
 
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;
     /// `None` where no cell has friction.
-    fn window(&self, pressed: PressedCells) -> Option<Window> {
-        let PressedCells { bound, spreading, .. } = pressed;
+    fn window(&self, bound: &Array2<f64>, spreading: &Array2<f64>) -> Option<Window> {
         if bound.iter().all(|bound| *bound <= 0.0) {
             return None;
         }
@@ -206,8 +210,7 @@ impl TractionTask<'_> {
         Some([wider(0, rows), wider(1, columns)])
     }
 
-    /// The unit motions of the degrees of freedom at the cell with its centre at (x, y). Rolling compares a cell with that
-    /// ahead; with the spin's arm in the middle between them, the condition would lie half a cell ahead of the traction.
+    /// The unit motions of the degrees of freedom at (x, y).
     fn unit_motions(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
         let [along, across] = match self.direction() {
             None => [[1.0, 0.0], [0.0, 1.0]],
@@ -217,6 +220,37 @@ impl TractionTask<'_> {
             }
         };
         [along, across, [-y, x]]
+    }
+
+    /// Where the motion of the cell with its centre at (x, y) is taken: there, or in rolling to second order half a cell
+    /// ahead. To first order it stays at the centre, as that of the traction.
+    fn arm(&self, grid: &Grid, [x, y]: [f64; 2]) -> [f64; 2] {
+        match self.direction().filter(|_| self.is_second_order) {
+            None => [x, y],
+            Some(direction) => {
+                let half = 0.5 * grid.spacing()[direction.axis()];
+                let [ex, ey] = direction.vector();
+                [x + half * ex, y + half * ey]
+            }
+        }
+    }
+
+    /// Rolling to second order on a window.
+    fn second_order(
+        &self,
+        tangential: &Tangential,
+        operators: &TangentialWindow,
+        pressed: PressedCells,
+        window: &Window,
+    ) -> Option<SecondOrder> {
+        let direction = self.direction().filter(|_| self.is_second_order)?;
+        let own = match self.is_steady {
+            true => operators.ahead[direction.axis()],
+            false => operators.own,
+        };
+        let fields = [pressed.pressure, pressed.gap];
+        let (on, of) = ((pressed.grid, window), (tangential, own));
+        Some(SecondOrder::new(direction, self.prescribed()[2], fields, on, of))
     }
 
     /// Displacements before, at the cell itself or in rolling at that ahead.
@@ -238,10 +272,17 @@ impl TractionTask<'_> {
         effort: Effort,
         watch: &mut ConvolutionWatch,
     ) -> Option<SolvedTask> {
-        let window = self.window(pressed)?;
+        let window = self.window(pressed.bound, pressed.spreading)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
         let law = Law { bound: cut(pressed.bound, &window) };
-        let problem = self.problem(&operators, &law, pressed, &window);
+        let second_order = self.second_order(tangential, &operators, pressed, &window);
+        let operator = Operator {
+            window: &operators,
+            rolling: self.steady(),
+            second_order: second_order.as_ref(),
+            blends: self.slides() || self.is_second_order,
+        };
+        let problem = self.problem(operator, &law, pressed, &window);
         let mut starts: Vec<Vec<f64>> = (starts.iter())
             .map(|start| start.each_ref().map(|q| cut(q, &window)).concat())
             .collect();
@@ -268,12 +309,12 @@ impl TractionTask<'_> {
     /// The problem on a window: what the displacements must be, and the columns and forces of the loaded degrees of freedom.
     fn problem<'p>(
         &self,
-        operators: &'p Arc<TangentialWindow>,
+        operator: Operator<'p>,
         law: &'p Law,
         pressed: PressedCells,
         window: &Window,
     ) -> TractionProblem<'p> {
-        let operator = Operator { window: operators, rolling: self.steady() };
+        let operators = operator.window;
         let mut given = operators.spread(&cut(pressed.spreading, window));
         if let Some(direction) = operator.rolling {
             operator.difference(direction, &mut given);
@@ -282,9 +323,9 @@ impl TractionTask<'_> {
         let (grid, cells) = (pressed.grid, operators.cells());
         let (x, y) = (grid.x(), grid.y());
         let mut units = vec![vec![0.0; 2 * cells]; 3];
-        for (at, (i, j)) in each(window).enumerate() {
+        for (at, (i, j)) in each_cell(window).enumerate() {
             let earlier = self.earlier([i, j]);
-            let motions = self.unit_motions([x[i], y[j]]);
+            let motions = self.unit_motions(self.arm(grid, [x[i], y[j]]));
             for (axis, earlier) in earlier.into_iter().enumerate() {
                 given[axis * cells + at] += earlier;
                 for (unit, motion) in units.iter_mut().zip(motions) {
@@ -344,6 +385,29 @@ impl TractionTask<'_> {
         };
         let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
         let unit = self.direction().map_or(1.0, |d| 1.0 / spacing[d.axis()]);
+        let mut states = vec![CellState::Free; cells];
+        for (cell, state) in solved.into_iter().flat_map(SolvedTask::states) {
+            states[place(0, cell)] = *state;
+        }
+        // −s d
+        let mut residual = vec![0.0; 2 * cells];
+        for (i, j) in each_cell(&full_window(shape)) {
+            let cell = [i, j];
+            if pressed.pressure[cell] <= 0.0 && states[place(0, cell)] == CellState::Free {
+                continue;
+            }
+            let motions = self.unit_motions(self.arm(grid, [x[i], y[j]]));
+            for (axis, earlier) in self.earlier(cell).into_iter().enumerate() {
+                let parts = moved.iter().zip(motions);
+                let rigid: f64 = parts.map(|(by, motion)| by * motion[axis]).sum();
+                residual[place(axis, cell)] = -(rigid + earlier - change(axis, cell));
+            }
+        }
+        let second_order = self.second_order(tangential, &whole, pressed, &full_window(shape));
+        if let Some(second_order) = second_order {
+            second_order.deviate(&q, &mut residual);
+            second_order.centre(&states, &mut residual, 1.0);
+        }
         let mut slip = zeros(shape);
         let (mut violation, mut scale, mut excess, mut most) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let mut full_slip = solved.is_some();
@@ -351,13 +415,7 @@ impl TractionTask<'_> {
             if *state == CellState::Free {
                 continue;
             }
-            let motions = self.unit_motions([x[cell[0]], y[cell[1]]]);
-            let earlier = self.earlier(cell);
-            let s = [0, 1].map(|axis| {
-                let parts = moved.iter().zip(motions);
-                let rigid: f64 = parts.map(|(by, motion)| by * motion[axis]).sum();
-                rigid + earlier[axis] - change(axis, cell)
-            });
+            let s = [0, 1].map(|axis| -residual[place(axis, cell)]);
             scale = scale.max(own[place(0, cell)].hypot(own[place(1, cell)]));
             let bound = pressed.bound[cell];
             excess = excess.max(traction[0][cell].hypot(traction[1][cell]) - bound);
@@ -412,13 +470,13 @@ pub(super) struct SolvedTask {
 impl SolvedTask {
     /// Cells of the window, and what they do.
     fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
-        each(&self.window).map(|(i, j)| [i, j]).zip(&self.found.states)
+        each_cell(&self.window).map(|(i, j)| [i, j]).zip(&self.found.states)
     }
 
     /// Tractions on the whole grid, 0 outside of the window.
     pub(super) fn tractions(&self, shape: [usize; 2]) -> [Array2<f64>; 2] {
         let mut traction = zeros(shape);
-        for (at, (i, j)) in each(&self.window).enumerate() {
+        for (at, (i, j)) in each_cell(&self.window).enumerate() {
             for (axis, q) in traction.iter_mut().enumerate() {
                 q[[i, j]] = self.found.q[axis * self.cells + at];
             }
@@ -521,11 +579,6 @@ fn ahead(direction: RollingDirection, mut cell: [usize; 2], field: &Array2<f64>)
     cell
 }
 
-fn each(window: &Window) -> impl Iterator<Item = (usize, usize)> + use<> {
-    let [rows, columns] = window.clone();
-    rows.flat_map(move |i| columns.clone().map(move |j| (i, j)))
-}
-
 fn cut(field: &Array2<f64>, window: &Window) -> Vec<f64> {
-    each(window).map(|(i, j)| field[[i, j]]).collect()
+    each_cell(window).map(|(i, j)| field[[i, j]]).collect()
 }

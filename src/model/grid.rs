@@ -219,6 +219,23 @@ impl Grid {
         grid.periodic(self.periodic)?.centered_at(self.center)
     }
 
+    /// The grid whose cells are twice as long along the axes that are `halved`; it starts where this one does.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub(crate) fn coarser(&self, halved: [bool; 2]) -> Result<Self> {
+        let (shape, spacing) = (self.shape, self.spacing());
+        let cells = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) } else { shape[k] });
+        let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
+        let sides = [0, 1].map(|k| longer[k] * spacing[k] * cells[k] as f64);
+        let grown = [0, 1].map(|k| 0.5 * (sides[k] - self.size[k]));
+        let grid = match self.is_line() {
+            true => Self::line(cells[1], sides[1])?,
+            false => Self::new(cells, sides)?.periodic(self.periodic)?,
+        };
+        grid.centered_at([0, 1].map(|k| self.center[k] + grown[k]))
+    }
+
     /// Whether a point lies in the grid.
     pub(crate) fn holds(&self, point: [f64; 2]) -> bool {
         (0..2).all(|axis| (point[axis] - self.center[axis]).abs() < 0.5 * self.size[axis])
@@ -237,6 +254,12 @@ impl Grid {
 
 /// A rectangle of cells of a grid: rows i0..i1 and columns j0..j1.
 pub(crate) type Window = [Range<usize>; 2];
+
+/// The cells of a window, row by row.
+pub(crate) fn each_cell(window: &Window) -> impl Iterator<Item = (usize, usize)> + use<> {
+    let [rows, columns] = window.clone();
+    rows.flat_map(move |i| columns.clone().map(move |j| (i, j)))
+}
 
 /// Directions along which a window of a grid is a whole period.
 pub(crate) fn repeating(grid: &Grid, window: &Window) -> [bool; 2] {

@@ -288,6 +288,7 @@ fn begun(
         tolerance: given.real("tolerance")?,
         max_convolutions: most.unwrap_or(default.max_convolutions),
         coupling: given.flag("coupling")?,
+        order: given.count("order", 1)?.unwrap_or(default.order),
     };
     let progress = given.callable("progress")?;
     given.flag("check")?;

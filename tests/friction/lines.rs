@@ -2,7 +2,7 @@
 //! Bessel transforms, and nodes of Erdogan and Gupta.
 
 use nacre::friction::{FrictionSolution, RollingDirection, Step};
-use nacre::{Contact, Cylinder, Grid, Motion, Options, Result};
+use nacre::{Contact, Cylinder, Grid, HalfSpace, Motion, Options, Result};
 use serde_json::Value;
 
 use crate::support::pairs::{
@@ -16,6 +16,7 @@ const POISSON: f64 = 0.3;
 
 /// Two equal coated bodies whose contact is 2 wide, on `cells` across it.
 struct Line {
+    body: HalfSpace,
     contact: Contact,
     shape: Cylinder,
     load: f64,
@@ -29,7 +30,8 @@ impl Line {
     fn new(ratio: f64, thickness: f64, cells: usize, near: Option<f64>) -> Result<Self> {
         let all = cells + 20;
         let width = 2.0 * all as f64 / cells as f64;
-        let contact = equal(coated(ratio, thickness)?, Grid::line(all, width)?)?;
+        let body = coated(ratio, thickness)?;
+        let contact = equal(body.clone(), Grid::line(all, width)?)?;
         let shape = Cylinder::new(RADIUS)?;
         let excess = |load: f64| -> Result<f64> {
             let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
@@ -50,7 +52,16 @@ impl Line {
                 false => low = middle,
             }
         }
-        Ok(Self { contact, shape, load: low, width })
+        Ok(Self { body, contact, shape, load: low, width })
+    }
+
+    /// The same bodies under the same load, on other cells.
+    fn on(&self, cells: usize) -> Result<Self> {
+        let all = cells + 12;
+        let width = 2.0 * all as f64 / cells as f64;
+        let body = self.body.clone();
+        let contact = equal(body.clone(), Grid::line(all, width)?)?;
+        Ok(Self { contact, body, shape: self.shape, load: self.load, width })
     }
 
     /// μP
@@ -141,7 +152,7 @@ fn full_adhesion() -> Result<()> {
     })
 }
 
-/// Rolling with partial slip: creepage for a force.
+/// Rolling with partial slip: creepage for a force, of which the width of the contact is known to a part of a cell.
 #[test]
 fn partial_slip_in_rolling() -> Result<()> {
     each_pair("carter_partial", |lines, case| {
@@ -153,6 +164,10 @@ fn partial_slip_in_rolling() -> Result<()> {
         }
         let exact = number(case, "creep_times_G2b_over_muP");
         near!(extrapolated(creepages), exact, 1e-3, case);
+        // On 22 cells, under the load of the finest line: to second order 0.15 % off, to first order 5.5 %.
+        let few = lines[2].on(22)?;
+        let solution = few.roll(FRICTION, None, Some(share * few.bears()))?;
+        near!(creepage(&solution)[0] / few.bears(), exact, 2e-3, case);
         Ok(())
     })
 }

@@ -80,6 +80,7 @@ class Roll(Table):
     spin: Number = Field(0.0, description=ROLL["spin"])
     direction: Literal["+x", "-x", "+y", "-y"] | None = Field(None, description=ROLL["direction"])
     cells: Count | None = Field(None, description=ROLL["cells"])
+    order: Literal[1, 2] = Field(2, description=ROLL["order"])
     coupling: bool = Field(True, description=ROLL["coupling"])
 
     def keywords(self) -> dict[str, Any]:

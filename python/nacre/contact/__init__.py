@@ -282,6 +282,7 @@ def roll(
     spin: float = 0.0,
     direction: Literal["+x", "-x", "+y", "-y"] | None = None,
     cells: int | None = None,
+    order: Literal[1, 2] = 2,
     tolerance: float = 1e-8,
     max_convolutions: int = 4000,
     coupling: bool = True,
@@ -328,6 +329,9 @@ def roll(
     cells : int, optional
         Number of cells to roll from `initial` on, or from the first touch. By default the steady
         state is found.
+    order : {2, 1}, optional
+        Order of the error in the length of a cell. With 1, the slip is that of Kalker's program
+        CONTACT, and the solution has no estimate of its discretisation error.
     tolerance, max_convolutions, coupling, initial, progress, check : optional
         How tractions are found, as `slide` explains.
 
@@ -346,7 +350,10 @@ def roll(
     Notes
     -----
     Material flows against the direction of rolling. The change of displacement over a cell stands
-    for its derivative (Kalker 1990), so that forces are right to the first order of the cells.
+    for its derivative (Kalker 1990), half a cell ahead of the centre; leading cells and slipping
+    ones are corrected for it, so that forces are right to the second order of the cells. The steady
+    state is also found on cells of twice the length: that is where the solve starts, and what
+    `FrictionReport.discretisation` follows from.
 
     Examples
     --------
@@ -645,6 +652,7 @@ class Contact:
         spin: float = 0.0,
         direction: Literal["+x", "-x", "+y", "-y"] | None = None,
         cells: int | None = None,
+        order: Literal[1, 2] = 2,
         tolerance: float = 1e-8,
         max_convolutions: int = 4000,
         coupling: bool = True,
@@ -660,7 +668,7 @@ class Contact:
             Shape that is pressed in.
         load, approach, eccentricity, moment, tilt : optional
             Motion along z, as `Contact.solve` explains.
-        friction, creepage, force, spin, direction, cells : optional
+        friction, creepage, force, spin, direction, cells, order : optional
             Friction and rolling, as `nacre.roll` explains.
         tolerance, max_convolutions, coupling, initial, progress, check : optional
             How tractions are found, as `nacre.slide` explains.

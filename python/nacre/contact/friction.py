@@ -76,6 +76,16 @@ class FrictionReport(Result):
     """Whether tractions and pressure act on each other."""
     full_slip: bool
     """Whether all cells in contact slip."""
+    discretisation: dict[str, float] | None
+    """Estimated errors of steady rolling due to the size of the cells, by name.
+
+    ``force`` [N], ``torque`` [N m], ``power`` [N], that of `FrictionSolution.dissipated`,
+    ``creepage`` and ``stick_share``. Forces and creepages have the length of their error; it is 0
+    where both are given. `None` in sliding, in rolling cell by cell and with ``order=1``, and where
+    a warning says why.
+    """
+    order: int
+    """Order of steady rolling in the length of a cell; 0 in sliding and in rolling cell by cell."""
     tolerance: float
     """Tolerance that was asked for."""
     seconds: float

@@ -197,7 +197,7 @@ def _quantity(study: xarray.Dataset, quantity: str, *parameters: int) -> xarray.
 
 def _errors(study: xarray.Dataset, quantity: str) -> npt.NDArray[np.float64] | None:
     """Return the estimated errors of a quantity, or None where there is not one."""
-    if quantity + ERROR not in study:
+    if quantity + ERROR not in study or study[quantity].dims != study[quantity + ERROR].dims:
         return None
     errors: npt.NDArray[np.float64] = np.abs(study[quantity + ERROR].values)
     return errors if np.isfinite(errors).any() else None

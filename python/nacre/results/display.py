@@ -202,11 +202,38 @@ def _indentation(solution: Solution) -> str | None:
     return f"{written(deepest, 'm')} at most, permanent" if deepest > 0 else None
 
 
+def _with_error(solution: FrictionSolution, name: str, said: str, size: float, unit: str) -> str:
+    """Return what is said of a number of rolling, with its discretisation error where there is one.
+
+    The error is one of its `size`, or has a unit where it is larger.
+    """
+    error = (solution.report.discretisation or {}).get(name, 0.0)
+    if error <= NOISE * size:
+        return said
+    if error < size:
+        return f"{said} ± {rounded(100 * error / size, 1)} %"
+    return f"{said} ± {written(error, unit, 1) if unit else rounded(error, 1)}"
+
+
+def _force(solution: FrictionSolution) -> str:
+    unit = "N/m" if solution.grid.is_line else "N"
+    said = pair(shown(solution.force), unit)
+    return _with_error(solution, "force", said, float(np.hypot(*solution.force)), unit)
+
+
+def _creepage(solution: FrictionSolution) -> str | None:
+    if (creepage := solution.creepage) is None:
+        return None
+    components = "({:.4g}, {:.4g})".format(*shown(creepage))
+    return _with_error(solution, "creepage", components, float(np.hypot(*creepage)), "")
+
+
 def _torque(solution: FrictionSolution) -> str | None:
     if solution.grid.is_line:
         return None
     noise = SLIGHT * max(solution.grid.size) * max(map(abs, solution.force))
-    return written(solution.torque if abs(solution.torque) > noise else 0.0, "N m")
+    torque = solution.torque if abs(solution.torque) > noise else 0.0
+    return _with_error(solution, "torque", written(torque, "N m"), abs(torque), "N m")
 
 
 def _twist(solution: FrictionSolution) -> str | None:
@@ -218,7 +245,8 @@ def _dissipated(solution: FrictionSolution) -> str:
     # Power over speed in rolling, and rounding where nothing slips.
     work = max(map(abs, solution.force)) * max(map(abs, solution.shift or (1.0,)))
     lost = solution.dissipated if solution.dissipated > SLIGHT * work else 0.0
-    return written(lost, energy(solution.grid.is_line, solution.shift is None))
+    unit = energy(solution.grid.is_line, solution.shift is None)
+    return _with_error(solution, "power", written(lost, unit), lost, unit)
 
 
 NORMAL_TEXTS: Texts = {
@@ -235,9 +263,10 @@ NORMAL_TEXTS: Texts = {
 }
 """Values of a normal contact that are more than a number with its unit."""
 FRICTION_TEXTS: Texts = {
+    "force": _force,
     "torque": _torque,
     "twist": _twist,
-    "creepage": lambda s: s.creepage and "({:.4g}, {:.4g})".format(*shown(s.creepage)),
+    "creepage": _creepage,
     "spin": lambda s: None if s.spin is None else f"{s.spin:.4g} /{symbol('m')}",
     "dissipated": _dissipated,
 }

@@ -90,6 +90,9 @@ ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
 ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
+ROLLING = {name: name for name in ("force", "torque", "creepage", "stick_share")}
+ROLLING |= {"dissipated": "power"}
+"""Those of steady rolling, and the names of their errors; those of a pair are of its length."""
 ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
@@ -206,8 +209,9 @@ def evaluated(
         found[name] = np.asarray(value, dtype=np.float64).tolist()
     normal: Any = getattr(solution, "normal", solution)
     estimates = normal.report.discretisation or {}
-    for name, quantity in errors(outputs, outputs).items():
-        estimate = estimates.get(quantity)
+    rolling = (normal is not solution and solution.report.discretisation) or {}
+    for name, quantity in errors(outputs, outputs, (*ESTIMATED, *ROLLING)).items():
+        estimate = estimates.get(quantity, rolling.get(ROLLING.get(quantity, "")))
         found[name] = np.nan if estimate is None else float(estimate)
     return found
 

@@ -146,10 +146,10 @@ def sweep(
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
         holds the reason; ``warnings`` holds the warnings of each solve. Beside peak pressure,
-        approach and load, and of bearings peak and edge pressure, stand their errors due to the
-        size of the cells, such as
-        ``peak_pressure_discretisation``: the estimates of `Report.discretisation`, NaN where there
-        is none. The executor does not change a bit.
+        approach and load, of bearings peak and edge pressure, and of rolling what
+        `FrictionReport.discretisation` has, stand their errors due to the size of the cells, such
+        as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does not
+        change a bit.
 
     Warns
     -----

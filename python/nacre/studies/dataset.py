@@ -17,6 +17,7 @@ from nacre.results.outputs import (
     ESTIMATED,
     ESTIMATED_OF_RINGS,
     RING_AXES,
+    ROLLING,
     Output,
     errors,
 )
@@ -114,12 +115,18 @@ def assembled(
             own = units[output] if kinds["bears"] else symbol(units[output])
             dataset[name].attrs["units"] = own
     taken = {*outputs, *map(str, dataset.coords)}
-    estimated = ESTIMATED_OF_RINGS if kinds["bears"] else () if kinds["indents"] else ESTIMATED
+    estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
+    if kinds["indents"]:
+        estimated = ()
+    elif kinds["rolls"]:
+        estimated = (*ESTIMATED, *ROLLING)
     for name, quantity in errors(outputs, taken, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
-        dataset[name].attrs = {"units": symbol(units[quantity]), "long_name": words}
+        dataset[name].attrs = {"long_name": words}
+        if quantity in units:
+            dataset[name].attrs["units"] = symbol(units[quantity])
     for name, texts in {
         "error": [r.get("error", "") for r in records],
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],

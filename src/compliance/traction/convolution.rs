@@ -106,6 +106,14 @@ impl Tangential {
         }
     }
 
+    /// α c11, α c22 and α c_t of the bodies together, for waves of the wavenumber `alpha`.
+    pub(crate) fn waves(&self, alpha: f64) -> [f64; 3] {
+        let half_spaces = self.bodies.iter().filter_map(|body| body.half_space());
+        half_spaces
+            .map(|body| alpha_compliance(body, alpha))
+            .fold([0.0; 3], |[n, l, t], one| [n + one.c11, l + one.c22, t + one.ct])
+    }
+
     /// Coefficients of a loaded cell less those of its neighbour along x, and along y, for tractions along both.
     fn ahead(&self) -> [[f64; 2]; 2] {
         let [nx, ny] = self.grid.shape();
@@ -121,18 +129,11 @@ impl Tangential {
         let [dx, dy] = self.grid.spacing();
         let longest = (shape[0] as f64 * dx).max(shape[1] as f64 * dy);
         let least = PI / (2.0 * longest);
-        let half_spaces: Vec<_> =
-            (self.bodies.iter().filter_map(|body| body.half_space())).collect();
         let line = self.grid.is_line();
         periodic.spectra_of([[false, false], [true, true], [false, false]], |m, n| {
             let (m, n) = if line { (0.0, n / dy) } else { (m / dx, n / dy) };
             let alpha = m.hypot(n).max(least);
-            let (mut along, mut across) = (0.0, 0.0);
-            for body in &half_spaces {
-                let compliance = alpha_compliance(body, alpha);
-                along += compliance.c22;
-                across += compliance.ct;
-            }
+            let [_, along, across] = self.waves(alpha);
             let (along, across) = (alpha / along, alpha / across);
             let (c, s) = match m.hypot(n) {
                 length if length > 0.0 => (m / length, n / length),

@@ -81,6 +81,23 @@ pub enum Warning {
         /// Largest creepage in the contact, or twist \[rad\].
         size: f64,
     },
+    /// Rolling has no estimate of its discretisation error.
+    Unestimated {
+        /// Why.
+        reason: Unestimated,
+    },
+}
+
+/// Why rolling has no estimate of its discretisation error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Unestimated {
+    /// Too few cells lie across the contact.
+    Coarse,
+    /// There is no solution on cells of twice the length.
+    Unsolved,
+    /// The contact was given its influence coefficients, which cells of twice the length do not have.
+    Coefficients,
 }
 
 /// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
@@ -119,6 +136,7 @@ impl Warning {
             Self::UnknownStations => "unknown stations",
             Self::EndlessCrown { .. } => "endless crown",
             Self::LargeMotion { .. } => "large motion",
+            Self::Unestimated { .. } => "no estimate",
         }
     }
 
@@ -227,6 +245,21 @@ impl fmt::Display for Warning {
                  out the square: about {:.0} % of strains and slip",
                 50.0 * size
             ),
+            Self::Unestimated { reason } => {
+                write!(
+                    f,
+                    "force, torque, power and creepage have no estimate of their discretisation error: "
+                )?;
+                f.write_str(match reason {
+                    Unestimated::Coarse => "it needs 16 cells across the contact; take a finer grid",
+                    Unestimated::Unsolved => {
+                        "on cells of twice the length there is no solution; take a finer or larger grid"
+                    }
+                    Unestimated::Coefficients => {
+                        "the influence coefficients that were given are those of this grid alone; leave them out"
+                    }
+                })
+            }
         }
     }
 }

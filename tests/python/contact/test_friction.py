@@ -42,8 +42,8 @@ def test_a_small_creepage_makes_the_force_of_kalkers_coefficients() -> None:
         keywords["creepage"] = (1e-6, None) if axis == 0 else (None, 1e-6)
         rolled = contact.roll(nacre.Paraboloid(50.0, 50.0), **keywords)
         area = np.count_nonzero(rolled.pressure) / 32**2 / pi
-        # 64 cells across: 0.45 % above the limit, of the first order.
-        assert rolled.force[axis] / (1e-6 * area) == pytest.approx(coefficient, rel=6e-3)
+        # 64 cells across: 0.1 % above the limit, where the edge is a staircase.
+        assert rolled.force[axis] / (1e-6 * area) == pytest.approx(coefficient, rel=2e-3)
 
 
 # Histories.
