@@ -21,7 +21,6 @@ use crate::contact::{
     Contact, Motion, Options, Report, Solution, Termination, Unestimated, Warning,
 };
 use crate::error::{Error, Result, fraction, require};
-use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 use crate::numerics::parallel::dot;
 
