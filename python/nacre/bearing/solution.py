@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.typing import among
 from nacre._tools.units import printable, symbol
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
@@ -297,7 +298,7 @@ class BearingSolution(Tabular):
         """
         if self.model != "solved" or self.grid_sizes is None or self.cells is None:
             raise ValueError('model must be "solved" for a contact, got "iso16281"')
-        if ring not in RINGS:
+        if not among(ring, RINGS):
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
         if isinstance(element, bool) or not isinstance(element, int | np.integer):
             raise TypeError(f"element must be an integer, got {element!r}")
@@ -388,9 +389,9 @@ class BearingSolution(Tabular):
         >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
         (4999, 5186)
         """
-        if edge not in EDGES:
+        if not among(edge, EDGES):
             raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
-        if rotating not in RINGS:
+        if not among(rotating, RINGS):
             raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
         words = "ISO/TS 16281, 90 % reliability, a model"
         loads, factors = self.loads, np.array(1.0)
@@ -520,9 +521,11 @@ class BearingSolution(Tabular):
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
             value = getattr(self, name)
             if not math.isnan(value):
-                rows.append((kinds[name].label, display.number(value, kinds[name].si())))
+                rows.append((kinds[name].label, self._written(kinds[name], value)))
         report = self.report
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
+        if self._sharp:
+            contacts += "; ends are sharp: their pressure has no limit, and grows with the cells"
         return [
             *rows,
             ("loaded", f"{self.loaded} of {self.bearing.elements} elements"),
@@ -541,6 +544,17 @@ class BearingSolution(Tabular):
         scale |= {"tilts": deepest / arm, "moment": self.largest_load * arm}
         return 0.0 if abs(value) < SLIGHT * scale.get(name, 0.0) else value
 
+    def _written(self, row: Quantity, value: float) -> str:
+        """Return a number with its unit; pressures at sharp ends grow with the cells: 2 digits."""
+        singular = row.name.startswith(("peak_pressure", "edge_pressure")) and self._sharp
+        return display.number(value, row.si(), 2 if singular else 4)
+
+    @property
+    def _sharp(self) -> bool:
+        """Whether solved contacts of straight rollers reach their ends, where they are singular."""
+        straight = getattr(self.bearing, "profile", "") is None
+        return straight and self.model == "solved" and bool(np.nanmax(self.edge_pressures) > 0)
+
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
         rows = ", ".join(" ".join(row) for row in self._rows())
@@ -553,7 +567,7 @@ class BearingSolution(Tabular):
         lines = [["element", *(name for _, name, _ in columns)]]
         for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
             values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
-            lines.append([f"{j}", *(display.number(value, row.si()) for row, value in values)])
+            lines.append([f"{j}", *(self._written(row, value) for row, value in values)])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
         return display.text(self._rows(), self.report.warnings) + printable(table)
 

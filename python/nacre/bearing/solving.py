@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.progress import lasting
+from nacre._tools.progress import check_progress, lasting
+from nacre._tools.typing import among
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above, pair
 from nacre.bearing.iso import hertz_pressures
@@ -30,6 +31,10 @@ to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured aga
 """
 STEEPEST = 0.02
 """Largest prescribed tilt without a warning: about a degree, where bearings bear minutes."""
+TURNED = 1e6
+"""Largest angle of the elements [rad], which is right to 1e-10."""
+FASTEST = 1e3
+"""Largest speed of the elements [m/s], at which rings of steel burst."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
@@ -46,6 +51,7 @@ def _asked(
         found = [*told]
         if len(found) != length:
             raise ValueError(f"{name} must be {length} numbers or None, got {told!r}")
+        most = _most(bearing, name)
         for value in found:
             if value is not None and (
                 isinstance(value, bool) or not isinstance(value, int | float | np.number)
@@ -53,6 +59,8 @@ def _asked(
                 raise TypeError(f"{name} must be {length} numbers or None, got {told!r}")
             if value is not None and not math.isfinite(value):
                 raise ValueError(f"{name} must be finite, got {told!r}")
+            if value is not None and abs(value) > most:
+                raise ValueError(f"{name} must be at most {most:.3g}, got {told!r}")
         values[name] = found
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
@@ -85,6 +93,17 @@ def _asked(
         _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+
+
+def _most(bearing: Any, name: str) -> float:
+    """Return the largest value along a direction: beyond it nothing is a bearing any more.
+
+    Forces are ten times those of `HIGHEST` on all of the elements' cross-sections.
+    """
+    wide = bearing.length if bearing.rolls else bearing.diameter
+    force = 10 * HIGHEST * bearing.elements * bearing.diameter * wide
+    limits = {"force": force, "moment": force * bearing.pitch, "tilt": 1.0}
+    return float(limits.get(name, bearing.diameter))
 
 
 def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
@@ -126,6 +145,13 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     model, cells, tolerance = given["model"], given["cells"], given["tolerance"]
     for name in ("rotation", "speed"):
         above(name, given[name], -math.inf)
+    if abs(given["rotation"]) > TURNED:
+        raise ValueError(f"rotation must be at most {TURNED:g} rad, got {given['rotation']!r}")
+    if abs(given["speed"]) * bearing.pitch / 2 > FASTEST:
+        raise ValueError(
+            f"speed must be at most {2 * FASTEST / bearing.pitch:.3g} rad/s, where elements move "
+            f"at {FASTEST:g} m/s, got {given['speed']!r}"
+        )
     for name in ("max_iterations", "threads"):
         value = given[name]
         if name == "threads" and value is None:
@@ -134,8 +160,9 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
             raise TypeError(f"{name} must be an integer, got {value!r}")
         if value < 1:
             raise ValueError(f"{name} must be at least 1, got {value!r}")
-    if model not in ("solved", "iso16281"):
+    if not among(model, ("solved", "iso16281")):
         raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
+    check_progress(given["progress"])
     above("tolerance", tolerance)
     if tolerance >= 1:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")

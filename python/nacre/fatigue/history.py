@@ -45,6 +45,8 @@ the top of a parabola a thirtieth of its half-width wide."""
 def real_array(name: str, given: Any) -> Array:
     """Return an array of real numbers; a `TypeError` names the argument."""
     try:
+        if np.asarray(given).dtype.kind == "b":
+            raise TypeError("True and False are no real numbers")
         return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise TypeError(f"{name} must be real numbers, got {given!r:.100}") from error
