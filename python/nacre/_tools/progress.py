@@ -21,9 +21,17 @@ EVERY = 60.0
 """Shortest time between two lines in a log [s]: a night has a few hundred of them."""
 
 
+def check_progress(given: Any) -> None:
+    """Raise a `TypeError` unless an argument is a function, or None."""
+    if given is not None and not callable(given):
+        raise TypeError(f"progress must be callable, got {given!r}")
+
+
 @contextmanager
 def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], None]]:
     """Yield a function that advances the progress by one case; `found` cases need no solve."""
+    if wanted is not None and not isinstance(wanted, bool):
+        raise TypeError(f"progress must be True, False or None, got {wanted!r}")
     if wanted is False:
         yield lambda: None
         return
@@ -64,6 +72,7 @@ def lasting(what: str, given: Any = None) -> Iterator[Any]:
     It is called with the share that is done or with a text. Nothing is shown in the first two
     seconds, inside of other work that is shown, in threads, or without rich.
     """
+    check_progress(given)
     watched = "ipykernel" in sys.modules or sys.stderr.isatty()
     outermost = not _shown and current_thread() is main_thread()
     if given is not None or not (watched and outermost) or find_spec("rich") is None:

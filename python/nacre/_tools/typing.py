@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -32,6 +32,11 @@ ByLayer = Mapping[int | str, float] | Sequence[float | None]
 Algorithm = Literal["cascade", "polonsky-keer"]
 Ending = Literal["running", "converged", "iteration limit", "stopped"]
 """How an iteration ended; "running" before its end."""
+
+
+def among(value: object, words: Collection[str | None]) -> bool:
+    """Return whether a value is one of some words; arrays and lists are none."""
+    return isinstance(value, str | None) and value in words
 
 
 class Topography(Protocol):

@@ -12,6 +12,8 @@ from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import RINGS, Ring, above, millimetres
 from nacre.hertz import Ellipse
 
+FLATTEST = 100.0
+"""Largest radius of a groove over the diameter of a ball, which is plane beside it."""
 STATIC = 4.2e9
 """Pressure of the static rating of ball bearings [Pa], ISO 76:2006."""
 
@@ -36,6 +38,8 @@ class _Balls(Solvable):
         self._check_given_pitch()
         for value in self.osculation:
             above("osculation", value, 0.5)
+            if value > FLATTEST:
+                raise ValueError(f"osculation must be at most {FLATTEST:g}, got {value!r}")
         if self.shoulder_height is not None:
             above("shoulder_height", self.shoulder_height)
             if self.shoulder_height > self.radius:

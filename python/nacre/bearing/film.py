@@ -33,6 +33,8 @@ Their abstract gives k and the orders of magnitude.
 """
 THICKEST = 1e6
 """Largest G of any oil, roughly: with steel, of 4e-6 1/Pa."""
+SLOWEST, FASTEST = 1e-20, 1e-2
+"""Limits of U, far beyond which numbers overflow: fits have some 1e-11, soft bodies up to 1e-5."""
 FLAT = 1e-9
 """Rise of a shape over the displacement below which it is rounding, of 1e-16 of both."""
 COATED = (
@@ -242,6 +244,11 @@ def film_thickness(
     k = math.inf if line else across / along
     load = float(solution.line_load[section]) if line else solution.load
     u, g = viscosity * speed / (modulus * radius), pressure_viscosity * modulus
+    if not SLOWEST < u < FASTEST:
+        raise ValueError(
+            f"speed times viscosity must be between {SLOWEST:g} and {FASTEST:g} of the modulus "
+            f"times the radius, of oils it is some 1e-11, got {u:.3g}"
+        )
     w = load / (modulus * radius ** (1 if line else 2))
     central, minimum = _line(u, g, w) if line else _point(u, g, w, k)
     if line:

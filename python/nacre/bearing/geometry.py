@@ -179,6 +179,11 @@ class Bearing(ABC):
         above("diameter", self.diameter)
         for name in ("rating_factor", "density"):
             above(name, getattr(self, name))
+        if not 0.1 <= self.rating_factor <= 10:
+            raise ValueError(
+                f"rating_factor must be from 0.1 to 10, in ISO 281 it is 1 to 1.3, "
+                f"got {self.rating_factor!r}"
+            )
         self._give_way("capacity")
         for name, least in (("capacity", 0.0), ("clearance", -math.inf)):
             if (value := vars(self)[name]) is not None:
@@ -263,6 +268,12 @@ class Bearing(ABC):
             raise ValueError(
                 f"clearance must be at most a tenth of the diameter of an element, "
                 f"{millimetres(loosest)}: {_si()}; got {millimetres(self.play)}"
+            )
+        capacity, usual = vars(self)["capacity"], self.standard_capacity
+        if capacity is not None and not usual / 100 <= capacity <= 100 * usual:
+            raise ValueError(
+                f"capacity must be in N, some {usual:.3g}, that of ISO 281: {_si()}; "
+                f"got {capacity!r}"
             )
         if self.play < -4 * DEEPEST * diameter:
             raise ValueError(

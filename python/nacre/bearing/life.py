@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
-from nacre._tools.progress import lasting
+from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import Member
 from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
@@ -526,6 +526,7 @@ def life_ratio(
     """
     if isinstance(solution, BearingSolution) != isinstance(reference, BearingSolution):
         raise TypeError("solution and reference must both be contacts, or both bearings")
+    check_progress(progress)
     if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
         with lasting("stresses", progress) as tell:
             one, other = (

@@ -78,6 +78,11 @@ class _Rollers(Solvable):
                 above("raceway_crown", radius, -math.inf)
             if radius == 0:
                 raise ValueError("raceway_crown must not be 0: None makes a raceway straight")
+            if radius is not None and abs(radius) < self.length:
+                raise ValueError(
+                    f"raceway_crown must be at least the length of a roller, "
+                    f"{millimetres(self.length)}, got {millimetres(radius)}"
+                )
         check_flag("free_ends", self.free_ends)
         self._check_room()
         for ring in RINGS:

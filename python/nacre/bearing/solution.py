@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.typing import among
 from nacre._tools.units import printable, symbol
 from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
@@ -321,7 +322,7 @@ class BearingSolution(Tabular):
         """
         if self.model != "solved" or self.grid_sizes is None or self.cells is None:
             raise ValueError('model must be "solved" for a contact, got "iso16281"')
-        if ring not in RINGS:
+        if not among(ring, RINGS):
             raise ValueError(f'ring must be "inner" or "outer", got {ring!r}')
         element = core.integer("element", element)
         last = self.bearing.elements - 1
@@ -411,10 +412,10 @@ class BearingSolution(Tabular):
         >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
         (4999, 5186)
         """
-        if edge not in EDGES:
+        if not among(edge, EDGES):
             raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
         rotating = self.rotating if rotating is None else rotating
-        if rotating not in RINGS:
+        if not among(rotating, RINGS):
             raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
         words = "ISO/TS 16281, 90 % reliability, a model"
         loads, factors = self.loads, np.array(1.0)
@@ -545,11 +546,14 @@ class BearingSolution(Tabular):
             rows.append((row.label, display.pair(values, row.si())))
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
             if not math.isnan(getattr(self, name)):
-                rows.append((kinds[name].label, display.estimated(self, name, kinds[name].si())))
+                unit, digits = kinds[name].si(), self._digits(name)
+                rows.append((kinds[name].label, display.estimated(self, name, unit, digits)))
         if self.speed:
             rows.append((kinds["cage_speed"].label, display.number(self.cage_speed, "rad/s")))
         report = self.report
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
+        if self._sharp:
+            contacts += "; ends are sharp: their pressure has no limit, and grows with the cells"
         return [
             *rows,
             ("loaded", f"{self.loaded} of {self.bearing.elements} elements"),
@@ -568,6 +572,16 @@ class BearingSolution(Tabular):
         scale |= {"tilts": deepest / arm, "moment": self.largest_load * arm}
         return 0.0 if abs(value) < SLIGHT * scale.get(name, 0.0) else value
 
+    def _digits(self, name: str) -> int:
+        """Return how many digits are printed; pressures at sharp ends grow with the cells."""
+        return 2 if name.startswith(("peak_pressure", "edge_pressure")) and self._sharp else 4
+
+    @property
+    def _sharp(self) -> bool:
+        """Whether solved contacts of straight rollers reach their ends, where they are singular."""
+        straight = getattr(self.bearing, "profile", "") is None
+        return straight and self.model == "solved" and bool(np.nanmax(self.edge_pressures) > 0)
+
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
         rows = ", ".join(" ".join(row) for row in self._rows())
@@ -580,7 +594,8 @@ class BearingSolution(Tabular):
         lines = [["element", *(name for _, name, _ in columns)]]
         for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
             values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
-            lines.append([f"{j}", *(display.number(value, row.si()) for row, value in values)])
+            texts = (display.number(v, row.si(), self._digits(row.name)) for row, v in values)
+            lines.append([f"{j}", *texts])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
         return display.text(self._rows(), self.report.warnings) + printable(table)
 

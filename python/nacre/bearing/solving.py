@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.progress import lasting
+from nacre._tools.progress import check_progress, lasting
+from nacre._tools.typing import among
 from nacre.bearing.cone import check_carried
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above
@@ -41,6 +42,10 @@ REMEDIES = {
     "no descent": "no step lowers the energy by more than rounding: raise the tolerance",
 }
 """What helps where an iteration ended before the tolerance was met."""
+TURNED = 1e6
+"""Largest angle of the elements [rad], which is right to 1e-10."""
+FASTEST = 1e3
+"""Largest speed of the elements [m/s], at which rings of steel burst."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
@@ -51,9 +56,13 @@ def _asked(
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        values[name] = core.vector(name, length, given[name])
-        if not all(value is None or math.isfinite(value) for value in values[name]):
+        numbers = (None,) * length if given[name] is None else given[name]
+        values[name] = core.vector(name, length, numbers)
+        known = [value for value in values[name] if value is not None]
+        if not all(map(math.isfinite, known)):
             raise ValueError(f"{name} must be finite, got {given[name]!r}")
+        if max(map(abs, known), default=0.0) > (most := _most(bearing, name)):
+            raise ValueError(f"{name} must be at most {most:.3g}, got {given[name]!r}")
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
@@ -85,6 +94,17 @@ def _asked(
         _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
     free = np.array([value is not None for value in loads])
     return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+
+
+def _most(bearing: Any, name: str) -> float:
+    """Return the largest value along a direction: beyond it nothing is a bearing any more.
+
+    Forces are ten times those of `HIGHEST` on all of the elements' cross-sections.
+    """
+    wide = bearing.length if bearing.rolls else bearing.diameter
+    force = 10 * HIGHEST * bearing.elements * bearing.diameter * wide
+    limits = {"force": force, "moment": force * bearing.pitch, "tilt": 1.0}
+    return float(limits.get(name, bearing.diameter))
 
 
 def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
@@ -127,16 +147,24 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     given = {**given}
     for name in ("rotation", "speed"):
         given[name] = above(name, given[name], -math.inf)
-    if given["rotating"] not in RINGS:
+    if not among(given["rotating"], RINGS):
         raise ValueError(f'rotating must be "inner" or "outer", got {given["rotating"]!r}')
+    if abs(given["rotation"]) > TURNED:
+        raise ValueError(f"rotation must be at most {TURNED:g} rad, got {given['rotation']!r}")
+    if abs(bearing.cage_speed(given["speed"], given["rotating"])) * bearing.pitch / 2 > FASTEST:
+        raise ValueError(
+            f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
+            f"got {given['speed']!r} rad/s"
+        )
     for name in ("max_iterations", "threads"):
         if name == "threads" and given[name] is None:
             continue
         given[name] = core.integer(name, given[name])
         if given[name] < 1:
             raise ValueError(f"{name} must be at least 1, got {given[name]!r}")
-    if model not in ("solved", "iso16281"):
+    if not among(model, ("solved", "iso16281")):
         raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
+    check_progress(given["progress"])
     tolerance = above("tolerance", given["tolerance"])
     if tolerance >= 1:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")

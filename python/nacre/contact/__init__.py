@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, Self
 
+import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
@@ -798,6 +799,10 @@ def _steps(
     if given.get("steps") is not None:
         words = ("a step", "steps", "slide", "step")
         asked = _mappings(words, given["steps"], STEP)
+    for step in (given, *(asked or ())):
+        if np.asarray(friction := step.get("friction")).dtype.kind == "b":
+            raise TypeError(f"friction must be a number, or one for each cell, got {friction!r}")
+    if asked is not None:
         steps = core.slide(given, asked, plan)
     else:
         steps = begin(given, plan=plan)

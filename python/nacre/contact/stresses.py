@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
+from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.listed import Tabular
@@ -31,6 +31,8 @@ Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
+SOFTEST = 1e-6
+"""Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
@@ -605,6 +607,7 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
+        _check_limits_of(self._solution, self._member, yield_stress, strength)
         with lasting("stresses", progress) as progress:
             text = core.stress_summary(self._plan, locals())
         sliding = self._solution._sliding(friction, direction, self._member)
@@ -783,6 +786,7 @@ class Stressed:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
+        _check_limits_of(self, body, yield_stress, strength)
         with lasting("stresses", progress) as progress:
             text = core.stress_summary(self._solved, locals())
         return _warned(StressSummary._made(text, self._sliding(friction, direction, body)))
@@ -895,6 +899,33 @@ def stress(
 
 
 Told = TypeVar("Told", Stress, StressSummary)
+
+
+def check_limits(name: str, limits: Sequence[float | None], body: core.HalfSpace) -> None:
+    """Raise a `ValueError` unless limits are in the units of the moduli.
+
+    They are those of the layers from the surface down, and of the substrate.
+    """
+    materials = [*(layer.material for layer in body.layers), body.substrate]
+    for material, limit in zip(materials, limits, strict=False):
+        if limit is None or not isinstance(material, core.Elastic) or not limit > 0:
+            continue
+        if not SOFTEST * material.young <= limit <= material.young:
+            raise ValueError(
+                f"{name} must be in the units of the moduli, between {SOFTEST:g} of the modulus "
+                f"and itself, {material.young:g}; got {limit:g}"
+            )
+
+
+def _check_limits_of(
+    solution: Any, member: Member, yield_stress: ByLayer | None, strength: ByLayer | None
+) -> None:
+    """Raise an error unless limits of a body of a solution are in the units of the moduli."""
+    report = getattr(solution, "normal", solution).report
+    body = report.counterbody if among(member, ("counterbody",)) else report.body
+    if isinstance(body, core.HalfSpace):
+        for name, given in (("yield_stress", yield_stress), ("strength", strength)):
+            check_limits(name, core.layer_values(body, name, {name: given}), body)
 
 
 def _warned(result: Told) -> Told:

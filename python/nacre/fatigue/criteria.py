@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Real
+from nacre._tools.typing import Real, among
 from nacre.results import values
 
 Array = npt.NDArray[np.float64]
@@ -65,7 +65,7 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
     >>> round(float(found.first_yield / found.shear_yield), 12)
     2.0
     """
-    if rule not in get_args(Rule):
+    if not among(rule, get_args(Rule)):
         raise ValueError(f'rule must be "von_mises" or "in_plane_tresca", got {rule!r}')
     states, axes = _states(history)
     found, _ = core.shakedown(states, rule)

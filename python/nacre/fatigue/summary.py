@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Real, Side
+from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution, check_unyielded
+from nacre.contact.stresses import check_limits
 from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
@@ -380,7 +381,7 @@ def flag(given: object) -> bool:
 
 def rule_of(given: Any) -> Rule:
     """Return a condition of yield, or raise."""
-    if given not in get_args(Rule):
+    if not among(given, get_args(Rule)):
         raise ValueError(f"{given!r} is no condition of yield")
     found: Rule = given
     return found
@@ -577,6 +578,10 @@ def _vertex(depths: Array, found: Array) -> float | None:
     return float(vertex) if a < vertex < c else None
 
 
+MOST_FRICTION = 1e100
+"""Largest coefficient of friction, beyond which the squares of stresses overflow."""
+
+
 def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
     """Return criteria, each of another kind."""
     if isinstance(criteria, Criterion) or not isinstance(criteria, Iterable):
@@ -629,7 +634,7 @@ def prepared(
     if not isinstance(solution, Solution | FrictionSolution):
         raise TypeError(f"solution must be a Solution or a FrictionSolution, got {solution!r}")
     check_unyielded(solution.normal if isinstance(solution, FrictionSolution) else solution)
-    if rule not in get_args(Rule):
+    if not among(rule, get_args(Rule)):
         raise ValueError(f"rule must be 'von_mises' or 'in_plane_tresca', got {rule!r}")
     asked = checked_criteria(criteria)
     rolling = Rolling(solution, body, direction, x, threads)
@@ -738,8 +743,12 @@ def assess(
     for limit in limits:
         if limit is not None and not 0.0 < limit < np.inf:
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
+    check_limits("shear_yield", limits, asked.rolling.body)
+    for one in asked.criteria:
+        for name in ("bending", "torsion"):
+            check_limits(name, [getattr(one, name)] * len(limits), asked.rolling.body)
     friction = core.real("friction", friction)
-    if not 0.0 <= friction < np.inf:
+    if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
     if asked.rolling.known and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")

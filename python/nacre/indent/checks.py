@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.typing import among
 from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import Curve
 
@@ -313,7 +314,7 @@ def contact_point(
     >>> print(f"{found.depth:.4g} m, {found.force:.4g} N")
     4e-08 m, 2e-09 N
     """
-    if baseline not in ("none", "constant", "linear"):
+    if not among(baseline, ("none", "constant", "linear")):
         raise ValueError(f"baseline must be 'none', 'constant' or 'linear', got {baseline!r}")
     if not 1 <= exponent <= 10:
         raise ValueError(f"exponent must be between 1 and 10, got {exponent}")

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.typing import among
 from nacre._tools.units import written
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._segments import arrival, departure, held
@@ -258,7 +259,7 @@ class Curve:
         >>> curve.between(0.2e-6, 0.5e-6, by="force")
         <Curve: 16 points, depth 20 nm to 50 nm, force 200 nN to 500 nN>
         """
-        if by not in ("depth", "force"):
+        if not among(by, ("depth", "force")):
             raise ValueError(f"by must be 'depth' or 'force', got {by!r}")
         if not low < high:  # nor if one is not a number
             raise ValueError(f"high must be above low, {low:.6g}, got {high:.6g}")

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
+from nacre._tools.typing import among
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
 from nacre.indent._residuals import Examined, examined, likeliest
@@ -228,7 +229,7 @@ def _curves(data: Data) -> list[Curve]:
 
 
 def _check_arguments(noise: str, sigma: float | None, nuisance: Sequence[str]) -> None:
-    if noise not in ("auto", "relative", "absolute"):
+    if not among(noise, ("auto", "relative", "absolute")):
         raise ValueError(f"noise must be 'auto', 'relative' or 'absolute', got {noise!r}")
     if sigma is not None and not 0 < sigma < math.inf:
         raise ValueError(f"sigma must be positive and finite, got {sigma}")

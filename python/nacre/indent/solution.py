@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import Field, Layers, Matrix, Vector
+from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import printable, written
 from nacre.results import display
 from nacre.results.base import Fields, Warned
@@ -708,7 +708,9 @@ def solve(
     >>> found
     <IndentSolution: 1 contact, load 1 mN, approach 115.5 nm, radius 938.1 nm>
     """
-    if control not in get_args(Control):
+    if not among(branch, get_args(Branch)):
+        raise ValueError(f"branch must be 'stable' or 'unstable', got {branch!r}")
+    if not among(control, get_args(Control)):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
     given: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}

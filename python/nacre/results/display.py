@@ -545,14 +545,16 @@ def drawn(draw: Callable[[], Any]) -> bytes | None:
     return file.getvalue()
 
 
-def estimated(solution: Any, name: str, unit: str) -> str:
+def estimated(solution: Any, name: str, unit: str, digits: int = 4) -> str:
     """Return a number, with the discretisation error where it is estimated."""
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
-        return f"{number(value, unit)} (error not known: see the warning)"
+        return f"{number(value, unit, digits)} (error not known: see the warning)"
     share = abs(error / value) if value else 0.0
-    return number(value, unit) + (f" ± {rounded(100 * share, 1)} %" if share > NOISE else "")
+    return number(value, unit, digits) + (
+        f" ± {rounded(100 * share, 1)} %" if share > NOISE else ""
+    )
 
 
 def _approach(solution: Solution) -> str:
