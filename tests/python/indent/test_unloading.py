@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import nacre
-from nacre.indent import Curve, Indentation, OliverPharr, Tip, oliver_pharr
+from nacre.indent import Curve, Indentation, OliverPharr, Tip, fit, oliver_pharr
 from nacre.indent.classical import classical
 
 DIAMOND = nacre.Elastic(1141e9, 0.07)
@@ -152,3 +153,13 @@ def test_the_result_prints_and_is_data() -> None:
     one = oliver_pharr(unloading(noise=1e-5), BERKOVICH)
     assert "reduced modulus" in str(one)
     assert OliverPharr.from_dict(one.to_dict()) == one
+
+
+def test_a_report_says_that_no_elastic_formula_is_for_an_unloading(tmp_path: Path) -> None:
+    glass = nacre.HalfSpace(nacre.Elastic(70e9, 0.2))
+    with pytest.warns(nacre.NacreWarning, match="does not describe"):
+        wrong = fit(unloading(points=40), glass, BERKOVICH, ["body.substrate.young"], profile=False)
+    with pytest.raises(ValueError, match="oliver_pharr"):
+        wrong.classical()
+    wrong.report(tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").stat().st_size > 0
