@@ -166,7 +166,8 @@ _process = SI
 
 def system() -> System:
     """Return the system of units that is set here."""
-    return _block.get() or getattr(_thread, "system", _process)
+    outside: System = getattr(_thread, "system", _process)
+    return _block.get() or outside
 
 
 def _hold(units: System) -> None:
