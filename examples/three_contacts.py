@@ -26,7 +26,7 @@ steel, hard = nacre.Elastic(young=210e9, poisson=0.3), nacre.Elastic(840e9, 0.3)
 soft = nacre.Elastic(52.5e9, 0.3)
 
 # The roller, with 0.2 mm of a coating.
-roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=26e-3)
+roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=30e-3)
 grid = nacre.Grid(shape=(384, 64), size=(32e-3, 0.2e-3))
 coats = {"bare": [], "soft coating": [nacre.Layer(soft, 200e-6)]}
 coats["hard coating"] = [nacre.Layer(hard, 200e-6)]

@@ -63,9 +63,9 @@ impl Contact {
         let between = Discretisation { peak_pressure: Some(error), approach, load };
         let known = solution.report.discretisation;
         solution.report.discretisation = known.map(|known| known.plus(between));
-        let permitted = if known.is_some() { UNCERTAIN } else { UNSTATED };
-        let is_singular = solution.report.warnings.iter().any(Warning::is_singular);
-        if !is_singular && error > permitted * peak {
+        let is_stated = known.is_some_and(|known| known.peak_pressure.is_some());
+        let permitted = if is_stated { UNCERTAIN } else { UNSTATED };
+        if error > permitted * peak {
             solution.report.warnings.push(Warning::Stations { error: error / peak });
         }
     }

@@ -1,5 +1,6 @@
 //! Warnings stand where they must, and not elsewhere.
 
+use nacre::contact::solve_with;
 use nacre::{
     Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Setup,
     Sphere, Surface, Warning,
@@ -43,8 +44,7 @@ fn a_roller_on_an_endless_crown_is_warned_of() -> Result<()> {
     let options = Options { tolerance: 1e-5, cells: Some(1 << 16), ..Options::default() };
     let kinds = |shape: &dyn Surface, at: f64| -> Result<Vec<&'static str>> {
         let motion = Motion::load(1e3).with_eccentricity([Some(at), None]);
-        let solution =
-            nacre::solve_with(shape, &steel.into(), &Setup::default(), &motion, &options)?;
+        let solution = solve_with(shape, &steel.into(), &Setup::default(), &motion, &options)?;
         Ok(solution.report.warnings.iter().map(Warning::kind).collect())
     };
     let spinu = Roller::new(5e-3, 19.13e-3, 7.5)?;
@@ -66,7 +66,7 @@ fn a_roller_on_an_endless_crown_is_warned_of() -> Result<()> {
         assert_eq!(found.contains(&"endless crown"), warns, "{shape:?}, {at}: {found:?}");
     }
     let motion = Motion::load(1e3).with_eccentricity([Some(0.1), None]);
-    let solution = nacre::solve_with(&spinu, &steel.into(), &Setup::default(), &motion, &options)?;
+    let solution = solve_with(&spinu, &steel.into(), &Setup::default(), &motion, &options)?;
     let text: Vec<String> = solution.report.warnings.iter().map(Warning::to_string).collect();
     assert!(text.iter().any(|text| text.contains("length") && text.contains("1.000e-1")));
     Ok(())

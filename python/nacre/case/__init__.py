@@ -16,7 +16,7 @@ Materials have names. ``nacre schema`` prints the reference of all tables and ke
     radius = 5e-3
     flat_length = 19.13e-3
     crown_radius = 7.5
-    length = 26e-3
+    length = 30e-3
 
     [body]
     substrate = "steel"

@@ -140,7 +140,7 @@ def solve(
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
     >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=40e-6)])
-    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=26e-3)
+    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=30e-3)
     >>> solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
     >>> round(solution.eccentricity[0], 8)
     0.00287
