@@ -217,6 +217,8 @@ def graded_layers(
     >>> len(nacre.graded_layers(steel, 10e-6, glued, 0.3, breakpoints=[5e-6]))
     3
     """
+    if breakpoints is not None and core.real_array("breakpoints", breakpoints).ndim != 1:
+        raise TypeError(f"breakpoints must be a sequence of depths, got {breakpoints!r}")
     return core.graded_layers(substrate, thickness, young, poisson, tolerance, breakpoints)
 
 

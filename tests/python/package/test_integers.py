@@ -188,7 +188,9 @@ def test_whole_numbers_are_integers(name: str, kind: Callable[[int], Any]) -> No
 @pytest.mark.parametrize("name", INTEGERS)
 def test_other_things_are_no_integers(name: str) -> None:
     for wrong in NOT_WHOLE:
-        if wrong is None and ("threads" in name or "max_" in name or "cells" in name):
+        if wrong is None and any(
+            word in name for word in ("threads", "max_", "cells", "influence")
+        ):
             continue  # the default
         refused(INTEGERS[name][1], wrong)
 
