@@ -416,13 +416,14 @@ class Problem:
         return share
 
     def rested(self, state: State) -> State:
-        """Return the state with idle elements midway, where they touch nothing."""
+        """Return the state with elements midway that touch nothing there: they carry rounding."""
         if self.centrifugal == 0:
             moved = self.kinematics.motion @ state.ring
             own = self.kinematics.neutral(moved, 0.0)
             places = self.kinematics.places(moved, own).places
             deep = places[..., 0] + np.abs(places[..., 1]) * self.kinematics.half
-            idle = (np.maximum(deep, state.reaction.force[..., 0]) <= 0).all(axis=1)
+            idle = (deep <= 0).all(axis=1)
+            state.reaction.force[idle] = 0.0
             state.own = np.where(idle[:, None], own, state.own)
             state.places = np.where(idle[:, None, None], places, state.places)
         return state

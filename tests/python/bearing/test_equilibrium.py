@@ -1,4 +1,4 @@
-"""Equilibria are found where there are any, and loads without one are refused with what would do."""
+"""Equilibria are found where there are any; other loads are refused with what would do."""
 
 from __future__ import annotations
 
