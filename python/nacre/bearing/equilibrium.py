@@ -415,6 +415,19 @@ class Problem:
         share: Array = np.minimum(1.0, (FARTHEST * deep + beside) / np.where(size > 0, size, 1.0))
         return share
 
+    def rested(self, state: State) -> State:
+        """Return the state with elements midway that touch nothing there: they carry rounding."""
+        if self.centrifugal == 0:
+            moved = self.kinematics.motion @ state.ring
+            own = self.kinematics.neutral(moved, 0.0)
+            places = self.kinematics.places(moved, own).places
+            deep = places[..., 0] + np.abs(places[..., 1]) * self.kinematics.half
+            idle = (deep <= 0).all(axis=1)
+            state.reaction.force[idle] = 0.0
+            state.own = np.where(idle[:, None], own, state.own)
+            state.places = np.where(idle[:, None, None], places, state.places)
+        return state
+
     def solve(
         self,
         ring: Array,
@@ -434,7 +447,7 @@ class Problem:
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
             if state.balance <= tolerance:
-                return state, done, "converged"
+                return self.rested(state), done, "converged"
             if done == max_iterations:
                 break
             ring_step, own_step, shorter = self.step(state, reach)

@@ -1,4 +1,4 @@
-"""Equilibria are found where there are any, and loads without one are refused with what would do."""
+"""Equilibria are found where there are any; other loads are refused with what would do."""
 
 from __future__ import annotations
 
@@ -236,7 +236,9 @@ def test_pressures_are_within_their_errors(tilted: BearingSolution) -> None:
     errors = tilted.report.discretisation
     assert errors is not None
     fine = tilted.bearing.solve(  # type: ignore[attr-defined]
-        force=(4450.0, 0.0, None), tilt=(None, 6e-4), cells=(160, 96)  # four times as fine
+        force=(4450.0, 0.0, None),
+        tilt=(None, 6e-4),
+        cells=(160, 96),  # four times as fine
     )
     for name in ("peak_pressure", "edge_pressure"):
         error = errors[name]
@@ -284,9 +286,7 @@ def test_sharp_rollers_have_no_error_and_balls_no_edge() -> None:
 
 def test_states_of_the_first_release_are_read() -> None:
     # Their speed is that of the cage, of a shaft that turns; there are no errors.
-    solution = CylindricalRoller(**SIZE).solve(
-        force=(4450.0, 0.0, None), speed=500.0, **STANDARD
-    )
+    solution = CylindricalRoller(**SIZE).solve(force=(4450.0, 0.0, None), speed=500.0, **STANDARD)
     state = solution.to_dict()
     state["speed"] = solution.cage_speed
     del state["rotating"], state["report"]["discretisation"]

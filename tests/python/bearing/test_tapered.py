@@ -85,7 +85,8 @@ def test_forces_of_contacts_and_rib_balance(options: dict[str, Any], speed: floa
     beta = bearing.roller_angle
     axis = np.array([-math.sin(ANGLE - beta), math.cos(ANGLE - beta)])
     across = np.array([axis[1], -axis[0]])
-    pull = np.array([bearing.mass * 24e-3 * speed**2, 0.0])
+    cage = speed / 2 * (1 - 8 / 48 * math.cos(ANGLE - beta))
+    pull = np.array([bearing.mass * 24e-3 * cage**2, 0.0])
     total, moments = np.zeros(3), np.zeros(2)
     scale = float(solution.loads.sum()) / 2
 
