@@ -400,7 +400,8 @@ impl TractionTask<'_> {
             for (axis, earlier) in self.earlier(cell).into_iter().enumerate() {
                 let parts = moved.iter().zip(motions);
                 let rigid: f64 = parts.map(|(by, motion)| by * motion[axis]).sum();
-                residual[place(axis, cell)] = -(rigid + earlier - change(axis, cell));
+                let slip = rigid + earlier - change(axis, cell);
+                residual[place(axis, cell)] = -slip;
             }
         }
         let second_order = self.second_order(tangential, &whole, pressed, &full_window(shape));
@@ -570,13 +571,15 @@ fn largest_torque(grid: &Grid, bound: &Array2<f64>) -> f64 {
 }
 
 /// The cell ahead, or the last one.
-fn ahead(direction: RollingDirection, mut cell: [usize; 2], field: &Array2<f64>) -> [usize; 2] {
-    let axis = direction.axis();
-    cell[axis] = match direction.is_forward() {
-        true => (cell[axis] + 1).min(field.len_of(Axis(axis)) - 1),
-        false => cell[axis].saturating_sub(1),
+fn ahead(direction: RollingDirection, [i, j]: [usize; 2], field: &Array2<f64>) -> [usize; 2] {
+    let next = |at: usize, cells: usize| match direction.is_forward() {
+        true => (at + 1).min(cells - 1),
+        false => at.saturating_sub(1),
     };
-    cell
+    match direction.axis() {
+        0 => [next(i, field.nrows()), j],
+        _ => [i, next(j, field.ncols())],
+    }
 }
 
 fn cut(field: &Array2<f64>, window: &Window) -> Vec<f64> {
