@@ -6,7 +6,7 @@ use nacre::{
     Algorithm, Contact, FrictionOptions, Grid, Hardness, HeightMap, Motion, Options, Paraboloid,
     Result, Setup, Solution, Step, StressOptions, Surface, stress,
 };
-use ndarray::{Array2, Axis, s};
+use ndarray::{Array2, Axis, Slice};
 
 use crate::support::settings::{plan, steel};
 
@@ -15,12 +15,14 @@ fn layouts(array: &Array2<f64>) -> [Array2<f64>; 3] {
     let (rows, columns) = array.dim();
     let mut columns_first = Array2::zeros((columns, rows)).reversed_axes();
     columns_first.assign(array);
-    let mut backwards = array.slice(s![..;-1, ..;-1]).to_owned();
+    let mut backwards = array.clone();
     backwards.invert_axis(Axis(0));
     backwards.invert_axis(Axis(1));
-    let mut spread = Array2::zeros((2 * rows, 3 * columns));
-    spread.slice_mut(s![..;2, ..;3]).assign(array);
-    let apart = spread.slice_move(s![..;2, ..;3]);
+    backwards.assign(array);
+    let mut apart = Array2::zeros((2 * rows, 3 * columns));
+    apart.slice_axis_inplace(Axis(0), Slice::new(0, None, 2));
+    apart.slice_axis_inplace(Axis(1), Slice::new(0, None, 3));
+    apart.assign(array);
     let all = [columns_first, backwards, apart];
     for one in &all {
         assert!(one == array && !one.is_standard_layout());
