@@ -22,8 +22,9 @@
 //! | file | what |
 //! |---|---|
 //! | `step` | what is asked for |
+//! | `coulomb` | Coulomb's law in cells |
 //! | `second_order` | rolling to second order in the length of a cell |
-//! | `newton` | tractions for a pressure: Coulomb's law in cells, the operators of sliding and of rolling, Newton's linear systems |
+//! | `newton` | tractions for a pressure: the operators of sliding and of rolling, Newton's linear systems |
 //! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
 //! | `halved` | from a solution on cells of twice the length: a start, and the discretisation error |
 //! | `session` | pressure and tractions in turn |
@@ -36,6 +37,7 @@ use crate::contact::Contact;
 use crate::error::Result;
 use crate::model::surface::Surface;
 
+mod coulomb;
 mod creep;
 mod halved;
 mod newton;

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::newton::{Effort, Law, Operator, TractionProblem};
+use super::coulomb::Law;
+use super::newton::{Effort, Operator, TractionProblem};
 use super::step::RollingDirection;
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;

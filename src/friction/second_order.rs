@@ -37,7 +37,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use ndarray::Array2;
 
-use super::newton::CellState;
+use super::coulomb::CellState;
 use super::step::RollingDirection;
 use crate::compliance::traction::Tangential;
 use crate::model::grid::{Grid, Window, each_cell};

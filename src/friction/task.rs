@@ -5,9 +5,8 @@ use std::ops::Range;
 
 use ndarray::{Array2, Axis};
 
-use super::newton::{
-    CellState, ConvolutionWatch, Effort, Law, Operator, TractionProblem, TractionResult,
-};
+use super::coulomb::{CellState, Law};
+use super::newton::{ConvolutionWatch, Effort, Operator, TractionProblem, TractionResult};
 use super::second_order::SecondOrder;
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};

@@ -9,7 +9,7 @@ use numpy::{
     get_array_module,
 };
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyException, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBool, PyComplex, PyDict, PyFloat, PyList, PyTuple};
 use serde::Serialize;
@@ -215,8 +215,10 @@ fn nested<'py>(name: &str, value: Bound<'py, PyAny>, depth: usize) -> PyResult<B
 /// Complex numbers, objects, text and a single bool raise a `TypeError` that names the argument.
 pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
     let numpy = get_array_module(object.py())?;
-    let ragged =
-        |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
+    let ragged = |error: PyErr| match error.is_instance_of::<PyException>(object.py()) {
+        true => PyTypeError::new_err(format!("{name} must be a real array: {error}")),
+        false => error, // such as an interrupt
+    };
     let array = plain(name, object.clone())?;
     let array = numpy.call_method1("asarray", (array,)).map_err(ragged)?;
     let dtype = array.getattr("dtype")?;

@@ -6,7 +6,6 @@ use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result, Substra
 use crate::support::bodies::body;
 use crate::support::random::uniform;
 use crate::support::reference::{list, number, read};
-use crate::support::settings::stack;
 
 /// Relative to max(|∂|, 1e-6 |c|/|θ|): the energies are sums of a few terms of one size.
 const EXACT: f64 = 1e-12;

@@ -10,14 +10,12 @@ use nacre::influence::influence_coefficients;
 use nacre::{
     Contact, Cylinder, Elastic, FlatPunch, Grid, Method, Motion, Paraboloid, Result, Setup, Warning,
 };
-use ndarray::Array2;
 use serde_json::Value;
 
 use crate::support::pairs::{
-    Pulled, RADIUS, ball, coated, creepage, equal, load, material, pair, precise, rolled, rolling,
-    unlike,
+    ball, coated, creepage, equal, load, material, pair, precise, rolled, rolling, unlike,
 };
-use crate::support::reference::{cases, list, number, read};
+use crate::support::reference::{cases, list, number};
 use crate::support::settings::one_thread;
 
 /// Rolling on an elliptic contact of the reference, 2.2 times as wide as it.
