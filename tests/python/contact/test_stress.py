@@ -169,10 +169,9 @@ def test_a_stress_says_how_well_its_depth_is_resolved(solution: nacre.Solution) 
     assert nacre.stress(COATED, GRID, solution.pressure, 0.0).uncertainty is None
     coating, substrate = solution.stress_summary().layers
     assert coating.uncertainty.keys() == {"von_mises", "tension", "max_shear"}
-    value, (_, _, z) = substrate.von_mises
-    (error,) = solution.stress([z]).uncertainty  # type: ignore[misc]
-    # The same sum, in another order.
-    assert substrate.uncertainty["von_mises"] <= (1.0 + 1e-14) * error < 5e-2 * value
+    value, _ = substrate.von_mises
+    # Other places, and the width of a contact of some ten cells, leave more uncertain than the place.
+    assert 0.0 < substrate.uncertainty["von_mises"] < 5e-2 * value
 
 
 def test_stresses_that_cells_do_not_resolve_are_warned_of() -> None:
