@@ -389,7 +389,8 @@ mod tests {
         let layers =
             [layer.clone().with_name("DLC")?, layer.with_interface(Interface::Frictionless)];
         kept(HalfSpace::new(steel, layers.clone())?)?;
-        kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
+        let bonded = [layers[0].clone()];
+        kept(HalfSpace::new(steel, bonded)?.with_ends([Some(-1e-2 / 3.0), None])?)?;
         kept(HalfSpace::new(Substrate::Rigid, layers.clone())?)?;
         let spring = Interface::Spring(Spring::new(Some(1e15), None)?);
         kept(spring)?;

@@ -122,7 +122,7 @@ fn a_contact_without_end_is_warned_of() -> Result<()> {
 
 #[test]
 fn nothing_is_found_where_nothing_touches() -> Result<()> {
-    let roller = Roller::new(5e-3, 10e-3, 1.0)?;
+    let roller = Roller::new(5e-3, 10e-3, 1.0)?.with_length(16e-3)?;
     // At the end of the straight part the tilt of 1 mrad lowers the roller by 5 µm; the crown falls from
     // there on, by 0.5 µm where it is lowest, 1 mm further.
     for (approach, touches) in [(-5.6e-6, false), (-5.4e-6, true)] {

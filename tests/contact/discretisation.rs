@@ -230,7 +230,8 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
 }
 
 /// Coats in line contact, thin and thick, soft and hard: the stated error of the peak holds the true one, found on cells far
-/// smaller, and is at most twenty times as large, or 3e-4 of the peak where the true one is small by chance.
+/// smaller, and is at most twenty times as large. The true one depends on where the rim lies in its cell, and may be small by
+/// chance: the largest on cells of nearly this length counts.
 #[test]
 fn errors_of_coats_in_line_contact_have_their_size() -> Result<()> {
     let half_width = 1.94e-4;
@@ -244,11 +245,16 @@ fn errors_of_coats_in_line_contact_have_their_size() -> Result<()> {
             };
             let right = on(4096, 1e-3)?.peak_pressure();
             for (cells, width) in [(64, 1e-3), (96, 0.93e-3), (128, 1e-3), (256, 0.9e-3)] {
-                let found = on(cells, width)?;
-                let stated = peak_error(estimate(&found)?);
-                let error = (found.peak_pressure() - right).abs();
+                let solution = on(cells, width)?;
+                let stated = peak_error(estimate(&solution)?);
+                let error = (solution.peak_pressure() - right).abs();
                 below!(error, stated, ratio, thickness, cells);
-                below!(stated, (20.0 * error).max(3e-4 * right), ratio, thickness, cells);
+                let mut largest = error;
+                for step in 1..6 {
+                    let near = on(cells, width * (1.0 + 0.004 * f64::from(step)))?;
+                    largest = largest.max((near.peak_pressure() - right).abs());
+                }
+                below!(stated, 20.0 * largest, ratio, thickness, cells);
             }
         }
     }
