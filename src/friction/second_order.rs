@@ -17,11 +17,13 @@
 //!
 //! wherever the edge lies in its cell. The normal n of the edge is that along which p², linear in ρ, falls. At a sharp
 //! edge, where p grows outwards, or where the surface ahead cannot touch, the border of the cell is the edge:
-//! p = A_p/√ρ, and
+//! both p and q are as 1/√ρ, and
 //!
 //! ```text
-//! g = (√2/4) d αc11                                                                     (3)
+//! g = 0.153 d αc11                                                                      (3)
 //! ```
+//!
+//! is that with which the force on a plane punch that sticks, πW/αc11 per half-width, has no error of first order.
 //!
 //! A slipping cell has its traction along the slip at its centre, which follows from those of two half-points, or at the
 //! leading edge from the motion alone:
@@ -33,7 +35,7 @@
 //!
 //! so that |s̃ − s| ≤ |s|/2, and slip is not against the traction.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::PI;
 
 use ndarray::Array2;
 
@@ -41,6 +43,9 @@ use super::coulomb::CellState;
 use super::step::RollingDirection;
 use crate::compliance::traction::Tangential;
 use crate::model::grid::{Grid, Window, each_cell};
+
+/// Factor of (3): the root of the error of that force on n cells, found on 40 to 1280 cells; it is 0.15297 − 0.037/n.
+const SHARP: f64 = 0.15297;
 
 /// Largest g over the difference of the coefficients of a cell and of that ahead. From there on a leading cell has no
 /// traction to a thousandth.
@@ -80,7 +85,7 @@ impl SecondOrder {
         };
         let [c11, c22, ct] = tangential.waves(PI / (2.0 * d));
         let kappa = [c22 / c11, ct / c11];
-        let sharp = 0.5 * FRAC_1_SQRT_2 * d * c11;
+        let sharp = SHARP * d * c11;
         let most = RIGID * own[0].max(own[1]);
         let mut leading = Vec::new();
         let mut ahead = vec![None; window[0].len() * columns];
