@@ -172,7 +172,7 @@ def test_a_stress_says_how_well_its_depth_is_resolved(solution: nacre.Solution) 
     coating, substrate = solution.stress_summary().layers
     assert coating.uncertainty.keys() == {"von_mises", "tension", "max_shear"}
     value, _ = substrate.von_mises
-    # Other places, and the width of a contact of some ten cells, leave more uncertain than the place.
+    # Other places, and the width of some ten cells, leave more uncertain than the place does.
     assert 0.0 < substrate.uncertainty["von_mises"] < 5e-2 * value
 
 
@@ -185,7 +185,9 @@ def test_stresses_that_cells_do_not_resolve_are_warned_of() -> None:
         summary = solution.stress_summary()
     coating_stress = summary.layers[0]
     assert coating_stress.uncertainty["tension"] > 0.25 * coating_stress.tension[0]
-    assert coating_stress.uncertainty["von_mises"] < 0.1 * coating_stress.von_mises[0]
+    # A quarter is warned of.
+    assert coating_stress.uncertainty["von_mises"] < 0.25 * coating_stress.von_mises[0]
+    assert "von Mises" not in summary.warnings[0]
     # The tension's error must fall to a quarter of it, and falls as the size of the cells.
     times = math.ceil(coating_stress.uncertainty["tension"] / (0.25 * coating_stress.tension[0]))
     named = f"due to the size of the cells: take cells {times} times smaller"
@@ -413,12 +415,16 @@ def test_refinement_keeps_an_extreme_beyond_the_grid() -> None:
     grid = nacre.Grid((24, 24), (2.1e-4, 2.1e-4))
     solution = nacre.solve(nacre.Sphere(12.7e-3), body, load=7.15, grid=grid)
     sliding: dict[str, Any] = {"friction": 0.2, "direction": (1.0, 0.0)}
+    errors = []
     for refine in (None, 0.05):
-        substrate = solution.stress_summary(**sliding, refine=refine).layers[1]
+        coating, substrate = solution.stress_summary(**sliding, refine=refine).layers
         value, (x, _, _) = substrate.tension
         assert x < -0.5 * grid.size[0]
-        error = substrate.uncertainty["tension"]
-        assert abs(value - 20.90e6) < error < 0.02 * value
+        errors.append(substrate.uncertainty["tension"])
+        # Merging leaves 0.2 % of stresses beyond the grid; below the edge, cells leave much more.
+        assert abs(value - 20.90e6) < min(errors[-1], 0.02 * value)
+    # An extreme counts as known within `refine` of 8 % of the largest von Mises stress.
+    assert errors[1] < max(errors[0], 0.05 * 0.08 * coating.von_mises[0])
 
 
 def test_an_interface_under_compression_has_no_tension_far_away() -> None:
