@@ -855,9 +855,10 @@ impl<'a, 'b> Planes<'a, 'b> {
     }
 }
 
-/// The largest magnitude of peaks.
+/// The largest magnitude of peaks; 0 where no cell counts.
 fn largest_of(peaks: &[Extreme]) -> f64 {
-    peaks.iter().fold(0.0, |largest, peak| peak.value.abs().max(largest))
+    let values = peaks.iter().map(|peak| peak.value.abs());
+    values.filter(|value| value.is_finite()).fold(0.0, f64::max)
 }
 
 /// Jump of the in-plane stress from above to below, as the larger principal value of its magnitude.
