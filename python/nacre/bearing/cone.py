@@ -137,8 +137,8 @@ def check_carried(
             raise ValueError(f"{', or '.join(bounds)}: contacts only push and balance no such load")
     left = np.zeros(5)
     left[free] = load - cone @ _factors(cone, load)
-    row = int(np.abs(left).argmax())
+    largest = int(np.abs(left).argmax())
     raise ValueError(
-        f"{WORDS[row]} must be one that contacts, which only push, balance; "
-        f"{left[row] / units[row]:.6g} {UNITS[row]} of it are left, got {float(loads[row])!r}"
+        f"{WORDS[largest]} must be one that contacts, which only push, balance; "
+        f"{left[largest] / units[largest]:.6g} {UNITS[largest]} of it are left, got {float(loads[largest])!r}"
     )

@@ -219,7 +219,8 @@ class Barrels(Balls):
 
     def generators(self) -> Array:
         """Return the forces on the ring of unit forces along the contacts' normals ``(5, n)``."""
-        return np.einsum("zak,za->kz", self.motion, self.normals)
+        forces: Array = np.einsum("zak,za->kz", self.motion, self.normals)
+        return forces
 
 
 Kinematics = Rollers | Balls
@@ -422,7 +423,7 @@ class Problem:
             own = self.kinematics.neutral(moved, 0.0)
             places = self.kinematics.places(moved, own).places
             deep = places[..., 0] + np.abs(places[..., 1]) * self.kinematics.half
-            idle = (deep <= 0).all(axis=1)
+            idle = np.asarray((deep <= 0).all(axis=1))
             state.reaction.force[idle] = 0.0
             state.own = np.where(idle[:, None], own, state.own)
             state.places = np.where(idle[:, None, None], places, state.places)

@@ -132,10 +132,10 @@ def assembled(
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
-    for name in dataset.coords if kinds["bears"] else ():
+    for coordinate in dataset.coords if kinds["bears"] else ():
         # Pictures take them for numbers in the units that are set otherwise.
-        if unit := PARAMETERS.get(str(name).rpartition(".")[2]):
-            dataset[name].attrs["units"] = unit
+        if unit := PARAMETERS.get(str(coordinate).rpartition(".")[2]):
+            dataset[coordinate].attrs["units"] = unit
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",

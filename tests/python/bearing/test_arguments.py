@@ -101,7 +101,7 @@ def test_what_followed_gives_way_to_other_arguments() -> None:
         ({"clearance": 40e-6}, "clearance must not be given beside"),
     ):
         with pytest.raises(ValueError, match=message):
-            dataclasses.replace(bearing, **given)
+            dataclasses.replace(bearing, **given)  # type: ignore[arg-type]
 
 
 MILLIMETRES: list[tuple[str, dict[str, Any], str]] = [

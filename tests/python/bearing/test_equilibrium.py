@@ -129,7 +129,7 @@ def test_thrust_of_a_polygon_of_rollers() -> None:
     asked = {"force": (1000.0, 0.0, 300.0), "rotation": math.pi / 5}
     expected = 1000.0 * math.tan(0.25) / math.cos(math.pi / 5)
     with pytest.raises(ValueError, match=rf"at least {expected:.4g}\d* N, got 300\.0"):
-        bearing.solve(**asked, **STANDARD)
+        bearing.solve(**asked, **STANDARD)  # type: ignore[arg-type]
 
 
 def test_two_rollers_carry_along_one_line() -> None:
@@ -247,7 +247,7 @@ def test_pressures_are_within_their_errors(tilted: BearingSolution) -> None:
         assert error < 0.3 * getattr(tilted, name)
         smaller = fine.report.discretisation[name]
         assert smaller < error
-    assert f"± {100 * errors['peak_pressure'] / tilted.peak_pressure:.1g} %" in str(tilted)
+    assert f"± {100 * errors['peak_pressure'] / tilted.peak_pressure:.1g} %" in str(tilted)  # type: ignore[operator]
 
 
 def test_errors_are_kept(tilted: BearingSolution, tmp_path: Any) -> None:
@@ -263,7 +263,7 @@ def test_errors_are_kept(tilted: BearingSolution, tmp_path: Any) -> None:
     )
     for name in ("peak_pressure", "edge_pressure"):
         kept = float(study[f"{name}_discretisation"][0])
-        assert kept == pytest.approx(tilted.report.discretisation[name], rel=1e-9)
+        assert kept == pytest.approx(tilted.report.discretisation[name], rel=1e-9)  # type: ignore[index]
 
 
 def test_sharp_rollers_have_no_error_and_balls_no_edge() -> None:

@@ -63,7 +63,7 @@ def draw_bearing(draw: np.random.Generator, kind: type[Any]) -> Any:
             sizes["raceway_crown"] = [None if draw.random() < 0.5 else c for c in crowns.tolist()]
             x = np.linspace(-0.5, 0.5, 21) * length
             drop = diameter * (1e-4 * draw.random() + 5e-4 * (x / length) ** 2)
-            sizes["profile"] = draw.choice(["iso16281", None, nacre.SampledProfile(x, drop)])
+            sizes["profile"] = draw.choice(["iso16281", None, nacre.SampledProfile(x, drop)])  # type: ignore[arg-type]
         if kind is SphericalRoller:
             wide = sizes["pitch_diameter"] / math.cos(sizes["contact_angle"]) + diameter
             sizes["profile_radius"] = wide / 2 * draw.uniform(0.9, 0.99)
@@ -84,7 +84,7 @@ def draw_loads(draw: np.random.Generator, bearing: Any) -> dict[str, Any]:
     elif isinstance(bearing, AngularContactBall | TaperedRoller) or bearing.rows == 1:
         force[2] = force[2] and abs(force[2]) if draw.random() < 0.7 else force[2]
     if force[0] is None and draw.random() < 0.5:
-        moved[0] = float(draw.uniform(-2e-3, 2e-3) * bearing.diameter)
+        moved[0] = float(draw.uniform(-2e-3, 2e-3) * bearing.diameter)  # type: ignore[call-overload]
     options: dict[str, Any] = {
         "force": force,
         "displacement": moved,

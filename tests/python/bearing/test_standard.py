@@ -97,7 +97,7 @@ def test_rating_falls_continuously_beyond_the_grooves_of_the_table() -> None:
     def rated(gamma: float, *osculation: float) -> float:
         pitch = 10e-3 / gamma
         return rating(
-            DeepGrooveBall(count=7, diameter=10e-3, pitch_diameter=pitch, osculation=osculation)
+            DeepGrooveBall(count=7, diameter=10e-3, pitch_diameter=pitch, osculation=osculation)  # type: ignore[arg-type]
         )
 
     def formula(gamma: float, inner: float, outer: float) -> float:

@@ -314,6 +314,6 @@ def test_the_slope_of_a_power_mean_over_cases_is_that_of_differences() -> None:
     point, above, below = (problem.at(np.array([x + step])) for step in (0.0, 1e-4, -1e-4))
     slope = (above.value - below.value) / 2e-4
     assert point.slope[0] == pytest.approx(slope, rel=1e-3)  # cells enter the contact one by one
-    approaches = [nacre.solve(**BALL, **case, grid=RADIUS["grid"]).approach for case in cases]
+    approaches = [nacre.solve(**BALL, **case, grid=RADIUS["grid"]).approach for case in cases]  # type: ignore[arg-type]
     mean = np.mean(np.array(approaches) ** 4) ** 0.25
     assert point.value * problem.unit == pytest.approx(mean, rel=1e-7)

@@ -324,9 +324,9 @@ def test_a_keyword_of_the_wrong_type_and_a_missing_file_are_named(tmp_path: Path
     for wrong in (True, "extend"):
         with pytest.raises(TypeError, match=f"segment must be a number or 'all', got {wrong!r}"):
             read(path, segment=wrong)  # type: ignore[arg-type]
-    for wrong in (True, 0.5):
+    for wrong in (True, 0.5):  # type: ignore[assignment]
         with pytest.raises(TypeError, match=f"depth must be a name or a number, got {wrong!r}"):
-            read(path, depth=wrong)  # type: ignore[call-overload]
+            read(path, depth=wrong)
     with pytest.raises(FileNotFoundError, match=r"none\.csv"):
         read(tmp_path / "none.csv")
 

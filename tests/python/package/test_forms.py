@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import pandas
+import pandas  # type: ignore[import-untyped]
 import pytest
 import xarray
 
@@ -26,7 +26,7 @@ SOLUTION = quiet(CONTACT.solve, BALL, load=10.0)
 TIP = indent.Tip.sphere(1e-5)
 STATE = indent.Indentation(STEEL, TIP).at(load=1e-3)
 ROLLERS = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
-ROLLER = bearing.CylindricalRoller(**ROLLERS)
+ROLLER = bearing.CylindricalRoller(**ROLLERS)  # type: ignore[arg-type]
 BALLS = bearing.DeepGrooveBall(count=9, diameter=8e-3, pitch_diameter=39e-3)
 WAVENUMBERS = nacre.Response(lambda alpha: 1e-9 + 0 * alpha).wavenumbers
 ROWS, COLUMNS = np.indices(GRID.shape)
@@ -124,7 +124,7 @@ def curve(**given: Any) -> Array:
 def random(**given: Any) -> Array:
     options = {"shape": (16, 16), "size": (1.0, 1.0)} | given
     numbers = {"hurst": 0.8, "shortest": 0.2, "longest": 1.0, "rms_height": 1.0, "seed": 1}
-    return rough.random_surface(**options, **numbers).heights
+    return rough.random_surface(**options, **numbers).heights  # type: ignore[arg-type]
 
 
 def rough_curve(pressures: Any) -> Array:
@@ -141,7 +141,7 @@ def crept(creepages: Any) -> Array:
 
 
 def gradient(output: Any) -> Array:
-    return quiet(SOLUTION.gradient, output).gap
+    return quiet(SOLUTION.gradient, output).gap  # type: ignore[no-any-return]
 
 
 MAPS: dict[str, Argument] = {
@@ -183,7 +183,7 @@ MAPS: dict[str, Argument] = {
     "DangVan.stress": Argument(HISTORY, fatigue.DangVan(5e8, 3e8).stress),
     "Roller(profile)": Argument(
         single([[-0.5, 0.0, 0.25], [0.25, 0.0, 0.5]]),
-        lambda a: nacre.Roller(1.0, length=0.75, profile=a).profile.drop_at([-0.25, 0.125]),
+        lambda a: nacre.Roller(1.0, length=0.75, profile=a).profile.drop_at([-0.25, 0.125]),  # type: ignore[union-attr]
     ),
     "frequency_response": Argument(MAP, lambda a: nacre.frequency_response(STEEL, a)),
     "surface_compliance": Argument(
@@ -378,7 +378,7 @@ PAIRS: dict[str, Argument] = {
     ),
     "raceway_crown": Argument(
         single([1.0, 2.0]),
-        lambda a: bearing.CylindricalRoller(**ROLLERS, raceway_crown=a).drop("outer"),
+        lambda a: bearing.CylindricalRoller(**ROLLERS, raceway_crown=a).drop("outer"),  # type: ignore[arg-type]
     ),
     "raceway_diameters": Argument(
         single([0.055, 0.07502]),
@@ -557,7 +557,7 @@ def test_units_of_text_are_converted_or_refused() -> None:
     tilt = xarray.DataArray([0.1, 0.2], dims="x", attrs={"units": "mrad"})
     np.testing.assert_allclose(pressed(tilt=tilt), pressed(tilt=(1e-4, 2e-4)), rtol=1e-6)
     degrees = xarray.DataArray(45.0, attrs={"units": "degree"})
-    assert hertz.relative_radii((1.0, 2.0), (1.0, 3.0), degrees) == pytest.approx(
+    assert hertz.relative_radii((1.0, 2.0), (1.0, 3.0), degrees) == pytest.approx(  # type: ignore[arg-type]
         hertz.relative_radii((1.0, 2.0), (1.0, 3.0), np.pi / 4), rel=1e-14
     )
 

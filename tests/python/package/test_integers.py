@@ -44,7 +44,7 @@ def rolled(**given: Any) -> Any:
 def random(**given: Any) -> Any:
     options: dict[str, Any] = {"shape": (16, 16), "size": (1.0, 1.0), "seed": 1} | given
     numbers = {"hurst": 0.8, "shortest": 0.2, "longest": 1.0, "rms_height": 1.0}
-    return rough.random_surface(**options, **numbers)
+    return rough.random_surface(**options, **numbers)  # type: ignore[arg-type]
 
 
 def turned(**given: Any) -> Any:
@@ -54,12 +54,12 @@ def turned(**given: Any) -> Any:
 
 def read_curve(path: Path, **given: Any) -> Any:
     options = {"depth": 0, "force": 1, "units": {"depth": "nm", "force": "µN"}} | given
-    return indent.read(table(path / "a.txt"), **options)
+    return indent.read(table(path / "a.txt"), **options)  # type: ignore[call-overload]
 
 
 def read_profile(path: Path, **given: Any) -> Any:
     options = {"unit": "mm", "x": 0, "drop": 1} | given
-    return nacre.SampledProfile.read(table(path / "a.txt"), **options)
+    return nacre.SampledProfile.read(table(path / "a.txt"), **options)  # type: ignore[arg-type]
 
 
 INTEGERS: dict[str, tuple[int, Callable[[Any], Any]]] = {
@@ -163,7 +163,8 @@ def same(one: Any, other: Any) -> bool:
         return np.array_equal(one.pressure, other.pressure)
     if isinstance(one, nacre.types.History):
         return all(
-            np.array_equal(*(s.traction for s in pair)) for pair in zip(one, other, strict=True)
+            np.array_equal(*(s.traction for s in pair))
+            for pair in zip(one, other, strict=True)  # type: ignore[arg-type]
         )
     if isinstance(one, nacre.types.Stress):
         return np.array_equal(one.von_mises, other.von_mises)

@@ -67,7 +67,7 @@ class Scene:
         cells = (shape[0] * self.cells, shape[1] * self.cells)
         return nacre.Grid(cells, (size * self.metre, 0.9 * size * self.metre), **keywords)
 
-    def ball(self) -> nacre.Surface:
+    def ball(self) -> Any:  # type: ignore[name-defined]
         shape = nacre.Paraboloid(5e-3 * self.metre, 7e-3 * self.metre)
         return shape.shifted(1e-5 * self.metre * self.side, 6e-6 * self.metre)
 
@@ -76,7 +76,7 @@ class Scene:
         chosen: dict[str, Any] = {"grid": self.grid(), "tolerance": SOLVED} | keywords
         arm = (1.2e-5 * self.metre * self.side, None)
         motion = {"load": 10 * self.newton, "eccentricity": arm}
-        return quiet(nacre.solve, self.ball(), body, **motion, **chosen)
+        return quiet(nacre.solve, self.ball(), body, **motion, **chosen)  # type: ignore[no-any-return]
 
 
 def bare(scene: Scene, **keywords: Any) -> Any:
@@ -198,7 +198,7 @@ def bearing(scene: Scene) -> Any:
     # The outer ring is coated; mirrored about x = 0, force and tilt about y change their signs.
     size = {"count": 10, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
     rings = {"inner": scene.body(), "outer": scene.body(scene.film()), "clearance": 2e-5}
-    bearing = CylindricalRoller(**size, **rings, free_ends=False)
+    bearing = CylindricalRoller(**size, **rings, free_ends=False)  # type: ignore[arg-type]
     motion = {"force": (3e3 * scene.side, 0.0, None), "tilt": (None, 4e-4 * scene.side)}
     return quiet(bearing.solve, **motion, cells=(40 * scene.cells, 24 * scene.cells), threads=1)
 

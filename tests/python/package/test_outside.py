@@ -50,10 +50,10 @@ def life(**given: Any) -> Any:
 CALLS: dict[str, tuple[Any, str]] = {
     # functions
     "progress of a bearing": (lambda _: BEARING.solve(**RADIAL, progress=1), "progress must be"),
-    "progress of fatigue": (lambda s: fatigue.assess(s, progress=1), "progress must be callable"),
+    "progress of fatigue": (lambda s: fatigue.assess(s, progress=1), "progress must be callable"),  # type: ignore[arg-type]
     "progress of a study": (lambda _: sweep(progress=1), "progress must be True, False or None"),
     "progress of a map": (
-        lambda s: fatigue.shakedown_map(s, friction=[0.0], progress="x"),
+        lambda s: fatigue.shakedown_map(s, friction=[0.0], progress="x"),  # type: ignore[arg-type]
         "progress must be callable, got 'x'",
     ),
     "progress of a ratio": (
@@ -64,21 +64,21 @@ CALLS: dict[str, tuple[Any, str]] = {
     "model": (lambda _: BEARING.solve(**RADIAL | {"model": WORDS}), 'model must be "solved"'),
     "edge": (lambda _: life(edge=WORDS), 'edge must be "standard"'),
     "rotating": (lambda _: life(rotating=["inner"]), 'rotating must be "inner"'),
-    "rule": (lambda s: fatigue.assess(s, rule=WORDS), "rule must be 'von_mises'"),
+    "rule": (lambda s: fatigue.assess(s, rule=WORDS), "rule must be 'von_mises'"),  # type: ignore[arg-type]
     "rule of a history": (
-        lambda _: fatigue.shakedown(np.zeros((2, 6)), rule=WORDS),
+        lambda _: fatigue.shakedown(np.zeros((2, 6)), rule=WORDS),  # type: ignore[arg-type]
         'rule must be "von_mises"',
     ),
     "branch": (
-        lambda _: indent.solve(STEEL, indent.Tip.sphere(1e-6), load=1e-3, branch=WORDS),
+        lambda _: indent.solve(STEEL, indent.Tip.sphere(1e-6), load=1e-3, branch=WORDS),  # type: ignore[arg-type]
         "branch must be 'stable'",
     ),
     "control": (
-        lambda _: indent.solve(STEEL, indent.Tip.sphere(1e-6), load=1e-3, control=WORDS),
+        lambda _: indent.solve(STEEL, indent.Tip.sphere(1e-6), load=1e-3, control=WORDS),  # type: ignore[arg-type]
         "control must be 'load'",
     ),
     "profile": (
-        lambda _: bearing.CylindricalRoller(**ROLLERS, profile=WORDS),
+        lambda _: bearing.CylindricalRoller(**ROLLERS, profile=WORDS),  # type: ignore[arg-type]
         "profile must be a profile",
     ),
     # truth values for numbers

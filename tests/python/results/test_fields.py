@@ -16,6 +16,7 @@ from nacre.results import values
 from support import python
 
 COATING = nacre.Layer(nacre.Elastic(3e9, 0.4), 2e-6, "frictionless", "lacquer")
+BONDED = nacre.Layer(COATING.material, COATING.thickness, name=COATING.name)
 PROFILE = nacre.LogarithmicProfile(1e-6, 10e-3, flat_length=2e-3, end_factor=0.9)
 MADE: dict[str, list[dict[str, Any]]] = {
     "Elastic": [{"young": 2e11, "poisson": 0.25}],
@@ -23,7 +24,7 @@ MADE: dict[str, list[dict[str, Any]]] = {
         {"material": STEEL, "thickness": 1e-6, "interface": "frictionless", "name": "skin"},
     ],
     "Spring": [{"normal": 2e15, "tangential": 3e14}],
-    "HalfSpace": [{"substrate": STEEL, "layers": (COATING,), "ends": (-1e-2, 2e-2)}],
+    "HalfSpace": [{"substrate": STEEL, "layers": (BONDED,), "ends": (-1e-2, 2e-2)}],
     "Response": [{"values": None, "local": 1e-13}],
     "Grid": [
         {"shape": (4, 6), "size": (1.0, 2.0), "center": (0.5, 0.1), "periodic": (True, False)},
@@ -198,7 +199,7 @@ def test_numbers_have_paths(name: str, number: int) -> None:
 
 
 def test_a_solution_keeps_all_fields_of_bodies_and_grid(tmp_path: Path) -> None:
-    body = nacre.HalfSpace(STEEL, [COATING], ends=(None, 1.0))
+    body = nacre.HalfSpace(STEEL, [BONDED], ends=(None, 1.0))
     grid = nacre.Grid((16, 12), (4e-4, 3e-4), (1e-5, 2e-5))
     solution = quiet(nacre.solve, nacre.Sphere(5e-3), body, grid=grid, load=1.0)
     found = nacre.load(solution.save(tmp_path / "a.nc"))

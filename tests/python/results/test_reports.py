@@ -91,7 +91,7 @@ ROLLERS = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 6
 
 
 def bearings() -> dict[str, Any]:
-    solution = bearing.CylindricalRoller(**ROLLERS).solve(force=(5e3, 0.0, None), model="iso16281")
+    solution = bearing.CylindricalRoller(**ROLLERS).solve(force=(5e3, 0.0, None), model="iso16281")  # type: ignore[arg-type]
     line = nacre.solve(ROD, STEEL, STEEL, grid=nacre.Grid.line(64, 2e-4), load=1e4)
     model = bearing.LundbergPalmgren()
     film = quiet(bearing.film_thickness, line, speed=2.0, viscosity=0.02, pressure_viscosity=2e-8)
@@ -123,8 +123,8 @@ def test_warnings_of_friction_are_those_that_were_issued() -> None:
     load = {"load": 1.0, "friction": 0.3}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        history = coarse.slide(BALL, **load, steps=[{"force": (f, None)} for f in (0.1, 0.2)])
-        rolled = coarse.roll(BALL, **load, creepage=(1e-4, 0.0), direction="+x")
+        history = coarse.slide(BALL, **load, steps=[{"force": (f, None)} for f in (0.1, 0.2)])  # type: ignore[arg-type]
+        rolled = coarse.roll(BALL, **load, creepage=(1e-4, 0.0), direction="+x")  # type: ignore[arg-type]
     issued = {str(one.message) for one in caught}
     assert issued
     assert {*history.report.warnings, *rolled.report.warnings} == issued
@@ -231,7 +231,7 @@ def test_places_that_are_rounding_and_the_unloaded_state_are_words() -> None:
 @pytest.mark.parametrize("control", ["eccentricity", "moment"])
 def test_a_tilt_that_is_rounding_is_printed_as_0(control: Any) -> None:
     grid = nacre.Grid((40, 40), (3e-4, 3e-4))
-    solution = nacre.solve(BALL, STEEL, grid=grid, load=10.0, **{control: (0.0, 0.0)})
+    solution = nacre.solve(BALL, STEEL, grid=grid, load=10.0, **{control: (0.0, 0.0)})  # type: ignore[arg-type]
     assert re.search(r"^tilt +\(0, 0\)$", str(solution), re.MULTILINE)
     tilted = nacre.solve(BALL, STEEL, grid=grid, load=10.0, tilt=(1e-7, None))
     assert re.search(r"^tilt +\(1e-07, 0\)$", str(tilted), re.MULTILINE)

@@ -81,4 +81,4 @@ def test_maps_on_a_grid_ascend_too() -> None:
     hardness = 1e9 + 1e14 * table()
     quiet(nacre.solve, nacre.Sphere(1e-3), steel, hardness=hardness, **options)
     with pytest.raises(ValueError, match="hardness must have ascending coordinates y"):
-        nacre.solve(nacre.Sphere(1e-3), steel, hardness=hardness[:, ::-1], **options)
+        nacre.solve(nacre.Sphere(1e-3), steel, hardness=hardness[:, ::-1], **options)  # type: ignore[arg-type]

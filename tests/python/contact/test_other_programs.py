@@ -50,7 +50,7 @@ def beneath(case: dict[str, Any], depths: Any, place: tuple[float, float], load:
     field = nacre.stress(
         half_space(case), grid, pressure, depths, side="above", x=x, y=y, displacement=True
     )
-    return {name: part.ravel() for name, part in (field.components | field.displacement).items()}
+    return {name: part.ravel() for name, part in (field.components | field.displacement).items()}  # type: ignore[operator]
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,13 @@ def test_strains_of_a_road_are_those_of_three_programs() -> None:
             (first + second, "below", AMADEUS["base"], False),
         ):
             field = nacre.stress(
-                half_space(AMADEUS), grid, pressure, depth, side=side, x=place, y=0.0
+                half_space(AMADEUS),
+                grid,
+                pressure,
+                depth,
+                side=side,
+                x=place,
+                y=0.0,  # type: ignore[arg-type]
             )
             xx, yy, zz = (float(getattr(field, name)) for name in ("xx", "yy", "zz"))
             one, others = (xx, yy + zz) if across else (zz, xx + yy)
