@@ -140,5 +140,6 @@ def check_carried(
     largest = int(np.abs(left).argmax())
     raise ValueError(
         f"{WORDS[largest]} must be one that contacts, which only push, balance; "
-        f"{left[largest] / units[largest]:.6g} {UNITS[largest]} of it are left, got {float(loads[largest])!r}"
+        f"{left[largest] / units[largest]:.6g} {UNITS[largest]} of it are left, "
+        f"got {float(loads[largest])!r}"
     )

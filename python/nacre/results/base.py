@@ -137,13 +137,9 @@ class Fields:
             whole = np.empty((), dtype=object)
             whole[()] = self
             return whole
-        kind = type(self)
-        names = [
-            name
-            for name in dir(self)
-            if not name.startswith("_") and not callable(getattr(kind, name, None))
-        ]
-        first = min((name for name in names if "pressure" in name), key=len, default=names[0])
+        names = [name for name in dir(self) if not name.startswith("_")]
+        fields = [name for name in names if not callable(getattr(type(self), name, None))]
+        first = min((name for name in names if "pressure" in name), key=len, default=fields[0])
         raise TypeError(
             f"an array must be made of a field of a {type(self).__name__}, such as {first}, "
             "got the whole"

@@ -29,7 +29,7 @@ YOUNG, RADIUS = 200e9, 10e-3
 class Case(NamedTuple):
     """A contact, the grid with so many times finer cells, and the friction."""
 
-    shape: Any  # type: ignore[name-defined]
+    shape: Any
     body: nacre.HalfSpace
     load: float
     grid: Callable[[int], nacre.Grid]

@@ -99,9 +99,9 @@ def test_strains_of_a_road_are_those_of_three_programs() -> None:
                 grid,
                 pressure,
                 depth,
-                side=side,
+                side=side,  # type: ignore[arg-type]
                 x=place,
-                y=0.0,  # type: ignore[arg-type]
+                y=0.0,
             )
             xx, yy, zz = (float(getattr(field, name)) for name in ("xx", "yy", "zz"))
             one, others = (xx, yy + zz) if across else (zz, xx + yy)

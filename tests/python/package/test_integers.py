@@ -163,8 +163,8 @@ def same(one: Any, other: Any) -> bool:
         return np.array_equal(one.pressure, other.pressure)
     if isinstance(one, nacre.types.History):
         return all(
-            np.array_equal(*(s.traction for s in pair))
-            for pair in zip(one, other, strict=True)  # type: ignore[arg-type]
+            np.array_equal(*(s.traction for s in pair))  # type: ignore[arg-type]
+            for pair in zip(one, other, strict=True)
         )
     if isinstance(one, nacre.types.Stress):
         return np.array_equal(one.von_mises, other.von_mises)

@@ -67,7 +67,7 @@ class Scene:
         cells = (shape[0] * self.cells, shape[1] * self.cells)
         return nacre.Grid(cells, (size * self.metre, 0.9 * size * self.metre), **keywords)
 
-    def ball(self) -> Any:  # type: ignore[name-defined]
+    def ball(self) -> Any:
         shape = nacre.Paraboloid(5e-3 * self.metre, 7e-3 * self.metre)
         return shape.shifted(1e-5 * self.metre * self.side, 6e-6 * self.metre)
 
