@@ -55,7 +55,7 @@ pub(super) fn refined(
             return vec![(at, 1.0)];
         }
         let (own, beside) =
-            (at / 2, if at % 2 == 0 { (at / 2).checked_sub(1) } else { Some(at / 2 + 1) });
+            (at / 2, if at.is_multiple_of(2) { (at / 2).checked_sub(1) } else { Some(at / 2 + 1) });
         let mut cells = vec![(own, 0.75)];
         cells.extend(beside.filter(|beside| *beside < count).map(|beside| (beside, 0.25)));
         cells

@@ -699,6 +699,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             }
             ControlFlow::Continue(known[k].map_or(f64::NEG_INFINITY, |values| values[which]))
         };
+        #[expect(clippy::needless_range_loop, reason = "`value` takes the number as well")]
         for which in 0..OF_LAYER {
             let mut starts: Vec<usize> = (0..points.len()).collect();
             starts.sort_by(|a, b| in_cells[*b][which].total_cmp(&in_cells[*a][which]));

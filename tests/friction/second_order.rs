@@ -109,7 +109,7 @@ fn stated_errors_of_the_limits() -> Result<()> {
         below!(x.hypot(y) * ellipse.bears, stated.force, name);
         below!(torque.abs() * ellipse.bears * ellipse.length, stated.torque, name);
         below!(power.abs() * solution.dissipated(), stated.power, name);
-        assert_eq!(stated.creepage, 0.0, "given creepages are exact");
+        assert!(stated.creepage.abs() <= 0.0, "given creepages are exact");
         below!(stated.force, 0.02 * ellipse.bears, name);
     }
     Ok(())

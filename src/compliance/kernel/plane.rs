@@ -160,14 +160,14 @@ impl<'a, const N: usize> Kernel<'a, N> {
 #[derive(Debug)]
 pub(crate) enum Kernels {
     Plane(Box<CellPlan>),
-    Line(LinePlan),
+    Line(Box<LinePlan>),
 }
 
 impl Kernels {
     /// Plans kernels on `grid`, of pieces down to `finest` of a cell, at offsets up to `reach`.
     pub(crate) fn new(body: &HalfSpace, grid: &Grid, finest: f64, reach: f64) -> Self {
         match grid.is_line() {
-            true => Self::Line(LinePlan::new(body, grid, finest)),
+            true => Self::Line(Box::new(LinePlan::new(body, grid, finest))),
             false => Self::Plane(Box::new(CellPlan::new(body, grid.spacing(), finest, reach))),
         }
     }
