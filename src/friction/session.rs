@@ -36,6 +36,9 @@ const LOOSE: f64 = 0.01;
 /// Tolerance of a start.
 const START: f64 = 1e-3;
 
+/// Least tolerance of a solution on half the cells, above rounding: it is a start, and an error has few digits.
+const REACHABLE: f64 = 1e-12;
+
 /// Tolerance on cells of twice the length, over that of the cells: their discretisation differs by far more.
 const LOOSER: f64 = 10.0;
 
@@ -397,8 +400,9 @@ impl<'a> Session<'a> {
         }
         let mut solve = || -> Result<FrictionSolution> {
             let contact = self.contact.halved()?;
-            let tolerance =
-                (LOOSER * self.options.tolerance).min(START.max(self.options.tolerance));
+            let tolerance = (LOOSER * self.options.tolerance)
+                .min(START.max(self.options.tolerance))
+                .max(REACHABLE);
             let options = FrictionOptions { tolerance, ..self.options };
             let session =
                 Session { compares: false, ..Session::new(&contact, self.shape, options)? };
