@@ -745,6 +745,9 @@ class Quantity:
         self.magnitude, self.units = magnitude, units
         self.dimensionless = units == ""
 
+    def to_base_units(self) -> Quantity:
+        return self
+
     def __array__(self, dtype: Any = None, copy: Any = None) -> Array:
         return np.asarray(self.magnitude, dtype=np.float64)
 
@@ -764,7 +767,7 @@ def test_numbers_with_units_and_masks_are_refused() -> None:
             Curve(values, wrong)
     with pytest.raises(TypeError, match="load must be a real number or array in SI units"):
         nacre.indent.solve(nacre.Elastic(1e9, 0.3), TIP, load=Quantity(1.0, "mN"))
-    assert plain("load", Quantity(1.0, "")).magnitude == 1.0
+    assert plain("load", Quantity(1.0, "")) == 1.0
 
 
 def test_labelled_axes_are_put_in_order() -> None:
