@@ -103,7 +103,7 @@ def test_a_solution_is_printed_where_a_save_fails(tmp_path: Path, capsys: Captur
     assert err.count("\n") == 1
 
 
-def test_an_error_of_the_whole_file_has_no_key(tmp_path: Path, capsys: Capture) -> None:
+def test_a_bearing_in_millimetres_is_printed_in_its_units(tmp_path: Path, capsys: Capture) -> None:
     case = written(
         tmp_path,
         """
@@ -115,8 +115,10 @@ def test_an_error_of_the_whole_file_has_no_key(tmp_path: Path, capsys: Capture) 
         bearing.solve.force.z = 1000
         """,
     )
-    assert command("solve", case) == 2
-    assert f"{case}: units must be" in capsys.readouterr().err
+    assert command("solve", case) == 0
+    assert "1000 N" in (printed := capsys.readouterr().out)
+    assert " MPa" in printed
+    assert " mm" in printed
 
 
 def test_an_error_of_a_history_names_the_step(tmp_path: Path, capsys: Capture) -> None:

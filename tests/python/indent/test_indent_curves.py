@@ -132,7 +132,6 @@ TEXTS: dict[str, tuple[str, str]] = {
 
 
 GIVEN: dict[str, dict[str, Any]] = {
-    "csv of a German spreadsheet": {"depth": "Eindringtiefe", "force": "Prüfkraft", "time": "Zeit"},
     "labels and a row of units": {"depth": "Displacement Into Surface"},
     "names of its own": {"depth": "Pd", "force": "Fn"},
 }
