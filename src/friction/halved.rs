@@ -63,12 +63,15 @@ pub(super) fn refined(
     let mut traction = [(); 2].map(|()| Array2::zeros(bound.dim()));
     for (i, j) in each_cell(&full_window(fine.shape())).filter(|cell| bound[*cell] > 0.0) {
         let (mut share, mut slips, mut whole) = ([0.0; 2], 0.0, 0.0);
+        let mut largest = 0.0_f64;
         for (k, along) in around(i, 0, rows) {
             for (l, across) in around(j, 1, columns) {
                 let (cell, weight) = ([k, l], along * across);
                 if coarse_bound[cell] > 0.0 {
                     whole += weight;
                     slips += if sticks[cell] { 0.0 } else { weight };
+                    let [x, y] = half.traction.each_ref().map(|q| q[cell]);
+                    largest = largest.max(x.hypot(y));
                     for (share, q) in share.iter_mut().zip(&half.traction) {
                         *share += weight * q[cell] / coarse_bound[cell];
                     }
@@ -76,10 +79,13 @@ pub(super) fn refined(
             }
         }
         let size = share[0].hypot(share[1]);
-        let most = if slips > 0.5 * whole { size } else { whole.max(size) };
-        if most > 0.0 {
+        let slips = slips > 0.5 * whole;
+        let most = if slips { size } else { whole.max(size) };
+        // A sticking cell bears no more than those around it, however large its bound.
+        let scale = if slips { bound[[i, j]] } else { bound[[i, j]].min(largest * most / size) };
+        if size > 0.0 {
             for (q, share) in traction.iter_mut().zip(share) {
-                q[[i, j]] = bound[[i, j]] * (share / most);
+                q[[i, j]] = scale * (share / most);
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, Axis, Zip};
 
 use super::coulomb::{CellState, Law};
 use super::newton::{ConvolutionWatch, Effort, Operator, TractionProblem, TractionResult};
@@ -549,12 +549,17 @@ impl FrictionFields {
     }
 }
 
-/// Bounds μp.
+/// Bounds μp; 0 where μ is below the rounding of 1.
 ///
 /// # Errors
 /// Where products of tractions would overflow or vanish.
 pub(super) fn bounds(pressure: &Array2<f64>, friction: &Friction) -> Result<Array2<f64>> {
-    let bound = friction.times(pressure);
+    let mut bound = friction.times(pressure);
+    Zip::from(&mut bound).and(pressure).for_each(|bound, p| {
+        if *bound < f64::EPSILON * p {
+            *bound = 0.0;
+        }
+    });
     let most = bound.iter().fold(0.0_f64, |most, bound| most.max(*bound));
     let (name, counts) = ("friction times the largest pressure", (1e-150..=1e150).contains(&most));
     require(name, most, most <= 0.0 || counts, "0, or between 1e-150 and 1e150")?;

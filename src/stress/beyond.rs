@@ -94,7 +94,7 @@ impl<'a> Beyond<'a> {
         Self { plan, friction, searched, most, axes: [false; 2], wider: Vec::new() }
     }
 
-    /// `peaks` at the last of `places`, or larger ones beyond the grid. `of` has the values of a cell, from its stresses at
+    /// `peaks` at the last of `places`, or larger ones beyond the grid, and those beyond it alone. `of` has the values of a cell, from its stresses at
     /// `places`, of which the `largest` matters; values that stay below the `best` of other depths do not. Where memory does
     /// not suffice for a wider grid, the peaks found so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
@@ -104,8 +104,9 @@ impl<'a> Beyond<'a> {
         residual: &[f64],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
         progress: &mut StressProgress,
-    ) -> ControlFlow<(), [Extreme; N]> {
+    ) -> ControlFlow<(), [[Extreme; N]; 2]> {
         let mut inner = self.plan.whole.grid;
+        let mut beyond = [Extreme::NONE; N];
         for level in 0..self.most {
             let matters = |(peak, best): &(&Extreme, f64)| {
                 peak.value >= LEAST_ON_BORDER * best || *best < LEAST_ON_BORDER * largest
@@ -157,6 +158,7 @@ impl<'a> Beyond<'a> {
                 let position = [x[i], y[j], peak.position[2]];
                 let value = outside.value + 0.5 * between;
                 let farther = Extreme::of(value, position, peak.bound.map(|_| error));
+                beyond[k] = beyond[k].with(farther);
                 if growth > ROUNDING * peak.value.abs() {
                     grown |= growth > rest && outside.value + growth >= best[k];
                     *peak = peak.with(farther);
@@ -169,7 +171,7 @@ impl<'a> Beyond<'a> {
             }
             inner = *grid;
         }
-        ControlFlow::Continue(peaks)
+        ControlFlow::Continue([peaks, beyond])
     }
 
     /// Whether there is a plan of this level, which is made if it does not exist yet.

@@ -249,6 +249,10 @@ pub(super) struct Bound {
 }
 
 impl Extreme {
+    /// The extreme of no values.
+    pub(super) const NONE: Self =
+        Self { value: f64::NEG_INFINITY, position: [0.0; 3], bound: None };
+
     /// The extreme of one value with this error.
     pub(super) fn of(value: f64, position: [f64; 3], error: Option<f64>) -> Self {
         Self { value, position, bound: error.map(|error| Bound { value: value + error, position }) }

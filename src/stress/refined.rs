@@ -74,13 +74,15 @@ struct Patch {
 }
 
 /// An extreme that is more uncertain than is asked for.
+#[derive(Clone)]
 struct Suspect {
     /// Its number in [`Extremes`].
     which: usize,
     /// What its bound exceeds the value by, as a part of it.
     ratio: f64,
-    /// Where its bound is.
+    /// Where its bound is, and the cell of that.
     at: [f64; 2],
+    cell: [usize; 2],
     place: Place,
     /// The cells in which it may be larger than its value by more than is allowed.
     cells: Window,
@@ -161,12 +163,14 @@ impl Refined<'_> {
             return Ok(of_grid.summary(body, strengths));
         }
         let mut progress = |part: f64| asked.tell(0.5 + 0.5 * part);
+        let beyond = std::mem::take(&mut of_grid.beyond);
         // Parts of the grid that finer cells stand for, and the extremes of these.
         let mut cores: Vec<Window> = Vec::new();
         let mut of_patches: Option<Extremes> = None;
         let mut settled = vec![false; of_grid.values.len()];
         loop {
             let all = of_patches.as_ref().map_or_else(|| of_grid.clone(), |of| of_grid.with(of));
+            let all = all.with_values(&beyond);
             let summary = all.summary(body, strengths);
             let suspects = Suspects { all: &all, bounds: &of_grid.bounds, cores: &cores };
             let suspects = self.suspects(&suspects, &settled, (summary.least_value(), half_width));
@@ -178,23 +182,26 @@ impl Refined<'_> {
                 windows.reduce(|a, b| [0, 1].map(|axis| joined(&a[axis], &b[axis])))
             };
             let margins = MARGINS.map(|margin| around(margin * half_width).unwrap_or_default());
-            let fine = match self.is_at_end(&margins[1]) {
+            let windows = self.within_ends(margins, half_width);
+            let (inside, outside): (Vec<_>, Vec<_>) =
+                suspects.into_iter().partition(|suspect| holds(&windows[0], suspect.cell));
+            let fine = match inside.is_empty() {
                 true => None,
                 false => self.fine_extremes(
                     (&request, &plan),
-                    &suspects,
-                    margins.clone(),
+                    &inside,
+                    windows.clone(),
                     &mut progress,
                 )?,
             };
-            let Some(fine) = fine else {
-                // The largest bound of these stays, whatever is found elsewhere.
-                suspects.iter().for_each(|suspect| settled[suspect.which] = true);
-                continue;
-            };
-            let [core, _] = margins;
+            // The largest bounds of these stay, whatever is found elsewhere.
+            let stay = if fine.is_some() { outside } else { [inside, outside].concat() };
+            stay.iter().for_each(|suspect| settled[suspect.which] = true);
+            let Some(fine) = fine else { continue };
+            let [core, _] = windows;
             cores.push(core);
-            let scope = Scope { without: &cores, records: true, ..Scope::of(&plan) };
+            let scope =
+                Scope { without: &cores, records: true, goes_beyond: false, ..Scope::of(&plan) };
             of_grid = request.evaluate(&plan, scope, &mut progress);
             if !(fine.finished && of_grid.finished) {
                 return Ok(StressSummary { finished: false, ..summary });
@@ -224,6 +231,7 @@ impl Refined<'_> {
                 which,
                 ratio,
                 at: [x, y],
+                cell,
                 place: place_of(&self.layers, which, depth),
                 cells: cell.map(|k| k..k + 1),
                 allowed: self.target * size,
@@ -252,13 +260,18 @@ impl Refined<'_> {
         suspects
     }
 
-    /// Whether a window is cut by a free end.
-    fn is_at_end(&self, window: &Window) -> bool {
-        let body = self.source.body;
-        let rows = Span::of(body, self.solution.grid()).rows;
-        let is_whole = rows.start <= window[0].start && window[0].end <= rows.end;
-        body.ends() != [None; 2]
-            && (!is_whole || rows.start == window[0].start || rows.end == window[0].end)
+    /// The cells that count and those of a patch, without those beside a free end.
+    fn within_ends(&self, [mut core, mut window]: [Window; 2], half_width: f64) -> [Window; 2] {
+        let (body, grid) = (self.source.body, self.solution.grid());
+        let rows = Span::of(body, grid).rows;
+        let margin = cells_within((MARGINS[1] - MARGINS[0]) * half_width, grid.spacing()[0]);
+        let [low, high] = body.ends().map(|end| usize::from(end.is_some()));
+        for (range, cells) in [(&mut window[0], 1), (&mut core[0], 1 + margin)] {
+            range.start = range.start.max(low * (rows.start + cells));
+            let end = if high > 0 { rows.end.saturating_sub(cells) } else { range.end };
+            range.end = range.end.min(end).max(range.start);
+        }
+        [core, window]
     }
 
     /// The extremes in the core of a window, on cells that are fine enough for the suspects, or as fine as may be; none where
@@ -289,6 +302,7 @@ impl Refined<'_> {
             beside: Some(beside),
             half_width: whole.whole.half_width(),
             contact: if patch.is_whole { &plan } else { whole },
+            goes_beyond: false,
             ..Scope::of(&plan)
         };
         Ok(Some(request.evaluate(&plan, scope, progress)))

@@ -69,6 +69,7 @@ mod near;
 mod reconstruction;
 mod uncertainty;
 
+pub(super) use edge::around;
 pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};

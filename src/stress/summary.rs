@@ -8,7 +8,7 @@ use super::field::{Extreme, Largest, LargestWithError, Peak, Percent, SmallerCel
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
-use super::subcell::{CellPoint, LocalSteps, STRESSES, StepErrors};
+use super::subcell::{CellPoint, LocalSteps, STRESSES, StepErrors, around};
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive, refuse_if};
@@ -108,16 +108,18 @@ impl StressSummary {
         let negligible = self.negligible_error();
         // Compression everywhere is no tension to be known.
         let pulls = |peak: &&Peak| peak.value + peak.uncertainty.unwrap_or(0.0) > 0.0;
+        // What is unresolved, and the factor by which its largest error has to fall.
         let unresolved = |peaks: &[(&str, Option<&Peak>)]| -> Option<(String, f64)> {
-            let ratio = |(name, peak): &(&str, Option<&Peak>)| {
+            let excess = |(name, peak): &(&str, Option<&Peak>)| {
                 let Peak { value, uncertainty, .. } = (*peak)?;
-                let ratio = uncertainty.filter(|error| *error > negligible)? / value.abs();
-                (ratio > UNRESOLVED_EXTREME)
-                    .then(|| (format!("{name} by {}", Percent(ratio)), ratio))
+                let error = (*uncertainty)?;
+                let ratio = error / value.abs();
+                let excess = (ratio / UNRESOLVED_EXTREME).min(error / negligible);
+                (excess > 1.0).then(|| (format!("{name} by {}", Percent(ratio)), excess))
             };
-            let (texts, ratios): (Vec<_>, Vec<_>) = peaks.iter().filter_map(ratio).unzip();
-            let worst = ratios.into_iter().reduce(f64::max)?;
-            Some((texts.join(", "), worst))
+            let (texts, excesses): (Vec<_>, Vec<_>) = peaks.iter().filter_map(excess).unzip();
+            let largest = excesses.into_iter().reduce(f64::max)?;
+            Some((texts.join(", "), largest))
         };
         let layers = self.layers.iter().filter_map(|layer| {
             let LayerSummary { von_mises, tension, shear, .. } = layer;
@@ -139,13 +141,13 @@ impl StressSummary {
             let peaks = [peaks, others].concat();
             Some((format!("interfaces[{}]", face.interface), unresolved(&peaks)?))
         });
-        let said = |(place, (said, worst)): (String, (String, f64))| {
+        let warning = |(place, (extremes, excess)): (String, (String, f64))| {
             format!(
-                "the extremes in {place} are uncertain, {said}, due to the size of the cells: take {}",
-                SmallerCells(worst / UNRESOLVED_EXTREME)
+                "the extremes in {place} are uncertain, {extremes}, due to the size of the cells: take {}",
+                SmallerCells(excess)
             )
         };
-        layers.chain(interfaces).map(said).collect()
+        layers.chain(interfaces).map(warning).collect()
     }
 }
 
@@ -168,6 +170,8 @@ pub(super) struct Extremes {
     pub(super) values: Vec<Extreme>,
     /// Of each, the largest sum of a value and its error in each cell, over all depths, where it is recorded.
     pub(super) bounds: Vec<Vec<f64>>,
+    /// Of each, that beyond the grid, where bounds are recorded.
+    pub(super) beyond: Vec<Extreme>,
     /// Whether all was done.
     pub(super) finished: bool,
 }
@@ -218,11 +222,16 @@ impl Extremes {
 
     /// The extremes of the places of both.
     pub(super) fn with(&self, other: &Self) -> Self {
-        let pairs = self.values.iter().zip(&other.values);
+        Self { finished: self.finished && other.finished, ..self.with_values(&other.values) }
+    }
+
+    /// The extremes of these places and of others.
+    pub(super) fn with_values(&self, others: &[Extreme]) -> Self {
+        let pairs = self.values.iter().zip(others);
         Self {
             values: pairs.map(|(one, other)| one.with(*other)).collect(),
-            bounds: Vec::new(),
-            finished: self.finished && other.finished,
+            finished: self.finished,
+            ..Self::default()
         }
     }
 }
@@ -329,6 +338,8 @@ pub(super) struct Scope<'a> {
     pub(super) contact: &'a StressPlan,
     /// Whether the bounds of each cell are recorded.
     pub(super) records: bool,
+    /// Whether places beyond the grid count.
+    pub(super) goes_beyond: bool,
 }
 
 impl<'a> Scope<'a> {
@@ -340,6 +351,7 @@ impl<'a> Scope<'a> {
             half_width: plan.whole.half_width(),
             contact: plan,
             records: false,
+            goes_beyond: true,
         }
     }
 }
@@ -410,7 +422,7 @@ impl SummaryRequest {
             // A break has nothing left to stop.
             let _ = (planes.progress)(1.0);
         }
-        Extremes { values, bounds: planes.bounds, finished }
+        Extremes { values, bounds: planes.bounds, beyond: planes.beyond_grid, finished }
     }
 }
 
@@ -499,12 +511,18 @@ struct Planes<'a, 'b> {
     fields: [Vec<f64>; STRESSES],
     /// Points of the edge of the contact, at which the surface is evaluated, too.
     edge: Vec<CellPoint>,
+    /// Whether a point of the edge lies in a cell or beside it: larger values between centres are those at points.
+    near_edge: Vec<bool>,
+    /// Whether the values between centres of those cells are found at points of the edge, at the place that was evaluated last.
+    by_points: bool,
     /// Largest steps of the pressure that are felt in each cell; no cells where errors do not depend on them.
     steps: Vec<LocalSteps>,
     /// Errors of the components by those steps; none where they are not known.
     errors: Option<StepErrors>,
     /// Bounds of each extreme in each cell, where they are recorded.
     bounds: Vec<Vec<f64>>,
+    /// Each extreme beyond the grid, where bounds are recorded.
+    beyond_grid: Vec<Extreme>,
     /// Number of the first of the extremes that are evaluated.
     first: usize,
     progress: &'a mut StressProgress<'b>,
@@ -526,7 +544,13 @@ impl<'a, 'b> Planes<'a, 'b> {
         planned: usize,
         progress: &'a mut StressProgress<'b>,
     ) -> Self {
-        let cells = plan.whole.grid.shape().iter().product();
+        let shape @ [_, ny] = plan.whole.grid.shape();
+        let cells = shape.iter().product();
+        let edge = plan.edge_points();
+        let mut near_edge = vec![false; cells];
+        for [i, j] in edge.iter().flat_map(|point| around(shape, point.cell, 1)) {
+            near_edge[i * ny + j] = true;
+        }
         Self {
             plan,
             scope,
@@ -534,10 +558,13 @@ impl<'a, 'b> Planes<'a, 'b> {
             residual,
             evaluation: Evaluation::new(plan, friction, false),
             fields: std::array::from_fn(|_| vec![0.0; cells]),
-            edge: plan.edge_points(),
+            edge,
+            near_edge,
+            by_points: false,
             steps: plan.steps_by_cell(),
             errors: None,
             bounds: Vec::new(),
+            beyond_grid: Vec::new(),
             first: 0,
             progress,
             done: 0,
@@ -552,6 +579,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         if self.scope.records {
             let none = vec![f64::NEG_INFINITY; self.fields[0].len()];
             self.bounds.resize(first + count, none);
+            self.beyond_grid.resize(first + count, Extreme::NONE);
         }
     }
 
@@ -578,13 +606,14 @@ impl<'a, 'b> Planes<'a, 'b> {
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
         }
+        let grid = &self.plan.whole.grid;
+        let [dx, dy] = grid.spacing();
+        let within_a_cell = place.depth < if grid.is_line() { dy } else { dx.max(dy) };
+        self.by_points = points && within_a_cell;
         self.errors = self.errors_at(place, false).map(|errors| {
-            let grid = &self.plan.whole.grid;
-            let [dx, dy] = grid.spacing();
-            let cell = if grid.is_line() { dy } else { dx.max(dy) };
             if points {
                 errors.beside_points()
-            } else if place.depth < cell {
+            } else if within_a_cell {
                 errors.without_points()
             } else {
                 errors
@@ -752,7 +781,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             [zz, -zz, xz.hypot(yz)]
         };
         let peaks = self.largest(place, (0, &[]), of);
-        self.with_beyond((peaks, largest_of(&peaks), [f64::NEG_INFINITY; 3]), &[*place], of)
+        self.with_beyond((0, peaks, [f64::NEG_INFINITY; 3]), &[*place], of)
     }
 
     /// Largest jump of the in-plane stress from the plane at `above`, which was evaluated last, to that at `below`.
@@ -762,11 +791,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         self.errors = self.errors.zip(errors).map(|(below, above)| below.larger(above));
         let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
         let peaks = self.largest(below, (3, &before), of);
-        let [peak] = self.with_beyond(
-            (peaks, largest_of(&peaks), [f64::NEG_INFINITY; 1]),
-            &[*above, *below],
-            of,
-        )?;
+        let inside = (3, peaks, [f64::NEG_INFINITY; 1]);
+        let [peak] = self.with_beyond(inside, &[*above, *below], of)?;
         ControlFlow::Continue(peak)
     }
 
@@ -820,7 +846,11 @@ impl<'a, 'b> Planes<'a, 'b> {
                     within: [0.0; 2],
                 };
                 let [x, y] = self.plan.position(&centre);
-                let error = error + at.between(grid, of_cell);
+                let between = match self.by_points && self.near_edge[at.cell] {
+                    true => 0.0,
+                    false => at.between(grid, of_cell),
+                };
+                let error = error + between;
                 Extreme::of(at.value, [x, y, place.depth], self.errors.map(|_| error))
             };
             let LargestWithError { value, bound } = largest[n];
@@ -835,24 +865,31 @@ impl<'a, 'b> Planes<'a, 'b> {
         place: &Place,
         best: [f64; OF_LAYER],
     ) -> ControlFlow<(), [Extreme; OF_LAYER]> {
-        self.with_beyond((peaks, largest_of(&peaks), best), &[*place], |tensors: &[Tensor; 1]| {
-            three(&tensors[0])
-        })
+        self.with_beyond((0, peaks, best), &[*place], |tensors: &[Tensor; 1]| three(&tensors[0]))
     }
 
-    /// The peaks at the last of `places`, or larger ones beyond the grid: [`Beyond::peaks`].
+    /// The peaks at the last of `places`, which are the extremes from number `from` of those that were begun, or larger ones
+    /// beyond the grid: [`Beyond::peaks`].
     fn with_beyond<const N: usize, const K: usize>(
         &mut self,
-        inside: ([Extreme; N], f64, [f64; N]),
+        (from, peaks, best): (usize, [Extreme; N], [f64; N]),
         places: &[Place; K],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
     ) -> ControlFlow<(), [Extreme; N]> {
-        if self.scope.beside.is_some() {
-            return ControlFlow::Continue(inside.0);
+        if !self.scope.goes_beyond {
+            return ControlFlow::Continue(peaks);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
-        let mut told = |_| (self.progress)(part);
-        self.beyond.peaks(inside, places, self.residual, of, &mut told)
+        let mut progress = |_| (self.progress)(part);
+        let inside = (peaks, largest_of(&peaks), best);
+        let [peaks, beyond] =
+            self.beyond.peaks(inside, places, self.residual, of, &mut progress)?;
+        if self.scope.records {
+            for (recorded, extreme) in self.beyond_grid[self.first + from..].iter_mut().zip(beyond) {
+                *recorded = recorded.with(extreme);
+            }
+        }
+        ControlFlow::Continue(peaks)
     }
 }
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +16,8 @@ indent_extremes indent_fit indent_residuals notebook optimise paper peers rough 
 studies typing
 """.split()
 """Files that `make quick` leaves out, as tests with the mark: random cases, examples, long fits."""
+# Shells start jobs in the background with Ctrl-C ignored, also by the processes of tests that send it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
 
 

@@ -346,7 +346,7 @@ impl NormalEquations {
 }
 
 /// Cells of the grid within `reach` rows and columns of a cell, itself included.
-pub(super) fn around(
+pub(in crate::stress) fn around(
     [nx, ny]: [usize; 2],
     [i, j]: [usize; 2],
     reach: usize,

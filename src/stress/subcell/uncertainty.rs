@@ -28,7 +28,7 @@
 //! out falls off as the inverse cube of the distance from the edge, which is added.
 //!
 //! The edge is known to a part of a cell, and with it the width of the contact. Extremes at depths of up to a half-width have
-//! the error c/n² of the largest pressure in a contact n cells wide; farther below, it falls as the square of the depth, at
+//! the error c/n² + c' of the largest pressure in a contact n cells wide; farther below, it falls as the square of the depth, at
 //! least as fast as the stress.
 
 use crate::compliance::response::Response;
@@ -70,6 +70,11 @@ const LEFT_OUT: f64 = 0.05;
 /// extremes of 76 random contacts of 16 to 64 cells across, bare and coated, points and lines, whose other errors are below
 /// half a per cent, 99 % are within it and these.
 const WIDTH_ERROR: f64 = 0.3;
+
+/// Error of extremes over the largest pressure on cells however small, from the search for their depth and from loads that are
+/// followed over some cells only. Of a line contact refined to a thousand cells across, they are within 2.4e-5 of those on
+/// 1 088 cells.
+const LEAST_ERROR: f64 = 5e-5;
 
 /// Wavenumber of the longest waves of a step, times the side of a cell.
 const LONGEST: f64 = 1.5;
@@ -221,7 +226,7 @@ impl Uncertainty {
             shape,
             spacing,
             followed: DEPTH_LIMIT * shorter,
-            of_width: WIDTH_ERROR * peak / across[0].min(across[1]).powi(2),
+            of_width: peak * (WIDTH_ERROR / across[0].min(across[1]).powi(2) + LEAST_ERROR),
             half_width: 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]),
             known,
             waves: spacing.map(waves),

@@ -417,8 +417,7 @@ def test_refinement_keeps_an_extreme_beyond_the_grid() -> None:
     for refine in (None, 0.05):
         coating, substrate = solution.stress_summary(**sliding, refine=refine).layers
         value, (x, _, _) = substrate.tension
-        # The tension is flat there: within a fine cell of the border, or beyond it.
-        assert x < -0.5 * grid.size[0] + (0.0 if refine is None else 0.5 * grid.spacing[0])
+        assert x < -0.5 * grid.size[0]
         errors.append(substrate.uncertainty["tension"])
         # Merging leaves 0.2 % of stresses beyond the grid; below the edge, cells leave much more.
         assert abs(value - 20.90e6) < min(errors[-1], 0.02 * value)
@@ -512,7 +511,8 @@ def test_refined_extremes_agree_with_a_finer_grid() -> None:
 def test_the_shear_below_a_thin_coat_of_a_roller_with_free_ends_is_refined() -> None:
     """Cells thrice as wide as the coat is thick leave the shear at its interface unknown.
 
-    A grid with cells an eighth as wide finds the refined shear within its error.
+    Refined, it is that on a grid with cells an eighth as wide. Cells beside the ends stay as wide as they are, and their
+    error is that of the extreme.
     """
     half = 1e-3
     coat = nacre.Layer(nacre.Elastic(600e9, 0.25), 4e-6)
@@ -525,9 +525,9 @@ def test_the_shear_below_a_thin_coat_of_a_roller_with_free_ends_is_refined() -> 
     (refined,) = coarse.stress_summary(refine=0.05).interfaces
     fine = solve(grid=nacre.Grid((48, 192), (2 * half, 3e-4)))
     (expected,) = fine.stress_summary().interfaces
-    assert rough.uncertainty["shear"] > 0.37 * rough.shear[0]
-    assert refined.uncertainty["shear"] < 0.05 * refined.shear[0]
-    assert abs(refined.shear[0] - expected.shear[0]) < refined.uncertainty["shear"]
+    assert 0.25 * expected.shear[0] < expected.shear[0] - rough.shear[0] < rough.uncertainty["shear"]
+    assert refined.shear[0] == pytest.approx(expected.shear[0], rel=5e-3)
+    assert refined.uncertainty["shear"] < rough.uncertainty["shear"]
 
 
 @pytest.mark.parametrize("body", ["body", "counterbody"])
