@@ -223,15 +223,15 @@ pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Arra
     let array = numpy.call_method1("asarray", (array,)).map_err(ragged)?;
     let dtype = array.getattr("dtype")?;
     let kind: String = dtype.getattr("kind")?.extract()?;
-    if !["b", "i", "u", "f"].contains(&kind.as_str()) {
-        return Err(PyTypeError::new_err(format!(
-            "{name} must be a real array, got dtype {dtype}"
-        )));
-    }
     if kind == "b" && array.getattr("ndim")?.eq(0)? {
         return Err(PyTypeError::new_err(format!(
             "{name} must be a real number, got {}",
             Repr(&array)
+        )));
+    }
+    if !["i", "u", "f"].contains(&kind.as_str()) {
+        return Err(PyTypeError::new_err(format!(
+            "{name} must be a real array, got dtype {dtype}"
         )));
     }
     let options = [("dtype", "float64"), ("order", "C")].into_py_dict(object.py())?;

@@ -27,5 +27,10 @@ def ratio(kind: str, factor: float) -> float:
     return (factor / math.hypot(1.0, factor) + 1) / 2
 
 
+BENDING = 1e9
+"""Bending limit [Pa]. Stresses of criteria depend on its ratio to the torsion limit alone; `assess`
+refuses limits that are not in the units of the moduli."""
+
+
 def made(kind: str, factor: float) -> Any:
-    return KINDS[kind](bending=1.0, torsion=ratio(kind, factor))
+    return KINDS[kind](bending=BENDING, torsion=BENDING * ratio(kind, factor))

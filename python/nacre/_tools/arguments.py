@@ -5,8 +5,6 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-import numpy as np
-
 import nacre._core as core
 
 
@@ -18,7 +16,7 @@ def read_fields(frozen: Any) -> None:
     for field in dataclasses.fields(frozen):
         name, kind = field.name, str(field.type).removesuffix(" | None")
         value = vars(frozen)[name]  # an attribute may follow where there is no argument
-        if value is None or (isinstance(value, float) and not isinstance(value, np.generic)):
+        if value is None or (kind == "float" and type(value) is float):
             continue
         if kind == "int":
             object.__setattr__(frozen, name, core.integer(name, value))

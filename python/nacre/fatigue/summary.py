@@ -744,9 +744,10 @@ def assess(
         if limit is not None and not 0.0 < limit < np.inf:
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
     check_limits("shear_yield", limits, asked.rolling.body)
+    layers = [None] * len(asked.rolling.body.layers)  # whose limits are not those of criteria
     for one in asked.criteria:
         for name in ("bending", "torsion"):
-            check_limits(name, [getattr(one, name)] * len(limits), asked.rolling.body)
+            check_limits(name, [*layers, getattr(one, name)], asked.rolling.body)
     friction = core.real("friction", friction)
     if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")

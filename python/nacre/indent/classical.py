@@ -72,16 +72,21 @@ def tabor_parameter(
     >>> round(nacre.indent.tabor_parameter(10e-6, 1e6, 0.05, distance=0.3e-9), 1)
     974.7
     """
-    given = {"distance": distance, "strength": strength}
-    known = {name: value for name, value in given.items() if value is not None}
-    if len(known) != 1:
-        raise ValueError(f"exactly one of distance and strength must be given, got {given}")
-    for name, value in {"radius": radius, "modulus": modulus, "work": work, **known}.items():
-        if not 0 < core.real(name, value) < math.inf:
+    ranges = {"distance": distance, "strength": strength}
+    one = {name: value for name, value in ranges.items() if value is not None}
+    if len(one) != 1:
+        raise ValueError(f"exactly one of distance and strength must be given, got {ranges}")
+    numbers = {"radius": radius, "modulus": modulus, "work": work, **one}
+    for name, value in numbers.items():
+        numbers[name] = core.real(name, value)
+        if not 0 < numbers[name] < math.inf:
             raise ValueError(f"{name} must be positive and finite, got {value!r}")
-    reach = 16 * work / (9 * math.sqrt(3) * strength) if strength else distance
-    assert reach is not None
-    return float((radius * work**2 / (modulus**2 * reach**3)) ** (1 / 3))
+    radius, modulus, work, _ = numbers.values()
+    if "strength" in numbers:
+        distance = 16 * work / (9 * math.sqrt(3) * numbers["strength"])
+    else:
+        distance = numbers["distance"]
+    return float((radius * work**2 / (modulus**2 * distance**3)) ** (1 / 3))
 
 
 class Classical(NamedTuple):

@@ -118,12 +118,14 @@ def test_extremes_are_within_their_errors() -> None:
         reference = case.extremes(FINER)
         for refine in (None, 0.05):
             for name, (value, error, is_named) in case.extremes(refine=refine).items():
-                expected = reference[name][0]
+                expected, own_error, _ = reference[name]
                 if name.startswith("tension") and max(value, expected) <= 0.0:
                     continue
                 count += 1
                 errors.append(error / max(abs(value), abs(expected)))
-                if abs(value - expected) > error and not is_named:
+                # Finer cells than those of the reference may be nearer to the truth than it is.
+                allowed = error + (0.0 if refine is None else own_error)
+                if abs(value - expected) > allowed and not is_named:
                     outside.append((seed, refine, name, value, error, expected))
     assert len(outside) <= OUTSIDE * count, outside
     # An error that holds because it is as large as the stress is of no use.

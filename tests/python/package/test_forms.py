@@ -441,7 +441,7 @@ ANY: dict[str, Callable[[Array], Any]] = {
     "reversed": reversed_twice,
     "list": np.ndarray.tolist,
     "big-endian": lambda a: a.astype(a.dtype.newbyteorder(">")),
-    "single precision": lambda a: a.astype(np.float32) if a.dtype.kind == "f" else a.astype("i2"),
+    "single precision": lambda a: a.astype({"f": "f4", "b": "?"}.get(a.dtype.kind, "i2")),
 }
 FORMS_OF_MAPS: dict[str, Callable[[Array], Any]] = ANY | {
     "Fortran order": np.asfortranarray,
@@ -513,7 +513,10 @@ def test_a_table_is_no_list_of_its_headings(name: str) -> None:
         found = np.asarray(argument.call(table), dtype=np.float64)
     except (TypeError, ValueError):
         return
-    np.testing.assert_array_equal(found.ravel(), expected(name).ravel())
+    if name in STUDIES:  # a row is a case, which fails and says so
+        assert np.isnan(found).all()
+    else:
+        np.testing.assert_array_equal(found.ravel(), expected(name).ravel())
 
 
 WRONG: dict[str, tuple[str, str, Callable[[Array], Any]]] = {
@@ -557,9 +560,9 @@ def test_units_of_text_are_converted_or_refused() -> None:
     tilt = xarray.DataArray([0.1, 0.2], dims="x", attrs={"units": "mrad"})
     np.testing.assert_allclose(pressed(tilt=tilt), pressed(tilt=(1e-4, 2e-4)), rtol=1e-6)
     degrees = xarray.DataArray(45.0, attrs={"units": "degree"})
-    assert hertz.relative_radii((1.0, 2.0), (1.0, 3.0), degrees) == pytest.approx(  # type: ignore[arg-type]
-        hertz.relative_radii((1.0, 2.0), (1.0, 3.0), np.pi / 4), rel=1e-14
-    )
+    radii, angle = hertz.relative_radii((1.0, 2.0), (1.0, 3.0), degrees)  # type: ignore[arg-type]
+    same_radii, same_angle = hertz.relative_radii((1.0, 2.0), (1.0, 3.0), np.pi / 4)
+    assert (*radii, angle) == pytest.approx((*same_radii, same_angle), rel=1e-14)
 
 
 @pytest.fixture(autouse=True)

@@ -171,6 +171,15 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other) and repr(one) == repr(other)
 
 
+def holds(kind: Callable[[Any], Any], number: float) -> bool:
+    """Return whether a type has this number."""
+    try:
+        with np.errstate(over="raise"):
+            return float(kind(number)) == number
+    except (OverflowError, FloatingPointError):
+        return False
+
+
 def refused(call: Callable[[Any], Any], wrong: Any) -> None:
     with pytest.raises((TypeError, ValueError)) as error:
         call(wrong)
@@ -181,7 +190,7 @@ def refused(call: Callable[[Any], Any], wrong: Any) -> None:
 @pytest.mark.parametrize("name", INTEGERS)
 def test_whole_numbers_are_integers(name: str, kind: Callable[[int], Any]) -> None:
     number, call = INTEGERS[name]
-    if kind(number) != number:
+    if not holds(kind, number):
         pytest.skip("the type does not hold it")
     assert same(call(kind(number)), call(number))
 
@@ -209,7 +218,7 @@ def test_whole_numbers_choose_columns(name: str, kind: Any, tmp_path: Path) -> N
 @pytest.mark.parametrize("name", NUMBERS)
 def test_numbers_of_numpy_are_numbers(name: str, kind: Callable[[float], Any]) -> None:
     number, call = NUMBERS[name]
-    if float(kind(number)) != number:
+    if not holds(kind, number):
         pytest.skip("the type does not hold it")
     assert same(call(kind(number)), call(number))
     for wrong in (True, np.True_, "1", 1j, [1.0]):
