@@ -366,3 +366,14 @@ def test_a_rigid_base_has_layers_alone() -> None:
     assert summary.depths[-1] == 1e-3
     with pytest.raises(ValueError, match="below the rigid base"):
         fatigue.assess(solution, depths=[2e-3])
+
+
+def test_limits_of_criteria_are_those_of_the_substrate() -> None:
+    """520 MPa is above the modulus of a soft coat, and belongs to the steel below."""
+    soft = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(100e6, 0.4), 15e-6)])
+    solution = quiet(nacre.solve, ROD, soft, load=1e4, grid=GRID)
+    coat, substrate = quiet(fatigue.assess, solution, criteria=[LIMITS], depths=[0.0, 3e-5]).layers
+    assert coat.safety_factors == {}
+    assert [*substrate.safety_factors] == ["DangVan"]
+    with pytest.raises(ValueError, match=r"bending must be in the units .*2\.1e\+11; got 520"):
+        fatigue.assess(solution, criteria=[fatigue.DangVan(520.0, 330.0)])
