@@ -38,7 +38,8 @@ WORK = {"J": "N m", "J/m": "N", "J/m²": "N/m", "J/m³": "Pa"}
 """Units of energies in systems that have no name for them."""
 SIZES = {sign: float(f"1e{power}") for power, sign in PREFIXES.items()} | {"c": 1e-2, "T": 1e12}
 READABLE = (0.1, 1e5)
-"""Values that are written in a system's own unit, without another prefix; squared for areas."""
+"""Values that are written in a system's own unit without another prefix, and with the smallest or
+largest prefix beyond the prefixes; squared for areas."""
 
 
 def _simple(unit: str) -> tuple[str, float] | None:
@@ -315,10 +316,10 @@ class Scale:
             return cls(1.0, own)  # nobody writes k1/m
         # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
         power = POWERS[FACTORS.findall(dimension)[0][2]]
+        low, high = (bound**power for bound in READABLE)
         units = system()
         if units is not SI:
             target, name = units.unit(dimension)
-            low, high = (bound**power for bound in READABLE)
             factor = 1.0 if size == target else size / target
             if units.imperial or low <= abs(largest) * factor < high:
                 return cls(factor, name)
@@ -327,10 +328,11 @@ class Scale:
         exponent = math.floor(digits / (3 * power)) * 3
         if dimension in ("m", "m²"):
             exponent = min(exponent, 0)  # nobody writes kilometres
-        if exponent not in PREFIXES:
-            return cls(size, dimension)
-        factor = float(f"1e{-exponent * power}")
-        return cls(size * factor, PREFIXES[exponent] + dimension)
+        nearest = min(max(exponent, min(PREFIXES)), max(PREFIXES))
+        factor = size * float(f"1e{-nearest * power}")
+        if nearest != exponent and not low <= abs(largest) * factor < high:
+            return cls(size, dimension)  # 1e-20 m, and not 1e-08 pm
+        return cls(factor, PREFIXES[nearest] + dimension)
 
 
 def energy(line: bool, rolls: bool = False) -> str:

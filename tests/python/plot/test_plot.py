@@ -73,7 +73,11 @@ def drawn(figure: Any) -> None:
         (3.53e-8, "m²", "35300 µm²"),
         (0.0, "N", "0 N"),
         (0.5, "", "0.5"),
-        (1e-20, "m", "1e-08 pm"),
+        (1.141e12, "Pa", "1141 GPa"),
+        (5e-13, "m", "0.5 pm"),
+        # No prefix beside an exponent.
+        (1e-20, "m", "1e-20 m"),
+        (1e16, "Pa", "1e+16 Pa"),
     ],
 )
 def test_numbers_have_sensible_prefixes(value: float, unit: str, text: str) -> None:
