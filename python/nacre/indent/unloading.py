@@ -27,6 +27,9 @@ EPSILON = 0.75
 POWERS = 1.0, 2.5
 """Powers of unloadings: 1 for a flat punch, 2 for a cone, 1.2 to 1.6 measured with a Berkovich tip
 (the same, table I), and half more. Others are no elastic unloading."""
+BEYOND = 3.0
+"""Standard errors by which a power is beyond those: that of a flat punch is by chance once in 700
+curves."""
 OFF = 0.02
 """Share by which the force at the largest depth may differ from the power law: what a modulus to a
 few per cent can bear."""
@@ -200,7 +203,8 @@ def oliver_pharr(
         own = 0.0 if counterbody is None else 1 / counterbody.plane_strain_modulus
         return np.array([load / area, reduced, 1 / (1 / reduced - own), area, contact])
 
-    if deepest - epsilon * load / slope <= 0:
+    # The section of a flat punch is one at all depths, and its contact depth without yield is 0.
+    if deepest - epsilon * load / slope <= 0 and tip.kind != "flat_punch":
         raise ValueError(
             f"curve must have a contact depth above 0, got {deepest - epsilon * load / slope:.4g} "
             f"at the largest depth {deepest:.4g}: its depth has another zero"
@@ -222,7 +226,8 @@ def oliver_pharr(
     )[:3]
     covariance = covariance * np.outer(units, units)
     errors = np.sqrt(np.einsum("ij,jk,ik->i", rates, covariance[:2, :2], rates))
-    notes = _notes(branch, load, slope, power)
+    power_error = math.sqrt(float(covariance[2, 2]))
+    notes = _notes(branch, load, slope, power, power_error)
     for note in notes:
         warnings.warn(note, core.NacreWarning, stacklevel=2)
     return OliverPharr(
@@ -235,7 +240,7 @@ def oliver_pharr(
         stiffness=slope,
         stiffness_error=math.sqrt(float(covariance[1, 1])),
         power=power,
-        power_error=math.sqrt(float(covariance[2, 2])),
+        power_error=power_error,
         final_depth=deepest - power * load / slope,
         largest_depth=deepest,
         largest_force=load,
@@ -279,11 +284,12 @@ def _power_law(below: Array, force: Array) -> tuple[Array, Array]:
     return best.x, variance * spread * np.linalg.pinv(best.jac.T @ best.jac)
 
 
-def _notes(branch: Curve, load: float, slope: float, power: float) -> list[str]:
+def _notes(branch: Curve, load: float, slope: float, power: float, power_error: float) -> list[str]:
     notes = []
-    if not POWERS[0] <= power <= POWERS[1]:
+    printed, sure = f"{power:.3g}", BEYOND * power_error
+    if not POWERS[0] - sure <= float(printed) <= POWERS[1] + sure:
         notes.append(
-            f"the power of the unloading is {power:.3g}, where elastic ones have {POWERS[0]:g} to "
+            f"the power of the unloading is {printed}, where elastic ones have {POWERS[0]:g} to "
             f"{POWERS[1]:g}: look at the part, creep and drift"
         )
     deepest = int(np.argmax(branch.depth))

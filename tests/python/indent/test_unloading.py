@@ -68,16 +68,27 @@ def test_elastic_contacts_give_back_the_modulus() -> None:
     """A paraboloid is Hertz' contact, for which 0.75 is exact; so is 1 for a flat punch."""
     glass = nacre.Elastic(70e9, 0.2)
     depth = np.linspace(200e-9, 2e-9, 150)
-    for tip, epsilon in ((Tip.paraboloid(10e-6), 0.75), (Tip.flat_punch(2e-6), 1.0)):
+    for tip, epsilon, exponent in (
+        (Tip.paraboloid(10e-6), 0.75, 1.5),
+        (Tip.flat_punch(2e-6), 1.0, 1.0),
+    ):
         load = Indentation(glass, tip).curve(approach=depth[::-1]).load[::-1]
-        one = oliver_pharr(Curve(depth, load), tip, epsilon=epsilon) if epsilon < 1 else None
-        if one is None:
-            # A punch has no contact depth of its own: h = P/S.
-            with pytest.raises(ValueError, match="contact depth above 0"):
-                oliver_pharr(Curve(depth, load), tip, epsilon=1.001)
-            one = oliver_pharr(Curve(depth, load), tip, epsilon=0.999)
-        # Tips of the exact laws of depth, 3/2 and 1.
+        one = oliver_pharr(Curve(depth, load), tip, epsilon=epsilon)
+        assert one.power == pytest.approx(exponent, rel=1e-6)
         assert one.modulus == pytest.approx(70e9 / 0.96, rel=1e-4)
+        assert one.notes[:-1] == ()
+
+
+def test_noise_alone_is_no_power_beyond_those_of_elastic_unloadings() -> None:
+    """Half the powers of a flat punch with noise are below 1."""
+    glass, tip = nacre.Elastic(70e9, 0.2), Tip.flat_punch(2e-6)
+    depth = np.linspace(200e-9, 2e-9, 150)
+    load = Indentation(glass, tip).curve(approach=depth[::-1]).load[::-1]
+    powers = []
+    for seed in range(20):
+        noise = 1e-3 * load[0] * np.random.default_rng(seed).standard_normal(150)
+        powers.append(oliver_pharr(Curve(depth, load + noise), tip, epsilon=1).power)
+    assert 5 <= sum(power < 1 for power in powers) <= 15
 
 
 def test_nine_of_ten_and_more_intervals_hold_the_truth() -> None:
