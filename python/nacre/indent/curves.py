@@ -205,12 +205,12 @@ class Curve:
         --------
         >>> time = np.arange(120.0)
         >>> force = np.interp(time, [0, 30, 90, 119], [0.0, 1e-3, 1e-3, 0.0])
-        >>> depth = 100e-9 * force / 1e-3 + 0.05e-9 * time
+        >>> depth = 100e-9 * force / 1e-3 + 0.06e-9 * time
         >>> curve = nacre.indent.Curve(depth, force, time=time)
         >>> print(f"{curve.drift().rate:.3g} m/s")
-        5e-11 m/s
+        6e-11 m/s
         >>> curve.loading().note
-        'hold of 59 points at 100 % of the largest force, depth +2.9 nm in 58 s, cut'
+        'hold of 60 points at 100 % of the largest force, depth +3.5 nm in 59 s, cut'
         """
         if self.time is None:
             raise ValueError("the curve must have a time for its drift to be known")
