@@ -48,13 +48,13 @@ def wavy(size: float, height: float) -> Tip:
 ended = st.one_of(
     st.builds(Tip.paraboloid, lengths),
     st.builds(lambda radius: Tip.sphere(12.0 + radius), lengths),
-    st.builds(Tip.rounded_cone, slopes, lengths),
+    st.builds(lambda slope, radius: Tip.rounded_cone(radius, slope=slope), slopes, lengths),
 )
 others = st.one_of(
-    st.builds(Tip.cone, slopes),
+    st.builds(Tip.cone, slope=slopes),
     st.builds(Tip.power, powers(-2, -0.5), st.floats(0.6, 6.0)),
     st.builds(Tip.rounded_punch, powers(-1.0, 0.0), lengths),
-    st.builds(Tip.flat_cone, powers(-1.0, 0.0), slopes),
+    st.builds(Tip.flat_cone, powers(-1.0, 0.0), slope=slopes),
     st.builds(wavy, lengths, powers(-3.0, -1.0)),
 )
 punches = st.builds(Tip.flat_punch, powers(-1.0, 0.7))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
+import os
 import sys
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 
 import nacre
 from nacre.indent import Adhesion, Indentation, Tip, charts, slope_of
-from support import HANG
+from support import python
 
 EXTREMES = [
     *(0.0, -1.0, 5e-324, -5e-324, 1e-300, 1e-160, 1e-30, 1e30, 1e160, 1e300, -1e300),
@@ -156,14 +157,9 @@ def test_no_number_hangs_panics_or_makes_nan(part: int) -> None:
         "for name in sys.argv[1:]:\n    print(name, flush=True)\n"
         "    for wrong in tried(name): print('WRONG', name, wrong, flush=True)\n"
     )
-    ran = subprocess.run(
-        [sys.executable, "-c", code, *names],
-        cwd=__file__.rpartition("/")[0],
-        capture_output=True,
-        text=True,
-        timeout=HANG,
-        check=False,
-    )
+    # `support` stands in another folder than this file.
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    ran = python("-c", code, *names, folder=Path(__file__).parent, env=environment)
     wrong = [line for line in ran.stdout.splitlines() if line.startswith("WRONG")]
     assert ran.returncode == 0, ran.stderr[-2000:] + ran.stdout[-300:]
     assert not wrong, "\n".join(wrong)
