@@ -444,6 +444,8 @@ class Problem:
             return self.settled(state, tolerance) if self.settles else state
 
         state, reach = reached(ring, own), FARTHEST
+        # Steps must go below the lowest values so far: steps of rounding alone would never end.
+        lowest, closest = state.energy, state.balance
         for done in range(max_iterations + 1):
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
@@ -456,8 +458,8 @@ class Problem:
             for _ in range(HALVINGS):
                 tried = reached(state.ring + share * ring_step, state.own + share * own_step)
                 rounding = SLACK * float(np.abs(tried.reaction.energy).sum())
-                if tried.energy <= state.energy or (
-                    tried.energy <= state.energy + rounding and tried.balance < state.balance
+                if tried.energy < lowest or (
+                    tried.energy <= state.energy + rounding and tried.balance < closest
                 ):
                     break
                 share /= 2
@@ -467,5 +469,7 @@ class Problem:
                 reach = max(FARTHEST, share * reach)
             elif shorter:
                 reach *= FARTHER
+            closest = min(tried.balance, closest if tried.energy >= lowest - rounding else math.inf)
+            lowest = min(tried.energy, lowest)
             state = tried
         return state, done, "iteration limit"
