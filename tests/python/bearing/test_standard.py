@@ -263,9 +263,12 @@ def test_edge_factors_are_those_of_equation_60() -> None:
     odd = edge_factors(41)
     assert odd[20] == 1.0
     assert odd[0] == pytest.approx(1 - 0.01 / math.log(1.985 / 2), rel=1e-12)
-    for wrong in (1, 40.5, True):
-        with pytest.raises(ValueError, match="count must be a number of laminae of at least 2"):
+    with pytest.raises(ValueError, match="count must be a number of laminae of at least 2, got 1"):
+        edge_factors(1)
+    for wrong in (40.5, True):
+        with pytest.raises(TypeError, match=f"count must be an integer, got {wrong}"):
             edge_factors(wrong)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(edge_factors(40.0), factors)  # type: ignore[arg-type]
 
 
 def test_unloaded_bearing_has_an_infinite_life_in_words() -> None:
