@@ -34,6 +34,7 @@ QUICK: list[tuple[str, dict[str, list[int]]]] = [
     ("stress_patch", {"cases": [0, 10, 27]}),
     ("shakedown", {"cases": [0, 8, 14]}),
     ("quarter_space_wave", {"cases": [0, 8, 14]}),
+    ("coated_roller", {"cases": [1]}),
 ]
 
 
