@@ -41,8 +41,9 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::rounding::{self, cells_within};
 
-/// Distance, in half-widths of the contact, within which extremes are found on one patch: from edge to edge.
-const NEAR: f64 = 2.0;
+/// Distance, in half-widths of the contact, within which extremes are found on one patch: from edge to edge, and what is felt
+/// outside.
+const NEAR: f64 = 2.5;
 
 /// Margins around the places of extremes, in half-widths of the contact: of the cells that count, as extremes may move, and of
 /// the patch.
@@ -183,13 +184,21 @@ impl Refined<'_> {
             };
             let margins = MARGINS.map(|margin| around(margin * half_width).unwrap_or_default());
             let windows = self.within_ends(margins, half_width);
+            // Largest bounds that are allowed; those that stay may be any.
+            let allowed = |(extreme, stays): (&Extreme, &bool)| match stays {
+                true => f64::INFINITY,
+                false => {
+                    extreme.value + self.target * extreme.value.abs().max(summary.least_value())
+                }
+            };
+            let largest: Vec<f64> = all.values.iter().zip(&settled).map(allowed).collect();
             let (inside, outside): (Vec<_>, Vec<_>) =
                 suspects.into_iter().partition(|suspect| holds(&windows[0], suspect.cell));
             let fine = match inside.is_empty() {
                 true => None,
                 false => self.fine_extremes(
                     (&request, &plan),
-                    &inside,
+                    (&inside, &largest),
                     windows.clone(),
                     &mut progress,
                 )?,
@@ -274,38 +283,54 @@ impl Refined<'_> {
         [core, window]
     }
 
-    /// The extremes in the core of a window, on cells that are fine enough for the suspects, or as fine as may be; none where
-    /// the grid's are.
+    /// The extremes in the core of a window, on cells with which their bounds are at most the `largest` that are allowed, or as
+    /// fine as may be; none where the grid's are.
     fn fine_extremes(
         &self,
         (request, whole): (&SummaryRequest, &StressPlan),
-        suspects: &[Suspect],
+        (suspects, largest): (&[Suspect], &[f64]),
         [core, window]: [Window; 2],
         progress: &mut StressProgress,
     ) -> Result<Option<Extremes>> {
         let patch = self.patch(window)?;
-        let Some(plan) = self.fine_plan(&patch, suspects, progress)? else { return Ok(None) };
-        let beside = self.plans_beside(&patch)?;
         let friction = self.source.sliding.traction(&self.layers, self.options)?;
-        let parts = beside
-            .iter()
-            .map(|(plan, factor)| (Evaluation::new(plan, friction, false), *factor))
-            .collect();
-        let finer = [0, 1].map(|axis| plan.whole.grid.shape()[axis] / patch.window[axis].len());
-        let core = [0, 1].map(|axis| {
-            let [start, end] = [core[axis].start, core[axis].end]
-                .map(|cell| (cell - patch.window[axis].start) * finer[axis]);
-            start..end
-        });
-        let beside = Beside { grid: self.solution.grid(), parts, core, fields: Vec::new() };
-        let scope = Scope {
-            beside: Some(beside),
-            half_width: whole.whole.half_width(),
-            contact: if patch.is_whole { &plan } else { whole },
-            goes_beyond: false,
-            ..Scope::of(&plan)
-        };
-        Ok(Some(request.evaluate(&plan, scope, progress)))
+        let is_line = self.solution.grid().is_line();
+        let mut finer = if is_line { [1, 2] } else { [2, 2] };
+        let beside = self.plans_beside(&patch)?;
+        let mut extremes: Option<Extremes> = None;
+        while let Some((plan, reached)) = self.fine_plan(&patch, suspects, finer, progress)? {
+            finer = reached;
+            let parts = beside
+                .iter()
+                .map(|(plan, factor)| (Evaluation::new(plan, friction, false), *factor))
+                .collect();
+            let core = [0, 1].map(|axis| {
+                let [start, end] = [core[axis].start, core[axis].end]
+                    .map(|cell| (cell - patch.window[axis].start) * finer[axis]);
+                start..end
+            });
+            let beside = Beside { grid: self.solution.grid(), parts, core, fields: Vec::new() };
+            let scope = Scope {
+                beside: Some(beside),
+                half_width: whole.whole.half_width(),
+                contact: if patch.is_whole { &plan } else { whole },
+                goes_beyond: false,
+                ..Scope::of(&plan)
+            };
+            let fine = request.evaluate(&plan, scope, progress);
+            // At other depths and of other extremes, errors may be larger than at the places of the suspects.
+            let is_known = |(extreme, most): (&Extreme, &f64)| {
+                let most = most.max(extreme.value * (1.0 + self.target));
+                extreme.bound.is_none_or(|bound| bound.value <= most)
+            };
+            let ends = !fine.finished || fine.values.iter().zip(largest).all(is_known);
+            extremes = Some(fine);
+            if ends {
+                break;
+            }
+            finer = if is_line { [1, 2 * finer[1]] } else { finer.map(|times| 2 * times) };
+        }
+        Ok(extremes)
     }
 
     /// Number of the cell at a coordinate along an axis.
@@ -368,24 +393,21 @@ impl Refined<'_> {
         })
     }
 
-    /// Plan of the stress of a patch on cells that are fine enough for the `suspects`, or as fine as may be; none where
-    /// the grid's are.
+    /// Plan of the stress of a patch on cells that are `finer` so many times and fine enough at the places of the `suspects`, or
+    /// as fine as may be, with how many times finer they are; none where none may be so fine.
     fn fine_plan(
         &self,
         patch: &Patch,
         suspects: &[Suspect],
+        mut finer: [usize; 2],
         progress: &mut StressProgress,
-    ) -> Result<Option<StressPlan>> {
+    ) -> Result<Option<(StressPlan, [usize; 2])>> {
         let most = self.solution.grid().shape().iter().product::<usize>().max(FEWEST_CELLS);
-        let mut finer = match self.solution.grid().is_line() {
-            true => [1, 2],
-            false => [2, 2],
-        };
-        let mut found = None;
+        let mut finest = None;
         loop {
             let grid = self.grid(&patch.window, finer)?;
             if grid.shape().iter().product::<usize>() > most {
-                return Ok(found);
+                return Ok(finest);
             }
             if progress(0.0).is_break() {
                 return Err(Error::Stopped);
@@ -421,9 +443,9 @@ impl Refined<'_> {
                     *coarse |= error > suspect.allowed;
                 }
             }
-            found = Some(plan);
+            finest = Some((plan, finer));
             if coarse == [false; 2] {
-                return Ok(found);
+                return Ok(finest);
             }
             for (finer, coarse) in finer.iter_mut().zip(coarse) {
                 *finer *= if coarse { 2 } else { 1 };

@@ -885,7 +885,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         let [peaks, beyond] =
             self.beyond.peaks(inside, places, self.residual, of, &mut progress)?;
         if self.scope.records {
-            for (recorded, extreme) in self.beyond_grid[self.first + from..].iter_mut().zip(beyond) {
+            for (recorded, extreme) in self.beyond_grid[self.first + from..].iter_mut().zip(beyond)
+            {
                 *recorded = recorded.with(extreme);
             }
         }

@@ -39,7 +39,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
 
 def test_the_case_file_is_solved_and_studied(capsys: Capture) -> None:
     case = ROOT / "examples" / "roller.toml"
-    roller = nacre.Roller(5e-3, 19.13e-3, 7.5)
+    roller = nacre.Roller(5e-3, 19.13e-3, 7.5, length=30e-3)
     solution = nacre.solve(roller, coated(420e9, 40e-6), load=1e3, eccentricity=(2.87e-3, None))
     assert command("solve", case) == 0
     assert capsys.readouterr().out == f"{solution}\n"
