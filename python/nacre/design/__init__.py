@@ -247,8 +247,8 @@ def force_table(
     --------
     >>> from nacre import design
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=30e-3)
-    >>> table = design.force_table(roller, steel, [2e-6, 3e-6], tilt_x=[0.0, 1e-4], tolerance=1e-4)
+    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5, length=40e-3)
+    >>> table = design.force_table(roller, steel, [2e-6, 3e-6], tilt_x=[0.0, 3e-5], tolerance=1e-4)
     >>> table["load"].shape, bool((table["load"].diff("approach") > 0).all())
     ((2, 2, 1), True)
     """
