@@ -5,18 +5,22 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+import numpy as np
+
 import nacre._core as core
 
 
 def read_fields(frozen: Any) -> None:
     """Make the numbers of a new, frozen dataclass those of Python, or raise an error.
 
-    NumPy's numbers and whole floats become `int` and `float`, and pairs of them tuples.
+    NumPy's numbers and whole floats become `int` and `float`, and pairs of them tuples. A class of
+    floats that is no NumPy's, as that of numbers that follow from others, stays.
     """
     for field in dataclasses.fields(frozen):
         name, kind = field.name, str(field.type).removesuffix(" | None")
         value = vars(frozen)[name]  # an attribute may follow where there is no argument
-        if value is None or (kind == "float" and type(value) is float):
+        own = isinstance(value, float) and not isinstance(value, np.generic)
+        if value is None or (kind == "float" and own):
             continue
         if kind == "int":
             object.__setattr__(frozen, name, core.integer(name, value))
