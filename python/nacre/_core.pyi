@@ -73,7 +73,7 @@ __all__ = [
 ]
 
 _Field: TypeAlias = npt.NDArray[np.float64]
-_Real: TypeAlias = npt.NDArray[np.floating | np.integer | np.bool]
+_Real: TypeAlias = npt.NDArray[np.floating | np.integer]
 _Vector: TypeAlias = _Real | Sequence[float]
 _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]

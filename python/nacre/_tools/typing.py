@@ -12,7 +12,7 @@ import numpy.typing as npt
 import nacre._core as core
 
 Field = npt.NDArray[np.float64]
-Real = npt.NDArray[np.floating | np.integer | np.bool]
+Real = npt.NDArray[np.floating | np.integer]
 Vector = Real | Sequence[float]
 Matrix = Real | Sequence[Sequence[float] | Real]
 Layers = core.HalfSpace | core.Elastic

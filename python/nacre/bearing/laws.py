@@ -233,20 +233,26 @@ class Solved:
                 self._widen()
             initial = None
 
-    def coarser(self, ring: int, contact: Solution) -> Solution:
-        """Return a contact on half the cells, under the same load and moment."""
+    def coarser(self, ring: int, contact: Solution) -> Solution | None:
+        """Return a contact on half the cells, under the same load and moment.
+
+        None where half the cells do not carry them, as where a corner bears on the outermost cells.
+        """
         body, counterbody = bodies_of(self.bearing, RINGS[ring])
         cells = contact.grid.shape[0] // 2, contact.grid.shape[1] // 2
         plan = Contact(body, core.Grid(cells, contact.grid.size), counterbody)
         moment = contact.moment[0] if self.bearing.leans else None
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
-            return plan.solve(
-                self.shapes[ring],
-                load=contact.load,
-                moment=(moment, None),
-                tolerance=self.tolerance,
-            )
+            try:
+                return plan.solve(
+                    self.shapes[ring],
+                    load=contact.load,
+                    moment=(moment, None),
+                    tolerance=self.tolerance,
+                )
+            except (ValueError, core.ConvergenceError):
+                return None
 
     def _within(self, solution: Solution) -> bool:
         """Return whether a contact ends within its grid, but for the ends of a roller."""

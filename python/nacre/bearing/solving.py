@@ -328,7 +328,7 @@ def _discretisation(
     """Return the errors of peak and edge pressure due to the size of the cells [Pa].
 
     Both contacts of the elements with the largest pressures are solved on half the cells under the
-    same load and moment. None where the pressure has no limit.
+    same load and moment. None where the pressure has no limit, or half the cells do not carry them.
     """
     bearing = law.bearing
     pressures = [peaks, edges] if bearing.rolls else [peaks]
@@ -337,6 +337,8 @@ def _discretisation(
     heaviest = {int(np.unravel_index(field.argmax(), field.shape)[0]) for field in pressures}
     for key in [key for key in contacts if key[0] in heaviest]:
         coarse = law.coarser(key[1], contacts[key])
+        if coarse is None:
+            return dict.fromkeys(errors)
         singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)
         values = [coarse.peak_pressure]
         if bearing.rolls:

@@ -358,8 +358,6 @@ def _cut(curve: Curve, hold: slice, what: str) -> str:
 
 def _checked(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
-    if np.asarray(core.plain(name, values)).dtype == np.bool:
-        raise TypeError(f"{name} must be a real array, got dtype bool")
     array = core.real_array(name, values)
     if array.ndim != 1:
         raise ValueError(f"{name} must have one dimension, got shape {array.shape}")

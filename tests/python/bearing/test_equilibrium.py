@@ -284,6 +284,16 @@ def test_sharp_rollers_have_no_error_and_balls_no_edge() -> None:
     assert abs(standard.peak_pressure - solved.peak_pressure) < error
 
 
+def test_a_corner_on_the_outermost_cells_has_no_error() -> None:
+    # Half the cells end before the point where this load acts.
+    bearing = CylindricalRoller(**SIZE, profile=None)
+    solution = quiet(bearing.solve, force=(5.0, 0.0, None), tilt=(None, 1e-3), cells=(40, 16))
+    contact = solution.contact(0, "inner")
+    assert contact is not None
+    assert contact.moment[0] / contact.load > bearing.length / 2 * (1 - 1 / 20)
+    assert solution.report.discretisation == {"peak_pressure": None, "edge_pressure": None}
+
+
 def test_states_of_the_first_release_are_read() -> None:
     # Their speed is that of the cage, of a shaft that turns; there are no errors.
     solution = CylindricalRoller(**SIZE).solve(force=(4450.0, 0.0, None), speed=500.0, **STANDARD)

@@ -47,6 +47,8 @@ FORMS: dict[str, Any] = {
 }
 
 NOT_REAL: dict[str, Any] = {
+    "bools": WHOLE > 9,
+    "list of bools": [[True, False], [False, True]],
     "complex": WHOLE.astype(complex),
     "complex list": [[1.0, 2j], [3.0, 4.0]],
     "object": WHOLE.astype(object),
@@ -81,11 +83,6 @@ def test_profiles_are_taken(turn: Callable[[Any], Any]) -> None:
     assert nacre.SampledProfile(turned, [1, 0, 2]) == nacre.SampledProfile(
         np.array([-9.0, 1.0, 9.0]), np.array([1.0, 0.0, 2.0])
     )
-
-
-def test_bools_are_taken() -> None:
-    step = ROWS > 9
-    assert nacre.HeightMap(step, 1.0) == nacre.HeightMap(step.astype(float), 1.0)
 
 
 @everything_else
