@@ -120,6 +120,10 @@ class LundbergPalmgren:
         return np.abs(stress.components["yz"])
 
 
+LEAST_FATIGUE_LIMIT = 1e5
+"""Smallest fatigue limit [Pa] of a solid: less was meant in MPa or GPa."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class IoannidesHarris(LundbergPalmgren):
     """Model of Ioannides and Harris: as Lundberg and Palmgren's, with a fatigue limit.
@@ -150,8 +154,13 @@ class IoannidesHarris(LundbergPalmgren):
         """Check the limit, too."""
         super().__post_init__()
         if not (math.isfinite(self.fatigue_limit) and self.fatigue_limit >= 0):
-            said = f"must be finite and at least 0, got {self.fatigue_limit!r}"
-            raise ValueError(f"fatigue_limit {said}")
+            message = f"must be finite and at least 0, got {self.fatigue_limit!r}"
+            raise ValueError(f"fatigue_limit {message}")
+        if 0 < self.fatigue_limit < LEAST_FATIGUE_LIMIT:
+            raise ValueError(
+                f"fatigue_limit must be 0, or at least {LEAST_FATIGUE_LIMIT:g} Pa, "
+                f"got {self.fatigue_limit!r}"
+            )
 
     @property
     def limit(self) -> float:

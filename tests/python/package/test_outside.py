@@ -96,6 +96,10 @@ CALLS: dict[str, tuple[Any, str]] = {
         "friction must be a real array",
     ),
     # limits in MPa beside moduli in Pa
+    "fatigue_limit": (
+        lambda _: bearing.IoannidesHarris(fatigue_limit=350.0),
+        r"fatigue_limit must be 0, or at least 100000 Pa, got 350\.0",
+    ),
     "yield_stress": (
         lambda s: s.stress_summary(yield_stress={"substrate": 900.0}),
         r"yield_stress must be in the units of the moduli, .* 2\.1e\+11; got 900",

@@ -207,7 +207,7 @@ def test_without_contact_there_is_a_picture_that_says_so(nothing: nacre.Solution
 
 @pytest.fixture(scope="module")
 def chart() -> Any:
-    lists: Any = {"thickness": [2e-6, 2e-5, 2e-4], "young": [1e11, 2e11, 4e11]}
+    lists: Any = {"thickness": [1e-5, 5e-5, 2e-4], "young": [1e11, 2e11, 4e11]}
     return design.coating_chart(BALL, STEEL, load=10.0, tolerance=1e-4, **lists)
 
 

@@ -101,7 +101,7 @@ def test_the_peak_of_a_sampled_profile_is_within_its_error() -> None:
     for name, (drop, load) in ROLLERS.items():
         right, left = peak(drop, 4801, load)
         assert left < 1e-3 * right, name
-        for stations in (11, 12, 21, 40, 61, 101, 201):
+        for stations in (11, 21, 40, 101, 201):
             found, error = peak(drop, stations, load)
             within.append(abs(found - right) <= error + left)
             closeness.append((stations, abs(found - right) / right, error / right))
