@@ -16,7 +16,7 @@ indent_extremes indent_fit indent_residuals notebook optimise paper peers rough 
 studies typing
 """.split()
 """Files that `make quick` leaves out, as tests with the mark: random cases, examples, long fits."""
-# Shells start jobs in the background with Ctrl-C ignored, also by the processes of tests that send it.
+# Jobs that shells start in the background ignore Ctrl-C, and so do their processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
 

@@ -90,7 +90,10 @@ CALLS: dict[str, tuple[Any, str]] = {
         lambda _: slide(friction=0.1, steps=[{"friction": np.True_, "force": (0.5, None)}]),
         "friction must be a number",
     ),
-    "friction of fatigue": (lambda s: fatigue.assess(s, friction=True), "friction must be a real number"),
+    "friction of fatigue": (
+        lambda s: fatigue.assess(s, friction=True),
+        "friction must be a real number",
+    ),
     "friction of a map": (
         lambda s: fatigue.shakedown_map(s, friction=[True, False]),
         "friction must be a real array",
@@ -124,7 +127,10 @@ CALLS: dict[str, tuple[Any, str]] = {
     ),
     "moment": (lambda _: BEARING.solve(moment=(1e300, None)), "moment must be at most"),
     "tilt": (lambda _: BEARING.solve(tilt=(1e300, None)), "tilt must be at most 1"),
-    "speed": (lambda _: BEARING.solve(**RADIAL, speed=1e300), "speed must be lower: elements must move at 1000 m/s at most"),
+    "speed": (
+        lambda _: BEARING.solve(**RADIAL, speed=1e300),
+        "speed must be lower: elements .* at most",
+    ),
     "rotation": (lambda _: BEARING.solve(**RADIAL, rotation=1e300), "rotation must be at most"),
     "capacity": (
         lambda _: bearing.CylindricalRoller(**ROLLERS, capacity=48.4),
