@@ -400,6 +400,6 @@ def _notes(bearing: Bearing, model: Model, contacts: Mapping[Any, Solution]) -> 
         report = contact.report
         for kind, text in zip(report.warning_kinds, report.warnings, strict=True):
             texts.setdefault(kind, text)
-            kinds[kind] += 1
+        kinds.update(dict.fromkeys(report.warning_kinds, 1))  # some are said of both axes
     for kind, number in kinds.items():
         yield f"{number} of {len(contacts)} contacts: {texts[kind]}"
