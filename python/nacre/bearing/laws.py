@@ -40,6 +40,9 @@ WIDER = 1.5
 """Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
 STEPS = 4
 """Steps of the width of a grid between a width and twice of it."""
+TOO_NARROW = 4.0
+"""Expected load over that of its grid above which a contact is not tried on it: half as wide as
+the contact or less, which takes minutes."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
 
@@ -202,6 +205,23 @@ class Solved:
         self.heaviest, self.power, self.cells = heaviest, power, cells
         self.workers = threads or core.Convolution([[1.0]], None).threads()
 
+    def _foresee(self, places: Array) -> None:
+        """Widen grids of contacts that are expected to be far wider than them."""
+        guess = law(self.bearing, "solved")
+        if isinstance(guess, Slices):
+            lines = guess.loads(places).max(-1) * LAMINAE / self.bearing.length
+        else:
+            lines = guess(places).force[..., 0]
+        while True:
+            allowed = TOO_NARROW * self.heaviest / np.maximum(lines, 1e-100 * self.heaviest)
+            most = floor(np.log2(allowed) / self.power)
+            if float(most.min()) >= 0:
+                break
+            self._widen()
+        for j, r in np.argwhere(most < self.halved):
+            self.kept.pop((int(j), int(r)), None)  # it starts from no other grid
+        self.halved = np.minimum(self.halved, most)
+
     def _plan(self, element: int, ring: int) -> Contact:
         """Return the plan for a contact."""
         key = ring, int(self.halved[element, ring])
@@ -276,6 +296,7 @@ class Solved:
         force, stiffness = np.zeros((count, 2, 2)), np.zeros((count, 2, 2, 2))
         touching = places[..., 0] + np.abs(places[..., 1]) * self.reach > 0
         tasks = [(int(j), int(r)) for j, r in np.argwhere(touching)]
+        self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
         kept: dict[tuple[int, int], Solution] = {}
