@@ -22,10 +22,10 @@
 //! # Modules
 //!
 //! The core solves the contact of coated bodies, as Spinu et al. do: frequency response, influence
-//! coefficients, convolution by FFT, conjugate gradients. The rest stands on it. The rooms form one
+//! coefficients, convolution by FFT, conjugate gradients. The rest stands on it. The modules form one
 //! chain; each imports only from earlier ones.
 //!
-//! | room | modules |
+//! | module | contents |
 //! |---|---|
 //! | errors | [`mod@error`]: the error type |
 //! | numerics | small dense systems, Fourier transforms, threads |

@@ -1,4 +1,4 @@
-"""Check the order of the rooms of `src/` and that no files import each other, for `make check`.
+"""Check the order of the modules of `src/` and that no files import each other, for `make check`.
 
 `python tests/house.py [ROOT]` prints what is wrong, and exits with 1 if anything is. A file needs
 each item that it imports or names by a path. An item counts where it is defined: re-exports are
@@ -17,7 +17,7 @@ CHAIN = [
     *("error", "numerics", "model", "compliance", "contact"),
     *("stress", "fatigue", "friction", "indent", "gradient", "data", "python"),
 ]
-"""Rooms; each imports only from those before it."""
+"""Modules; each imports only from those before it."""
 
 # Comments, strings and characters of Rust; a lifetime is not a character.
 QUIET = re.compile(
@@ -131,7 +131,7 @@ def violations(root: Path) -> Iterator[str]:
     graph = {module: sorted(crate.needs(module)) for module in sorted(crate.files)}
     for module, needs in graph.items():
         if module and module[0] not in CHAIN:
-            yield f"{'::'.join(module)}: not a room of the chain in tests/house.py"
+            yield f"{'::'.join(module)}: not a module of the chain in tests/house.py"
         for need in needs if module else []:
             if not need or need[0] not in CHAIN[: CHAIN.index(module[0]) + 1]:
                 yield f"{'::'.join(module)} imports from {'::'.join(need)}, which comes later"

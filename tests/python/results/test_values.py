@@ -118,7 +118,7 @@ every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys(
 
 
 def public_classes() -> set[type]:
-    public = (getattr(room, name) for room in (nacre, nacre.types) for name in room.__all__)
+    public = (getattr(module, name) for module in (nacre, nacre.types) for name in module.__all__)
     found = {c for c in public if isinstance(c, type) and not issubclass(c, BaseException)}
     return found - {nacre.types.Shape, nacre.types.History}  # a base, and a list
 
