@@ -96,15 +96,15 @@ fn farthest<const N: usize>(
     centre: &[f64; N],
     points: impl Iterator<Item = [f64; N]>,
 ) -> (usize, f64) {
-    let mut found = (0, -1.0);
+    let mut outermost = (0, -1.0);
     for (k, point) in points.enumerate() {
         let away: [f64; N] = std::array::from_fn(|axis| point[axis] - centre[axis]);
         let square = dot(&away, &away);
-        if square > found.1 {
-            found = (k, square);
+        if square > outermost.1 {
+            outermost = (k, square);
         }
     }
-    (found.0, found.1.max(0.0).sqrt())
+    (outermost.0, outermost.1.max(0.0).sqrt())
 }
 
 fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {

@@ -184,13 +184,13 @@ mod tests {
             let row = |a: usize| (0..CELLS).map(|b| f(a, b) * x[b]).sum();
             (0..CELLS).map(row).collect()
         };
-        for (name, found) in [
+        for (name, solution) in [
             ("L", forward(&lower, times(&entry))),
             ("Lᵀ", backward(&lower, times(&|a, b| entry(b, a)))),
             ("A", backward(&lower, forward(&lower, times(&matrix)))),
         ] {
-            for (found, x) in found.iter().zip(&x) {
-                assert!((found - x).abs() < 1e-12, "{name}: {found} {x}");
+            for (value, x) in solution.iter().zip(&x) {
+                assert!((value - x).abs() < 1e-12, "{name}: {value} {x}");
             }
         }
     }
@@ -218,9 +218,9 @@ mod tests {
         };
         let matrix = Array2::from_shape_fn((n, n), entry);
         let expected = Array2::from_shape_fn((n, 3), |(i, j)| (i as f64 - 4.0) * (j + 1) as f64);
-        let found = Factors::new(matrix.clone()).solve(matrix.dot(&expected));
-        for (found, expected) in found.iter().zip(&expected) {
-            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        let solution = Factors::new(matrix.clone()).solve(matrix.dot(&expected));
+        for (value, expected) in solution.iter().zip(&expected) {
+            assert!((value - expected).abs() < 1e-11, "{value} {expected}");
         }
     }
 
@@ -235,10 +235,10 @@ mod tests {
         let mut left_out = [0, 1, 2, 3].map(|a| vec![gram(a, 0), 1.0, gram(a, 2), gram(a, 3)]);
         let mut y = [0, 1, 2, 3].map(|a| 3.0 * gram(a, 0));
         eliminate(&mut left_out, &mut y, |k, _| k != 1);
-        for (found, expected) in
+        for (value, expected) in
             x.iter().zip([0.0, 1.0, 2.0, 0.0]).chain(y.iter().zip([3.0, 0.0, 0.0, 0.0]))
         {
-            assert!((found - expected).abs() < 1e-12, "{x:?} {y:?}");
+            assert!((value - expected).abs() < 1e-12, "{x:?} {y:?}");
         }
     }
 }

@@ -99,15 +99,15 @@ mod tests {
     fn roots_to_rounding() {
         for root in [0.3_f64, 1.7, 2.9] {
             let cube = |x: f64| Ok([x.powi(3) - root.powi(3), 3.0 * x * x]);
-            let found = newton(cube, [0.1, 3.0], 2.0).expect("a root");
-            assert!((found - root).abs() < 1e-14, "{found} {root}");
-            let found = bracketed(|x| Ok((x - root).cbrt()), [0.0, 3.0]).expect("no error");
-            let found = found.expect("a root");
-            assert!((found - root).abs() < 1e-13, "{found} {root}");
+            let zero = newton(cube, [0.1, 3.0], 2.0).expect("a root");
+            assert!((zero - root).abs() < 1e-14, "{zero} {root}");
+            let zero = bracketed(|x| Ok((x - root).cbrt()), [0.0, 3.0]).expect("no error");
+            let zero = zero.expect("a root");
+            assert!((zero - root).abs() < 1e-13, "{zero} {root}");
             let falling = |x: f64| Ok(root.exp() - x.exp());
-            let found = bracketed(falling, [-4.0, 3.0]).expect("no error");
-            let found = found.expect("a root");
-            assert!((found - root).abs() < 1e-13, "{found} {root}");
+            let zero = bracketed(falling, [-4.0, 3.0]).expect("no error");
+            let zero = zero.expect("a root");
+            assert!((zero - root).abs() < 1e-13, "{zero} {root}");
         }
         assert_eq!(bracketed(|x| Ok(x + 1.0), [0.0, 3.0]).expect("no error"), None);
     }

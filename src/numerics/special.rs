@@ -195,8 +195,8 @@ mod tests {
         let polynomial = |x: f64| 3.0 * x.powi(5) - x.powi(2) + 0.5;
         for x in [-1.0, -0.3, nodes[2][0], 0.77, 1.0] {
             let terms = nodes.iter().zip(barycentric(&nodes, x));
-            let found: f64 = terms.map(|([node, _], w)| w * polynomial(*node)).sum();
-            assert!((found - polynomial(x)).abs() < 1e-14, "{x}: {found}");
+            let value: f64 = terms.map(|([node, _], w)| w * polynomial(*node)).sum();
+            assert!((value - polynomial(x)).abs() < 1e-14, "{x}: {value}");
         }
     }
 }

@@ -352,7 +352,7 @@ impl PaddedTransform {
             let needed = (inputs.len() + 1) * length;
             let memory = &mut scratch.columns;
             memory.resize(memory.len().max(needed), ZERO);
-            let (data, made) = memory[..needed].split_at_mut(inputs.len() * length);
+            let (data, sums) = memory[..needed].split_at_mut(inputs.len() * length);
             for (block, lines) in blocks.chunks_exact_mut(size).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
@@ -369,18 +369,18 @@ impl PaddedTransform {
                         let data = data[term.input * length..].chunks_exact(mx);
                         let values =
                             term.spectrum.values[start * quarter_rows..].chunks_exact(quarter_rows);
-                        let made = made.chunks_exact_mut(mx).take(width);
-                        for ((column, data), values) in made.zip(data).zip(values) {
+                        let sums = sums.chunks_exact_mut(mx).take(width);
+                        for ((column, data), values) in sums.zip(data).zip(values) {
                             multiply_add(column, data, values, term.spectrum.odd, term.sign, add);
                         }
                         add = true;
                     }
-                    let made = &mut made[..width * mx];
+                    let sums = &mut sums[..width * mx];
                     if !add {
-                        made.fill(ZERO);
+                        sums.fill(ZERO);
                     }
-                    self.column_inverse.process_with_scratch(made, &mut scratch.fft);
-                    scatter(made, mx, &mut lines[..nx]);
+                    self.column_inverse.process_with_scratch(sums, &mut scratch.fft);
+                    scatter(sums, mx, &mut lines[..nx]);
                 }
             }
         };
@@ -508,8 +508,8 @@ mod tests {
                     let values = &slice(&kernel);
                     add_double_sum(&mut exact, ny, sign, &inputs[input], values, parities[k]);
                 }
-                for (found, exact) in output.iter().zip(exact) {
-                    assert!((found - exact).abs() < 1e-11, "{nx} {ny}: {found} {exact}");
+                for (value, exact) in output.iter().zip(exact) {
+                    assert!((value - exact).abs() < 1e-11, "{nx} {ny}: {value} {exact}");
                 }
             }
         }

@@ -82,20 +82,20 @@ impl PaddedTransform {
             for (block, values) in blocks.chunks_exact_mut(size).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
-                let made = &mut scratch.columns[..width * mx];
-                made.fill(ZERO);
+                let block_columns = &mut scratch.columns[..width * mx];
+                block_columns.fill(ZERO);
                 for i in 0..nx.min(quarter_rows) {
                     for b in 0..width {
                         let value = part(rows[i * columns + start + b], odd[1]);
-                        made[b * mx + (mx - i) % mx] = Complex64::new(sign_x * value, 0.0);
-                        made[b * mx + i] = Complex64::new(value, 0.0);
+                        block_columns[b * mx + (mx - i) % mx] = Complex64::new(sign_x * value, 0.0);
+                        block_columns[b * mx + i] = Complex64::new(value, 0.0);
                     }
                 }
-                self.column_forward.process_with_scratch(made, &mut scratch.fft);
+                self.column_forward.process_with_scratch(block_columns, &mut scratch.fft);
                 for k in 0..quarter_rows {
                     for b in 0..width {
                         values[k * next_row + b * next_column] =
-                            part(made[b * mx + k], odd[0]) * scale;
+                            part(block_columns[b * mx + k], odd[0]) * scale;
                     }
                 }
             }

@@ -31,12 +31,12 @@ pub(crate) fn check_memory(shape: [usize; 2], needed: u64) -> Result<()> {
     if needed < TRIED {
         return Ok(());
     }
-    let asked = needed >= ASKED;
+    let is_large = needed >= ASKED;
     let needed = needed.saturating_add(BESIDE);
-    let left = asked.then(|| left(Path::new("/"))).flatten();
-    let said = left.filter(|left| *left < needed);
+    let left = is_large.then(|| left(Path::new("/"))).flatten();
+    let available = left.filter(|left| *left < needed);
     let granted = || (!is_granted(needed)).then(|| largest_granted(needed));
-    match said.or_else(granted) {
+    match available.or_else(granted) {
         Some(available) => Err(Error::Memory { shape, needed, available }),
         None => Ok(()),
     }

@@ -354,9 +354,9 @@ mod tests {
         for ignored in ["0", "-1", "many", "1.5"] {
             assert_eq!(count(&[(rayon, ignored), (openmp, "1")])?, 1);
             assert_eq!(count(&[(openmp, ignored)])?, all);
-            let said = count(&[(nacre, ignored)]).expect_err("no number of threads").to_string();
+            let message = count(&[(nacre, ignored)]).expect_err("no number of threads").to_string();
             let wanted = "NACRE_NUM_THREADS must be a whole number of at least 1, got";
-            assert_eq!(said, format!("{wanted} {ignored:?}"));
+            assert_eq!(message, format!("{wanted} {ignored:?}"));
         }
         Ok(())
     }
