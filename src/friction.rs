@@ -59,7 +59,7 @@ impl Contact {
     /// Each step's solution says whether it converged.
     ///
     /// # Errors
-    /// Bad input, bodies without layers and substrate or with free ends, a force that friction cannot bear.
+    /// Bad input, bodies without layers and substrate or with free ends, a force that friction cannot carry.
     ///
     /// ```
     /// use nacre::friction::{FrictionOptions, Step};
@@ -136,7 +136,7 @@ impl Contact {
         shape: &dyn Surface,
         moves: impl Iterator<Item = Move<'m>> + Send,
         options: &FrictionOptions,
-        given: Option<&FrictionSolution>,
+        before: Option<&FrictionSolution>,
     ) -> Result<Vec<FrictionSolution>> {
         self.run(|| {
             let session = Session::new(self, shape, *options)?;
@@ -144,7 +144,7 @@ impl Contact {
             for (number, next) in moves.enumerate() {
                 let last = solutions
                     .last()
-                    .or(given)
+                    .or(before)
                     .map(|solution| Last { solution, is_own: number > 0 });
                 let mut progress = |_: &_| ControlFlow::Continue(());
                 solutions.push(session.solve(next, last, &mut progress)?);

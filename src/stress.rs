@@ -151,10 +151,12 @@ impl Solution {
         strengths: &Strengths,
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressSummary> {
-        let asked = options.into();
-        match asked.options().refine {
-            Some(target) => refined_summary(self, self.source(member)?, strengths, target, asked),
-            None => summary_once(&self.source(member)?, strengths, asked),
+        let watched_options = options.into();
+        match watched_options.options().refine {
+            Some(target) => {
+                refined_summary(self, self.source(member)?, strengths, target, watched_options)
+            }
+            None => summary_once(&self.source(member)?, strengths, watched_options),
         }
     }
 
@@ -181,12 +183,12 @@ impl Solution {
         &self,
         member: Member,
         tractions: [&Array2<f64>; 2],
-        asked: WatchedStress,
+        watched_options: WatchedStress,
     ) -> Result<StressPlan> {
         let mut source = self.source(member)?;
         source.sliding.is_known = true;
         source.tractions = Some(tractions.map(|traction| &**traction));
-        source.planned(asked)
+        source.planned(watched_options)
     }
 
     /// A plan of the stress in `body`, which stands for one of the bodies, under `pressure` that is uniform over each

@@ -342,10 +342,10 @@ mod tests {
             let alone = Convolution::plan(&field(shape), Some(1))?;
             let whole = alone.apply(&input)?.into_raw_vec_and_offset().0;
             let input = input.into_raw_vec_and_offset().0;
-            let mut found = vec![f64::NAN; nx * ny];
-            convolution.apply_rows(occupied, &input, &mut found, &mut convolution.workspace());
+            let mut u = vec![f64::NAN; nx * ny];
+            convolution.apply_rows(occupied, &input, &mut u, &mut convolution.workspace());
             let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
-            assert!(found.iter().zip(&whole).all(same), "{shape:?}");
+            assert!(u.iter().zip(&whole).all(same), "{shape:?}");
         }
         Ok(())
     }

@@ -160,8 +160,8 @@ fn open_direction(grid: &Grid) -> Option<usize> {
 /// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
 /// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
 ///
-/// Rows beyond a free end, which bear no pressure, are left out: the mirror image acts between the others alone, and with
-/// rows beyond, the sum of both is not positive definite below stiff layers that are thick compared with the grid.
+/// Rows beyond a free end, which carry no pressure, are left out: the mirror image acts between the others alone, and
+/// with rows beyond, the sum of both is not positive definite below stiff layers that are thick compared with the grid.
 fn total_pressure(
     (coefficients, additions): (&Array2<f64>, &[Addition]),
     grid: &Grid,

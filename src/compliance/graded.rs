@@ -219,11 +219,11 @@ impl Samples {
         let mut jumps = Vec::new();
         for part in ends.windows(2) {
             let depths = depths(part[0], part[1], thickness);
-            let found = depths.into_iter().map(&mut at);
-            let found = found.collect::<Result<Vec<_>>>()?;
+            let points = depths.into_iter().map(&mut at);
+            let points = points.collect::<Result<Vec<_>>>()?;
             // Intervals that are left, the next one last.
-            let mut left: Vec<_> = found.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
-            samples.extend(found.first());
+            let mut left: Vec<_> = points.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
+            samples.extend(points.first());
             while let Some([one, two]) = left.pop() {
                 if samples.len() > MOST {
                     return Err(Error::Inconsistent(

@@ -177,8 +177,8 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
         chunks.for_each(|(chunk, mut part)| {
             let first = chunk * ROWS;
             source.rows(first..first + part.len_of(Axis(0)), &mut |i, k, row| {
-                let mut made = part.index_axis_mut(Axis(0), i - first);
-                made.row_mut(k).assign(&ArrayView1::from(row));
+                let mut components = part.index_axis_mut(Axis(0), i - first);
+                components.row_mut(k).assign(&ArrayView1::from(row));
             });
         });
         [0, 1, 2].map(|k| rows.index_axis(Axis(1), k).to_owned())

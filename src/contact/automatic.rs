@@ -68,8 +68,8 @@ pub fn solve_with<'a>(
     options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Solution> {
     check_carried(setup.counterbody.as_ref(), shape)?;
-    let mut asked = options.into();
-    let options = asked.options;
+    let mut watched_options = options.into();
+    let options = watched_options.options;
     let ends = Ends::of(&bodies(body, setup));
     let limited = ends.limit(shape);
     let task = Task {
@@ -83,7 +83,7 @@ pub fn solve_with<'a>(
     // A break ends all solves that follow.
     let mut stopped = false;
     let mut watched = |report: &Report| {
-        stopped = stopped || asked.tell(report).is_break();
+        stopped = stopped || watched_options.tell(report).is_break();
         if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let mut solution = match shape.grid() {
@@ -322,8 +322,8 @@ fn peak_error(solution: &Solution) -> Option<f64> {
 /// through the peak.
 fn around_peak(solution: &Solution) -> ([bool; 2], [bool; 2]) {
     let (pressure, peak) = (&solution.pressure, solution.peak_pressure());
-    let found = pressure.indexed_iter().find(|(_, p)| **p >= peak);
-    let (row, column) = found.map_or((0, 0), |(at, _)| at);
+    let peak_cell = pressure.indexed_iter().find(|(_, p)| **p >= peak);
+    let (row, column) = peak_cell.map_or((0, 0), |(at, _)| at);
     let lines = [(pressure.column(column), row), (pressure.row(row), column)];
     // The less the neighbours of the peak carry, the more the pressure bends.
     let beside = lines.map(|(line, at)| {

@@ -125,16 +125,16 @@ impl Contact {
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
                     let (_alive, mut sampled) = (alive, Sampled::default());
-                    let asked = || match stopped.load(Ordering::Relaxed) {
+                    let check_stop = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
                     };
-                    while asked().is_continue() {
+                    while check_stop().is_continue() {
                         let number = next.fetch_add(1, Ordering::Relaxed);
                         let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let progress = &mut |_: &_| asked();
+                        let progress = &mut |_: &_| check_stop();
                         let solved =
                             plan.solve_watched(*shape, &mut sampled, motion, options, progress);
                         let unfinished = matches!(&solved, Ok(solution)

@@ -91,15 +91,15 @@ impl<'a> Cascade<'a> {
         Some(Self { finest, patch, results, stopped })
     }
 
-    /// Starts the finest grid from a `given` pressure.
+    /// Starts the finest grid from an `initial` pressure.
     pub(super) fn from(
-        given: &Array2<f64>,
+        initial: &Array2<f64>,
         problem: &Problem<'a>,
         gap: &'a Array2<f64>,
         finest: &'a Level,
     ) -> Self {
         let finest = LevelProblem::finest(finest, problem, gap);
-        let mut patch = Patch::of_grid(given);
+        let mut patch = Patch::of_grid(initial);
         if let Some(contact) = patch.contact() {
             patch = patch.moved(widened(&contact, finest.shape()));
         }
@@ -151,12 +151,13 @@ impl<'a> Cascade<'a> {
         let [x, y] = self.patch.window.clone();
         let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));
         let g = fields.gap(problem);
-        let found = bounds(&full_window(shape), |i, j| outside(i, j) && g[i * shape[1] + j] < 0.0);
-        if let Some(cells) = &found {
+        let overlap =
+            bounds(&full_window(shape), |i, j| outside(i, j) && g[i * shape[1] + j] < 0.0);
+        if let Some(cells) = &overlap {
             let window = enclosing(cells, &self.patch.window);
             self.patch = self.patch.moved(widened(&window, shape));
         }
-        found.is_some()
+        overlap.is_some()
     }
 }
 

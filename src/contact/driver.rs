@@ -16,13 +16,13 @@ use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, SolutionFields};
 use crate::contact::solution::warnings::{Warning, warnings};
-use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
+use crate::contact::solution::{Gap, Progress, Report, Resultants, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
-    Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
+    Sampled, check_seam, checked_gaps, initial_pressure, uniform_pressure, yielding_pressure,
 };
 use crate::error::{Error, Result};
-use crate::model::surface::{Lifted, Surface};
+use crate::model::surface::{OffsetShape, Surface};
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::Rows;
 
@@ -73,9 +73,9 @@ impl Contact {
         motion: &Motion,
         options: impl Into<WatchedSolve<'a>>,
     ) -> Result<Solution> {
-        let mut asked = options.into();
-        let options = asked.options;
-        let progress = &mut |report: &Report| asked.tell(report);
+        let mut watched_options = options.into();
+        let options = watched_options.options;
+        let progress = &mut |report: &Report| watched_options.tell(report);
         self.solve_watched(shape, &mut Sampled::default(), motion, options, progress)
     }
 
@@ -123,7 +123,7 @@ impl Contact {
             return self.press(shape, sampled, motion, options, progress);
         };
         check_indentation(before, &self.grid)?;
-        let dented = Lifted::new(shape, &self.grid, before.clone());
+        let dented = OffsetShape::new(shape, &self.grid, before.clone());
         let mut solution =
             self.press(&dented, &mut Sampled::default(), motion, options, progress)?;
         solution.indentation = Some(match solution.indentation {
@@ -227,14 +227,14 @@ impl<'a> Steps<'a> {
         self.options.algorithm == Algorithm::Cascade
     }
 
-    /// The gap, less the prescribed motion. The shape that is `given` tells whether it was sampled before.
+    /// The gap, less the prescribed motion. The shape that is `original` tells whether it was sampled before.
     fn sample<'s>(
         &self,
-        given: &'s dyn Surface,
+        original: &'s dyn Surface,
         sampled: &mut Sampled<'s>,
     ) -> Result<Arc<Array2<f64>>> {
         let sample = || checked_gaps(self.shape, &self.plan.grid, &self.rows());
-        let mut gap = sampled.gaps(given, sample)?;
+        let mut gap = sampled.gaps(original, sample)?;
         self.freedoms.check_feasible(&gap)?;
         if self.freedoms.any_prescribed() {
             self.freedoms.prescribe(Arc::make_mut(&mut gap));
@@ -264,8 +264,8 @@ impl<'a> Steps<'a> {
             let (solver, termination) = (Solver::Preconditioned, Termination::IterationLimit);
             return Ok((Outcome { solver, termination, lambda: [0.0; 3] }, Vec::new()));
         }
-        if let Some(given) = given_pressure(problem, self.options.initial.as_deref())? {
-            let outcome = self.solve_from(given, problem, gap, fields, tally)?;
+        if let Some(initial) = initial_pressure(problem, self.options.initial.as_deref())? {
+            let outcome = self.solve_from(initial, problem, gap, fields, tally)?;
             return Ok((outcome, Vec::new()));
         }
         if self.cascades()
@@ -316,8 +316,8 @@ impl<'a> Steps<'a> {
         };
         let (approach, tilt) = self.freedoms.rigid_motion(fields.multipliers.lambda());
         let (pressure, window) = (&fields.pressure, &fields.window);
-        let (carried, warnings) = self.rows().both(
-            || Carried::by(pressure, window, grid),
+        let (resultants, warnings) = self.rows().both(
+            || Resultants::of(pressure, window, grid),
             || warnings(pressure, window, &undeformed, grid, self.shape, &plan.ends),
         );
         // One rule decides, on the numbers that are reported.
@@ -327,14 +327,15 @@ impl<'a> Steps<'a> {
             _ => Termination::IterationLimit,
         };
         report.solver = Some(outcome.solver);
-        report.balance = carried.balance(grid, self.motion);
+        report.balance = resultants.balance(grid, self.motion);
         report.warnings = warnings;
         // Where cells yield, the coarser grids say nothing.
         if report.converged() && indentation.is_none() {
-            let finest = GridResult { peak_pressure: carried.peak, approach, load: carried.force };
+            let finest =
+                GridResult { peak_pressure: resultants.peak, approach, load: resultants.force };
             report.discretisation = self.discretisation(results, finest, &fields, &report.warnings);
         }
-        let raised = plan.datum.raise() * carried.force;
+        let raised = plan.datum.raise() * resultants.force;
         if raised != 0.0 {
             fields.lower(raised);
         }
@@ -375,26 +376,26 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// Share of what the cells bear that is rounding of their sum.
+/// Share of what the cells carry that is rounding of their sum.
 const BEARING_ROUNDING: f64 = 1e-12;
 
-/// An error where the load, or a moment along one axis, is what the cells that can touch bear or above. At that limit all
-/// of them yield, and the rigid motion is not determined.
+/// An error where the load, or a moment along one axis, is what the cells that can touch carry or above. At that limit
+/// all of them yield, and the rigid motion is not determined.
 ///
 /// # Errors
 /// [`Error::Overload`], [`Error::Overturned`].
 fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
     let touching = (0..problem.gap.len()).filter(|&k| problem.gap[k].is_finite());
-    let bears: f64 = touching.map(|k| hardness.at(k)).sum();
+    let capacity: f64 = touching.map(|k| hardness.at(k)).sum();
     let freedoms = problem.freedoms;
-    if freedoms.loaded[0] && freedoms.target[0] >= (1.0 - BEARING_ROUNDING) * bears {
+    if freedoms.loaded[0] && freedoms.target[0] >= (1.0 - BEARING_ROUNDING) * capacity {
         return Err(Error::Overload {
             load: freedoms.target[0] * freedoms.cell_area,
-            bears: bears * freedoms.cell_area,
+            bears: capacity * freedoms.cell_area,
         });
     }
     for axis in (0..2).filter(|axis| freedoms.loaded[axis + 1]) {
-        let (asked, at) = (freedoms.target[axis + 1], &freedoms.columns[axis]);
+        let (moment, at) = (freedoms.target[axis + 1], &freedoms.columns[axis]);
         let mut lines = vec![0.0; at.len()];
         let columns = freedoms.columns[1].len();
         for cell in (0..problem.gap.len()).filter(|&cell| problem.gap[cell].is_finite()) {
@@ -404,10 +405,10 @@ fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
         let lines: Vec<[f64; 2]> = at.iter().copied().zip(lines).map(Into::into).collect();
         let [low, high] = [-1.0, 1.0].map(|side| side * farthest(&lines, side, load));
         let rounding = BEARING_ROUNDING * (high - low);
-        if asked <= low + rounding || asked >= high - rounding {
+        if moment <= low + rounding || moment >= high - rounding {
             return Err(Error::Overturned {
                 axis: ["x", "y"][axis],
-                moment: freedoms.moment(axis, asked),
+                moment: freedoms.moment(axis, moment),
                 range: [low, high].map(|bound| freedoms.moment(axis, bound)),
             });
         }
@@ -415,19 +416,19 @@ fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
     Ok(())
 }
 
-/// The largest moment Σ p (side · x) of a load that lines of cells bear up to their limit, each given as its coordinate x
-/// and its limit; of any load where none is given.
+/// The largest moment Σ p (side · x) of a load that lines of cells carry up to their limit, each given as its
+/// coordinate x and its limit; of any load where none is given.
 fn farthest(lines: &[[f64; 2]], side: f64, load: Option<f64>) -> f64 {
     let mut rest = load.unwrap_or(f64::INFINITY);
     let mut lines: Vec<[f64; 2]> = lines.iter().map(|[x, most]| [side * x, *most]).collect();
     lines.sort_by(|a, b| b[0].total_cmp(&a[0]));
     let mut moment = 0.0;
     for [x, most] in lines {
-        let borne = most.min(rest);
+        let force = most.min(rest);
         // A load that is not given stays on its side of the origin.
-        if borne > 0.0 && (load.is_some() || x > 0.0) {
-            moment += borne * x;
-            rest -= borne;
+        if force > 0.0 && (load.is_some() || x > 0.0) {
+            moment += force * x;
+            rest -= force;
         }
     }
     moment

@@ -44,7 +44,7 @@ pub struct Options {
     pub algorithm: Algorithm,
     /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
     pub initial: Option<Array2<f64>>,
-    /// Largest pressure that the surfaces bear. Default: they do not yield.
+    /// Largest pressure that the surfaces carry. Default: they do not yield.
     pub hardness: Option<Hardness>,
     /// Permanent indentation (nx, ny) \[m\] that the surfaces have already: that of the solution before, in a
     /// history of loads. Default: none.
@@ -143,8 +143,8 @@ impl Motion {
             (self.load, self.approach) = (before.load, before.approach);
         }
         for axis in 0..2 {
-            let given = [self.eccentricity[axis], self.moment[axis], self.tilt[axis]];
-            if given == [None; 3] {
+            let rotation = [self.eccentricity[axis], self.moment[axis], self.tilt[axis]];
+            if rotation == [None; 3] {
                 self.eccentricity[axis] = before.eccentricity[axis];
                 self.moment[axis] = before.moment[axis];
                 self.tilt[axis] = before.tilt[axis];

@@ -78,7 +78,7 @@ impl Contact {
         ends.check(&grid)?;
         refuse_if(
             ends.any() && grid.is_periodic()[0],
-            "bodies must go on along x where the grid is periodic along x: leave out their ends",
+            "bodies must extend along x where the grid is periodic along x: leave out their ends",
         )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let additions = ends.additions(&grid, &grid, &threads)?;
@@ -241,9 +241,9 @@ pub(super) fn operator(
     threads: &Arc<Threads>,
 ) -> Result<(Array2<f64>, Datum)> {
     let coefficients = match &setup.coefficients {
-        Some(given) => {
-            check_coefficients(given, grid)?;
-            given.to_owned()
+        Some(coefficients) => {
+            check_coefficients(coefficients, grid)?;
+            coefficients.to_owned()
         }
         None => total_coefficients(body, setup, grid, threads)?,
     };

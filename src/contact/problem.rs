@@ -89,12 +89,12 @@ pub(super) struct QualitySums {
     /// Σ p|g| where no bound holds the pressure.
     mismatch: f64,
     /// Number of cells at the hardness.
-    held: f64,
+    at_hardness: f64,
 }
 
 impl Total for QualitySums {
     const ZERO: Self =
-        Self { overlap: 0.0, displacement: 0.0, work: 0.0, mismatch: 0.0, held: 0.0 };
+        Self { overlap: 0.0, displacement: 0.0, work: 0.0, mismatch: 0.0, at_hardness: 0.0 };
 
     fn joined(self, other: Self) -> Self {
         let larger = |a: f64, b: f64| if b > a { b } else { a };
@@ -103,7 +103,7 @@ impl Total for QualitySums {
             displacement: larger(self.displacement, other.displacement),
             work: self.work + other.work,
             mismatch: self.mismatch + other.mismatch,
-            held: self.held + other.held,
+            at_hardness: self.at_hardness + other.at_hardness,
         }
     }
 }
@@ -112,9 +112,9 @@ impl QualitySums {
     /// The sums from their values in one row: those of [`depths`] and of [`works`].
     pub(super) fn of_row(
         [overlap, displacement]: [f64; 2],
-        [work, mismatch, held]: [f64; 3],
+        [work, mismatch, at_hardness]: [f64; 3],
     ) -> Self {
-        Self { overlap, displacement, work, mismatch, held }
+        Self { overlap, displacement, work, mismatch, at_hardness }
     }
 }
 
@@ -154,9 +154,9 @@ impl Problem<'_> {
         near: [f64; 3],
         workspace: &mut Workspace,
     ) -> (Multipliers, Quality) {
-        let (found, free_cells) = self.judge_near(p, window, u, near, workspace);
+        let (multipliers, free_cells) = self.judge_near(p, window, u, near, workspace);
         if free_cells > 0.0 || !self.bounds.is_limited() {
-            return found;
+            return multipliers;
         }
         let near = self.until_touching(p, u, near);
         self.judge_near(p, window, u, near, workspace).0
@@ -186,8 +186,8 @@ impl Problem<'_> {
             let (extremes, not_finite) = depths_of(multipliers, row, fields);
             let inside = row.within(window, fields);
             let carried = inside.map(|(row, fields)| works_of(multipliers, row, fields));
-            let [work, mismatch, held, not_allowed] = carried.unwrap_or_default();
-            let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
+            let [work, mismatch, at_hardness, not_allowed] = carried.unwrap_or_default();
+            let sums = QualitySums::of_row(extremes, [work, mismatch, at_hardness]);
             (sums, [not_finite, not_allowed])
         });
         let quality = self.quality(sums, &fit);
@@ -261,7 +261,7 @@ impl Problem<'_> {
         };
         let [force, ..] = fit.moments;
         let far = sums.displacement;
-        let pressed = fit.cells() + sums.held;
+        let pressed = fit.cells() + sums.at_hardness;
         let local = (self.local.under(force, pressed)).max(SMALLEST_SCALE * far);
         let work = sums.work.abs().min(local * force);
         Quality {
@@ -296,8 +296,8 @@ fn depths_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) 
 fn works_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> [f64; 4] {
     let overlap = multipliers.overlap(row);
     sum([p, limit, u, h, row.y], |[p, limit, u, h, y]| {
-        let [work, mismatch, held] = works(p, limit, u, overlap([u, h, y]));
-        [work, mismatch, held, not_allowed(p, limit)]
+        let [work, mismatch, at_hardness] = works(p, limit, u, overlap([u, h, y]));
+        [work, mismatch, at_hardness, not_allowed(p, limit)]
     })
 }
 
@@ -494,8 +494,8 @@ mod tests {
                 } else {
                     2.0 * MULTIPLE * force / (std::f64::consts::PI * radius)
                 };
-                let found = local.under(0.7 * cells, cells);
-                assert!((found / expected - 1.0).abs() < 0.07, "{found} {expected}");
+                let displacement = local.under(0.7 * cells, cells);
+                assert!((displacement / expected - 1.0).abs() < 0.07, "{displacement} {expected}");
             }
             assert!(local.under(0.0, 0.0).abs() <= 0.0);
         }

@@ -36,7 +36,7 @@ pub struct Solution {
     pub approach: f64,
     /// Tilt (s_x, s_y).
     pub tilt: [f64; 2],
-    /// Largest pressure that the surfaces bear; `None` where they do not yield.
+    /// Largest pressure that the surfaces carry; `None` where they do not yield.
     pub hardness: Option<Hardness>,
     /// Permanent indentation \[m\], ≥ 0, with that of the solves before; `None` where no cell has one. The gap
     /// contains it.
@@ -531,27 +531,27 @@ pub struct Balance {
 
 /// Force, moments and peak of a pressure.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Carried {
+pub(crate) struct Resultants {
     pub(crate) force: f64,
     moment: [f64; 2],
     pub(crate) peak: f64,
 }
 
-impl Carried {
+impl Resultants {
     /// Force, moments and peak of `pressure`, which is zero outside `window`.
-    pub(crate) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
+    pub(crate) fn of(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
         let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
-        let mut carried = Self::default();
+        let mut sums = Self::default();
         for (row, x) in rows(&slice(pressure), grid.shape()[1], window).zip(x) {
             let ([peak], [force, moment]) =
                 update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
-            carried.force += force;
-            carried.moment[0] += force * x;
-            carried.moment[1] += moment;
-            carried.peak = carried.peak.max(peak);
+            sums.force += force;
+            sums.moment[0] += force * x;
+            sums.moment[1] += moment;
+            sums.peak = sums.peak.max(peak);
         }
         let area = grid.cell_area();
-        Self { force: carried.force * area, moment: carried.moment.map(|m| m * area), ..carried }
+        Self { force: sums.force * area, moment: sums.moment.map(|m| m * area), ..sums }
     }
 
     /// Errors of force and moments against those that `motion` asks for.
@@ -561,8 +561,8 @@ impl Carried {
         let half = grid.size().map(|length| 0.5 * length);
         let moment = [0, 1].map(|k| {
             let eccentricity = || Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0));
-            let asked = motion.moment[k].or_else(eccentricity);
-            asked.map_or(0.0, |m| relative((self.moment[k] - m).abs(), scale * half[k]))
+            let target = motion.moment[k].or_else(eccentricity);
+            target.map_or(0.0, |m| relative((self.moment[k] - m).abs(), scale * half[k]))
         });
         let force = motion.load;
         Balance { force: force.map_or(0.0, |w| relative((self.force - w).abs(), w)), moment }

@@ -52,7 +52,7 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
 }
 
 /// An error where `shape` repeats along an axis and `grid` does not as it does, or where its gap jumps at the seam of a
-/// grid that repeats. A line contact goes on along x.
+/// grid that repeats. A line contact extends along x.
 ///
 /// # Errors
 /// [`Error::Period`], [`Error::Seam`].
@@ -84,7 +84,7 @@ pub(super) fn check_seam(shape: &dyn Surface, grid: &Grid) -> Result<()> {
 }
 
 /// The pressure that the caller gave to start from, balanced; `None` where it cannot carry the load.
-pub(super) fn given_pressure(
+pub(super) fn initial_pressure(
     problem: &Problem,
     initial: Option<&ArrayRef2<f64>>,
 ) -> Result<Option<Array2<f64>>> {

@@ -30,7 +30,7 @@ impl Law {
         self.bound.len()
     }
 
-    /// Largest force that all cells together bear, over the area of a cell.
+    /// Largest force that all cells together carry, over the area of a cell.
     pub(super) fn most(&self) -> f64 {
         self.bound.iter().sum()
     }

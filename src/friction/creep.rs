@@ -205,10 +205,10 @@ impl EllipticContact {
         let (x, y) = (self.grid.x(), self.grid.y());
         let place = |at: usize| [x[at / y.len()], y[at % y.len()]];
         let d = self.grid.spacing()[0];
-        let mut given = vec![0.0; 2 * cells];
+        let mut displacements = vec![0.0; 2 * cells];
         for at in 0..cells {
             let [along, across] = motion(place(at));
-            (given[at], given[cells + at]) = (along * d, across * d);
+            (displacements[at], displacements[cells + at]) = (along * d, across * d);
         }
         let problem = TractionProblem {
             operator: Operator {
@@ -218,20 +218,20 @@ impl EllipticContact {
                 blends: false,
             },
             law: &self.law,
-            given,
+            displacements,
             columns: Vec::new(),
             forces: Vec::new(),
         };
         let effort = Effort { tolerance: TOLERANCE, most: MOST };
-        let found = problem.solve(vec![0.0; 2 * cells], effort, &mut |_, _| watch());
-        if found.stopped {
+        let solution = problem.solve(vec![0.0; 2 * cells], effort, &mut |_, _| watch());
+        if solution.stopped {
             return Err(Error::Stopped);
         }
-        if found.misfit.worst() > TOLERANCE {
-            let (iterations, residual) = (found.convolutions, found.misfit.worst());
+        if solution.misfit.worst() > TOLERANCE {
+            let (iterations, residual) = (solution.convolutions, solution.misfit.worst());
             return Err(Error::not_converged(iterations, residual, TOLERANCE, "cells"));
         }
-        let (qx, qy) = found.q.split_at(cells);
+        let (qx, qy) = solution.q.split_at(cells);
         let area = self.grid.cell_area();
         let torque = (0..cells).map(|at| place(at)[0] * qy[at] - place(at)[1] * qx[at]);
         Ok([qx.iter().sum::<f64>(), qy.iter().sum(), torque.sum()].map(|sum| sum * area))

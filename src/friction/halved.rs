@@ -81,7 +81,7 @@ pub(super) fn refined(
         let size = share[0].hypot(share[1]);
         let slips = slips > 0.5 * whole;
         let most = if slips { size } else { whole.max(size) };
-        // A sticking cell bears no more than those around it, however large its bound.
+        // A sticking cell carries no more than those around it, however large its bound.
         let scale = if slips { bound[[i, j]] } else { bound[[i, j]].min(largest * most / size) };
         if size > 0.0 {
             for (q, share) in traction.iter_mut().zip(share) {
@@ -147,7 +147,7 @@ pub(super) fn discretisation(
     let [fine, coarse] = [solution, half].map(Numbers::of);
     let [[x0, x1], [y0, y1]] = solution.normal.contact_extent();
     let c = 0.5 * ((x1 - x0) * (y1 - y0)).sqrt();
-    let bears = solution.bound().sum() * solution.grid().cell_area();
+    let capacity = solution.bound().sum() * solution.grid().cell_area();
     let spin = match solution.motion {
         TangentialMotion::Roll { spin, .. } if !is_line => spin.abs() * c,
         _ => 0.0,
@@ -156,8 +156,8 @@ pub(super) fn discretisation(
     let creeps = fine.creepage[0].hypot(fine.creepage[1]) + spin;
     let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let changes = [
-        over(apart(fine.force, coarse.force), bears),
-        over((fine.torque - coarse.torque).abs(), bears * c),
+        over(apart(fine.force, coarse.force), capacity),
+        over((fine.torque - coarse.torque).abs(), capacity * c),
         over((fine.power - coarse.power).abs(), fine.power.abs()),
         over(apart(fine.creepage, coarse.creepage), creeps),
     ];
@@ -168,8 +168,8 @@ pub(super) fn discretisation(
     let relative = changes.into_iter().fold(pressure, |most, change| most.max(BEYOND * change));
     let all = |of: [bool; 2], error: f64| if of == [true; 2] { 0.0 } else { error };
     Ok(FrictionDiscretisation {
-        force: all(loaded, relative * bears),
-        torque: if is_line { 0.0 } else { relative * bears * c },
+        force: all(loaded, relative * capacity),
+        torque: if is_line { 0.0 } else { relative * capacity * c },
         power: relative * fine.power.abs(),
         creepage: all(loaded.map(|loaded| !loaded), relative * creeps),
         stick_share: (BEYOND * (fine.stick_share - coarse.stick_share).abs()).max(border(solution)),

@@ -21,7 +21,7 @@ pub(super) struct TractionProblem<'a> {
     pub(super) operator: Operator<'a>,
     pub(super) law: &'a Law,
     /// g
-    pub(super) given: Vec<f64>,
+    pub(super) displacements: Vec<f64>,
     /// Columns of the loaded degrees of freedom, and their forces over the area of a cell.
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) forces: Vec<f64>,
@@ -105,8 +105,8 @@ impl TractionProblem<'_> {
     /// for each column.
     fn stand(&self, q: &[f64], response: &mut [f64], weights: &[Vec<f64>]) -> Standing {
         let largest = self.operator.apply(q, response);
-        let given = response.iter().zip(&self.given);
-        let rest: Vec<f64> = given.map(|(u, g)| u - g).collect();
+        let pairs = response.iter().zip(&self.displacements);
+        let rest: Vec<f64> = pairs.map(|(u, g)| u - g).collect();
         // Cells at their bound slip, or at the δ of all others would slip along the traction and stick.
         let mut states = self.law.at_bound(q);
         let mut residual = rest.clone();
@@ -153,13 +153,13 @@ impl TractionProblem<'_> {
         effort: Effort,
         watch: &mut ConvolutionWatch,
     ) -> TractionResult {
-        let found = self.newton(q, effort, watch);
-        let gave_up = !found.stopped && found.convolutions < effort.most;
-        match self.worst_force(&found.q) {
-            Some(number) if gave_up && found.misfit.worst() > effort.tolerance => {
-                MotionSearch::new(self, number, found, effort).run(watch)
+        let solution = self.newton(q, effort, watch);
+        let gave_up = !solution.stopped && solution.convolutions < effort.most;
+        match self.worst_force(&solution.q) {
+            Some(number) if gave_up && solution.misfit.worst() > effort.tolerance => {
+                MotionSearch::new(self, number, solution, effort).run(watch)
             }
-            _ => found,
+            _ => solution,
         }
     }
 
@@ -251,7 +251,7 @@ impl TractionProblem<'_> {
     }
 
     fn misfit(&self, q: &[f64], r: &[f64], largest: f64, states: &[CellState]) -> Misfit {
-        let scale = if largest > 0.0 { largest } else { largest_of(&self.given) };
+        let scale = if largest > 0.0 { largest } else { largest_of(&self.displacements) };
         let worst = self.worst_force(q);
         let imbalance = worst.map_or(0.0, |number| self.imbalance(number, q).abs());
         let violation = self.law.violation(r, states);
@@ -284,23 +284,24 @@ impl<'p, 'a> MotionSearch<'p, 'a> {
     fn new(
         problem: &'p TractionProblem<'a>,
         number: usize,
-        found: TractionResult,
+        solution: TractionResult,
         effort: Effort,
     ) -> Self {
         // What is given, and what a traction at its bound makes of its own cell.
         let [own, other] = problem.operator.diagonal();
-        let size = largest_of(&problem.given) + own.max(other) * largest_of(&problem.law.bound);
+        let size =
+            largest_of(&problem.displacements) + own.max(other) * largest_of(&problem.law.bound);
         let unit = size / largest_of(&problem.columns[number]);
-        let (last, done) = (found.q.clone(), found.convolutions);
-        Self { problem, number, unit, best: found, last, effort, done, stopped: false }
+        let (last, done) = (solution.q.clone(), solution.convolutions);
+        Self { problem, number, unit, best: solution, last, effort, done, stopped: false }
     }
 
     /// The tractions with the least misfit.
     fn run(mut self, watch: &mut ConvolutionWatch) -> TractionResult {
         for power in 0..DOUBLINGS {
             let end = 2.0_f64.powi(power);
-            let found = bracketed(|motion| self.imbalance(motion, watch), [-end, end]);
-            if !matches!(found, Ok(None)) {
+            let root = bracketed(|motion| self.imbalance(motion, watch), [-end, end]);
+            if !matches!(root, Ok(None)) {
                 break;
             }
         }
@@ -309,9 +310,9 @@ impl<'p, 'a> MotionSearch<'p, 'a> {
         if !self.stopped && left > 0 && self.best.misfit.worst() > self.effort.tolerance {
             let (done, effort) = (self.done, Effort { most: left, ..self.effort });
             let problem = self.problem;
-            let told = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
-            let found = problem.newton(self.best.q.clone(), effort, told);
-            self.keep(found);
+            let watch = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
+            let solution = problem.newton(self.best.q.clone(), effort, watch);
+            self.keep(solution);
         }
         TractionResult { convolutions: self.done, stopped: self.stopped, ..self.best }
     }
@@ -330,27 +331,27 @@ impl<'p, 'a> MotionSearch<'p, 'a> {
         let (mut columns, mut forces) = (problem.columns.clone(), problem.forces.clone());
         let column = columns.remove(number);
         forces.remove(number);
-        let mut given = problem.given.clone();
-        add(&mut given, delta, &column);
+        let mut displacements = problem.displacements.clone();
+        add(&mut displacements, delta, &column);
         let (operator, law) = (problem.operator, problem.law);
-        let part = TractionProblem { operator, law, given, columns, forces };
+        let part = TractionProblem { operator, law, displacements, columns, forces };
         let effort = Effort { most: left, ..self.effort };
-        let told = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
-        let mut found = part.newton(std::mem::take(&mut self.last), effort, told);
-        found.multipliers.insert(number, delta);
-        self.last.clone_from(&found.q);
-        let imbalance = problem.imbalance(number, &found.q);
-        found.misfit.imbalance = found.misfit.imbalance.max(imbalance.abs());
-        self.keep(found);
+        let watch = &mut |count: usize, misfit: Misfit| watch(done + count, misfit);
+        let mut solution = part.newton(std::mem::take(&mut self.last), effort, watch);
+        solution.multipliers.insert(number, delta);
+        self.last.clone_from(&solution.q);
+        let imbalance = problem.imbalance(number, &solution.q);
+        solution.misfit.imbalance = solution.misfit.imbalance.max(imbalance.abs());
+        self.keep(solution);
         Ok(if imbalance.abs() <= self.effort.tolerance { 0.0 } else { imbalance })
     }
 
     /// Counts the work of what was found, and keeps it where it is better.
-    fn keep(&mut self, found: TractionResult) {
-        self.done += found.convolutions;
-        self.stopped |= found.stopped;
-        if found.misfit.worst() <= self.best.misfit.worst() {
-            self.best = found;
+    fn keep(&mut self, solution: TractionResult) {
+        self.done += solution.convolutions;
+        self.stopped |= solution.stopped;
+        if solution.misfit.worst() <= self.best.misfit.worst() {
+            self.best = solution;
         }
     }
 }
@@ -496,14 +497,14 @@ impl Operator<'_> {
             }
         };
         // Places of sticking leading cells, a/(a + Γ) along their axes.
-        let held: Vec<(usize, f64)> = (self.second_order.into_iter())
+        let sticking: Vec<(usize, f64)> = (self.second_order.into_iter())
             .flat_map(SecondOrder::leading)
             .filter(|(i, _)| states[*i] == CellState::Stick)
             .flat_map(|(i, gamma)| [0, 1].map(|k| (k * cells + i, own[k] / (own[k] + gamma[k]))))
             .collect();
         memory.copy_from_slice(r);
         weigh(memory);
-        held.iter().for_each(|(place, share)| memory[*place] *= share);
+        sticking.iter().for_each(|(place, share)| memory[*place] *= share);
         if let Some(direction) = self.rolling {
             self.sums(direction, memory);
             restrict(states, memory);
@@ -512,7 +513,7 @@ impl Operator<'_> {
         self.window.precondition(memory, z);
         weigh(z);
         restrict(states, z);
-        for (place, share) in held {
+        for (place, share) in sticking {
             // Γ/(a + Γ)² = (1 − share) share/a
             let own = own[place / cells];
             z[place] = share * (z[place] + (1.0 - share) / own * r[place]);
@@ -557,13 +558,13 @@ impl<'a> NewtonSystem<'a> {
     fn new(
         operator: Operator<'a>,
         states: &'a [CellState],
-        given: Vec<Vec<f64>>,
+        whole_columns: Vec<Vec<f64>>,
         damping: f64,
     ) -> Self {
         let size = 2 * states.len();
         let (memory, [columns, preconditioned]) = (vec![0.0; size], [Vec::new(), Vec::new()]);
         let mut linear = Self { operator, states, damping, columns, preconditioned, memory };
-        for mut column in given {
+        for mut column in whole_columns {
             restrict(states, &mut column);
             let mut z = vec![0.0; size];
             linear.precondition(&column, &mut z);

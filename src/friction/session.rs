@@ -21,7 +21,7 @@ use crate::contact::{
     Contact, Motion, Options, Report, Solution, Termination, Unestimated, Warning,
 };
 use crate::error::{Error, Result, fraction, require};
-use crate::model::surface::{Lifted, Surface};
+use crate::model::surface::{OffsetShape, Surface};
 use crate::numerics::parallel::dot;
 
 /// Callback that gets the report so far, and breaks to stop.
@@ -56,7 +56,7 @@ pub struct Last<'a> {
 
 /// The course of a move, of which its caller is told.
 struct FrictionCourse<'a, 'b> {
-    begun: Instant,
+    start: Instant,
     report: FrictionReport,
     stopped: bool,
     progress: &'a mut FrictionProgress<'b>,
@@ -67,7 +67,7 @@ impl FrictionCourse<'_, '_> {
         if self.stopped {
             return ControlFlow::Break(());
         }
-        self.report.seconds = self.begun.elapsed().as_secs_f64();
+        self.report.seconds = self.start.elapsed().as_secs_f64();
         let answer = (self.progress)(&self.report);
         self.stopped |= answer.is_break();
         answer
@@ -209,7 +209,7 @@ impl<'a> Session<'a> {
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
         let mut course = FrictionCourse {
-            begun: Instant::now(),
+            start: Instant::now(),
             report: FrictionReport {
                 coupled: self.coupled,
                 order: if task.is_steady { self.options.order } else { 0 },
@@ -310,8 +310,8 @@ impl<'a> Session<'a> {
             course.tell()
         };
         let solved = task.solve(&self.tangential, pressed, starts, effort, &mut watch)?;
-        course.report.convolutions = counted + solved.found.convolutions;
-        course.report.imbalance = solved.found.misfit.imbalance;
+        course.report.convolutions = counted + solved.solution.convolutions;
+        course.report.imbalance = solved.solution.misfit.imbalance;
         Some(solved)
     }
 
@@ -357,7 +357,7 @@ impl<'a> Session<'a> {
                 (_, true) => Termination::Converged,
                 _ => Termination::IterationLimit,
             },
-            seconds: course.begun.elapsed().as_secs_f64(),
+            seconds: course.start.elapsed().as_secs_f64(),
             ..course.report
         };
         let warning = fields.warning(task, grid, &normal.pressure);
@@ -447,7 +447,7 @@ impl<'a> Session<'a> {
         if !self.coupled {
             return Box::new(self.shape);
         }
-        Box::new(Lifted::new(self.shape, self.contact.grid(), self.lift(traction)))
+        Box::new(OffsetShape::new(self.shape, self.contact.grid(), self.lift(traction)))
     }
 
     /// The normal displacement of both bodies together that tractions make.
@@ -469,16 +469,16 @@ impl<'a> Session<'a> {
         traction: &[Array2<f64>; 2],
     ) -> Result<Vec<[Array2<f64>; 2]>> {
         let area = normal.grid().cell_area();
-        let bears = friction.times(&normal.pressure).sum() * area;
+        let capacity = friction.times(&normal.pressure).sum() * area;
         let before = traction.each_ref().map(|q| q.sum() * area);
-        let superposed = |forces| self.superposed(motion, normal, forces, bears, friction);
+        let superposed = |forces| self.superposed(motion, normal, forces, capacity, friction);
         let whole = superposed(forces)?;
         if before[0].hypot(before[1]) <= 0.0 {
             return Ok(vec![whole]);
         }
         let mut starts = vec![traction.clone(), whole];
         let half = [0, 1].map(|axis| 0.5 * (forces[axis] - before[axis]));
-        if half[0].hypot(half[1]) < bears {
+        if half[0].hypot(half[1]) < capacity {
             let mut changed = superposed(half)?;
             for (changed, before) in changed.iter_mut().zip(traction) {
                 changed.zip_mut_with(before, |q, before| *q = 2.0 * *q + before);
@@ -496,7 +496,7 @@ impl<'a> Session<'a> {
         motion: &Motion,
         normal: &Solution,
         forces: [f64; 2],
-        bears: f64,
+        capacity: f64,
         friction: &Friction,
     ) -> Result<[Array2<f64>; 2]> {
         let force = forces[0].hypot(forces[1]);
@@ -504,8 +504,11 @@ impl<'a> Session<'a> {
         if force <= 0.0 {
             return Ok(tractions);
         }
-        let less =
-            Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
+        let less = Motion {
+            load: Some(normal.load() * (1.0 - force / capacity)),
+            approach: None,
+            ..*motion
+        };
         let options = Options { tolerance: START, ..Options::default() };
         let sticking = self
             .contact
@@ -531,19 +534,19 @@ struct Mixing {
     /// A pressure that was found, and its change in the sweep.
     last: Option<[Vec<f64>; 2]>,
     /// Differences of both between sweeps.
-    found: Vec<Vec<f64>>,
+    pressures: Vec<Vec<f64>>,
     changes: Vec<Vec<f64>>,
 }
 
 impl Mixing {
-    /// The next pressure where tractions under the pressure `before` lead to `found`.
-    fn next(&mut self, before: Array2<f64>, found: &Array2<f64>) -> Array2<f64> {
-        let change: Vec<f64> = found.iter().zip(&before).map(|(found, p)| found - p).collect();
-        let values: Vec<f64> = found.iter().copied().collect();
-        if let Some([last_found, last_change]) = self.last.take() {
+    /// The next pressure where tractions under the pressure `before` lead to `after`.
+    fn next(&mut self, before: Array2<f64>, after: &Array2<f64>) -> Array2<f64> {
+        let change: Vec<f64> = after.iter().zip(&before).map(|(after, p)| after - p).collect();
+        let values: Vec<f64> = after.iter().copied().collect();
+        if let Some([last_pressure, last_change]) = self.last.take() {
             let less = |a: &[f64], b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a - b).collect();
             for (kept, difference) in [
-                (&mut self.found, less(&values, last_found)),
+                (&mut self.pressures, less(&values, last_pressure)),
                 (&mut self.changes, less(&change, last_change)),
             ] {
                 if kept.len() == DEPTH {
@@ -555,7 +558,7 @@ impl Mixing {
         let right: Vec<f64> = self.changes.iter().map(|column| dot(column, &change)).collect();
         let shares = small_system(&self.changes, &self.changes, &right);
         let mut next = values.clone();
-        for (share, column) in shares.iter().zip(&self.found) {
+        for (share, column) in shares.iter().zip(&self.pressures) {
             next.iter_mut().zip(column).for_each(|(p, column)| *p -= share * column);
         }
         self.last = Some([values, change]);

@@ -165,9 +165,9 @@ impl FrictionSolution {
         member: Member,
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<Stress> {
-        let mut asked = options.into();
-        let options = asked.options();
-        let mut progress = |part| asked.tell(part);
+        let mut watched_options = options.into();
+        let options = watched_options.options();
+        let mut progress = |part| watched_options.tell(part);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.stress(depths, options.watched(&mut progress))
     }
@@ -182,9 +182,9 @@ impl FrictionSolution {
         strengths: &Strengths,
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressSummary> {
-        let mut asked = options.into();
-        let options = asked.options();
-        let mut progress = |part| asked.tell(part);
+        let mut watched_options = options.into();
+        let options = watched_options.options();
+        let mut progress = |part| watched_options.tell(part);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.summary(strengths, options.watched(&mut progress))
     }

@@ -94,7 +94,7 @@ impl Step {
 
     /// Degrees of freedom along x, along y, and about z.
     pub(super) fn freedoms(&self, grid: &Grid) -> Result<[Freedom; 3]> {
-        let given = [
+        let pairs = [
             (self.shift[0], self.force[0]),
             (self.shift[1], self.force[1]),
             (self.twist, self.torque),
@@ -103,7 +103,7 @@ impl Step {
         let [lx, ly] = grid.size();
         let units = [lx, ly, 1.0];
         for (((motion, load), (of_motion, of_load)), unit) in
-            given.into_iter().zip(names).zip(units)
+            pairs.into_iter().zip(names).zip(units)
         {
             if let Some(value) = motion {
                 bounded(of_motion, value, unit)?;
@@ -120,7 +120,7 @@ impl Step {
             grid.is_line() && (self.twist.is_some() || self.torque.is_some()),
             "twist and torque must not be given in line contact",
         )?;
-        Ok(given.map(|(motion, load)| match (motion, load) {
+        Ok(pairs.map(|(motion, load)| match (motion, load) {
             (_, Some(force)) => Freedom::Loaded(force),
             (Some(value), None) => Freedom::Prescribed(value),
             (None, None) => Freedom::Kept,

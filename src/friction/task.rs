@@ -104,19 +104,19 @@ impl TractionTask<'_> {
         })
     }
 
-    /// An error where friction does not bear a force or a torque, where one is so small that its tractions vanish, and where
-    /// rolling needs the displacement ahead of the grid.
+    /// An error where friction does not carry a force or a torque, where one is so small that its tractions vanish, and
+    /// where rolling needs the displacement ahead of the grid.
     pub(super) fn check(&self, grid: &Grid, bound: &Array2<f64>, tolerance: f64) -> Result<()> {
         let [x, y, torque] = self.increments.map(Freedom::force);
         let (force, area) = (x.hypot(y), grid.cell_area());
-        for (name, value, bears) in [
+        for (name, value, capacity) in [
             ("force", force, bound.sum() * area),
             ("torque", torque.abs(), largest_torque(grid, bound)),
         ] {
-            if value > 0.0 && value >= (1.0 - tolerance) * bears {
-                return Err(Error::FullSlip { name, value, bears });
+            if value > 0.0 && value >= (1.0 - tolerance) * capacity {
+                return Err(Error::FullSlip { name, value, bears: capacity });
             }
-            let counts = value <= 0.0 || value >= 1e-100 * bears;
+            let counts = value <= 0.0 || value >= 1e-100 * capacity;
             let requirement = "0, or at least 1e-100 of what friction can carry";
             require(name, value, counts, requirement)?;
         }
@@ -293,16 +293,16 @@ impl TractionTask<'_> {
             starts.swap(0, best.unwrap_or(0));
         }
         let best = starts.into_iter().next()?;
-        let mut found = problem.solve(best, effort, watch);
-        found.convolutions += compared;
+        let mut solution = problem.solve(best, effort, watch);
+        solution.convolutions += compared;
         let mut moved = self.prescribed();
-        let mut loaded = found.multipliers.iter();
+        let mut loaded = solution.multipliers.iter();
         for (moved, freedom) in moved.iter_mut().zip(self.increments) {
             if matches!(freedom, Freedom::Loaded(_)) {
                 *moved = *loaded.next()?;
             }
         }
-        Some(SolvedTask { window, cells: operators.cells(), found, moved })
+        Some(SolvedTask { window, cells: operators.cells(), solution, moved })
     }
 
     /// The problem on a window: what the displacements must be, and the columns and forces of the loaded degrees of freedom.
@@ -314,11 +314,11 @@ impl TractionTask<'_> {
         window: &Window,
     ) -> TractionProblem<'p> {
         let operators = operator.window;
-        let mut given = operators.spread(&cut(pressed.spreading, window));
+        let mut displacements = operators.spread(&cut(pressed.spreading, window));
         if let Some(direction) = operator.rolling {
-            operator.difference(direction, &mut given);
+            operator.difference(direction, &mut displacements);
         }
-        given.iter_mut().for_each(|g| *g = -*g);
+        displacements.iter_mut().for_each(|g| *g = -*g);
         let (grid, cells) = (pressed.grid, operators.cells());
         let (x, y) = (grid.x(), grid.y());
         let mut units = vec![vec![0.0; 2 * cells]; 3];
@@ -326,7 +326,7 @@ impl TractionTask<'_> {
             let earlier = self.earlier([i, j]);
             let motions = self.unit_motions(self.arm(grid, [x[i], y[j]]));
             for (axis, earlier) in earlier.into_iter().enumerate() {
-                given[axis * cells + at] += earlier;
+                displacements[axis * cells + at] += earlier;
                 for (unit, motion) in units.iter_mut().zip(motions) {
                     unit[axis * cells + at] = motion[axis];
                 }
@@ -340,13 +340,13 @@ impl TractionTask<'_> {
                     columns.push(unit);
                 }
                 Freedom::Prescribed(value) if value != 0.0 => {
-                    let pairs = given.iter_mut().zip(unit);
+                    let pairs = displacements.iter_mut().zip(unit);
                     pairs.for_each(|(g, unit)| *g += value * unit);
                 }
                 _ => {}
             }
         }
-        TractionProblem { operator, law, given, columns, forces }
+        TractionProblem { operator, law, displacements, columns, forces }
     }
 
     /// Fields on the whole grid, with the operator of the whole grid.
@@ -462,7 +462,7 @@ impl TractionTask<'_> {
 pub(super) struct SolvedTask {
     window: Window,
     cells: usize,
-    pub(super) found: TractionResult,
+    pub(super) solution: TractionResult,
     /// Increments of the three degrees of freedom; in rolling over a cell.
     moved: [f64; 3],
 }
@@ -470,7 +470,7 @@ pub(super) struct SolvedTask {
 impl SolvedTask {
     /// Cells of the window, and what they do.
     fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
-        each_cell(&self.window).map(|(i, j)| [i, j]).zip(&self.found.states)
+        each_cell(&self.window).map(|(i, j)| [i, j]).zip(&self.solution.states)
     }
 
     /// Tractions on the whole grid, 0 outside of the window.
@@ -478,7 +478,7 @@ impl SolvedTask {
         let mut traction = zeros(shape);
         for (at, (i, j)) in each_cell(&self.window).enumerate() {
             for (axis, q) in traction.iter_mut().enumerate() {
-                q[[i, j]] = self.found.q[axis * self.cells + at];
+                q[[i, j]] = self.solution.q[axis * self.cells + at];
             }
         }
         traction

@@ -314,10 +314,10 @@ impl HalfSpace {
     }
 
     /// This body, on a rigid base where its base is free.
-    pub(crate) fn held(&self) -> Self {
+    pub(crate) fn with_rigid_base(&self) -> Self {
         let substrate = match self.substrate {
             Substrate::Free => Substrate::Rigid,
-            held => held,
+            other => other,
         };
         Self { substrate, ..self.clone() }
     }

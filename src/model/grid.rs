@@ -121,11 +121,11 @@ impl Grid {
     }
 
     /// An error unless a solution to start from, if there is one, is on this grid.
-    pub(crate) fn check_initial(&self, found: Option<&Self>) -> Result<()> {
-        match found {
+    pub(crate) fn check_initial(&self, other: Option<&Self>) -> Result<()> {
+        match other {
             None => Ok(()),
-            Some(found) if found == self => Ok(()),
-            Some(found) => Err(Error::OtherGrid { expected: self.words(), found: found.words() }),
+            Some(other) if other == self => Ok(()),
+            Some(other) => Err(Error::OtherGrid { expected: self.words(), found: other.words() }),
         }
     }
 

@@ -96,14 +96,14 @@ pub fn relative_radii(
     let larger = mean + half.hypot(mixed);
     let determinant = x * y + along * across + x * counter_y + y * counter_x;
     let smaller = determinant / larger;
-    let found = [1.0 / smaller, 1.0 / larger];
+    let principal_radii = [1.0 / smaller, 1.0 / larger];
     // Cylinders at a smaller angle than some 1e-8 are parallel but for rounding.
-    if smaller > f64::EPSILON * larger && found.iter().all(|radius| radius.is_finite()) {
+    if smaller > f64::EPSILON * larger && principal_radii.iter().all(|radius| radius.is_finite()) {
         // The rounding of an angle is no turn, and an axis at −π/2 is one at π/2.
         let rounding = f64::EPSILON * angle.abs().max(1.0) * (along - across).abs();
         let mixed = if mixed.abs() > rounding { mixed } else { 0.0 };
         let turn = 0.5 * (0.0 - mixed).atan2(-half);
-        return Ok((found, if turn > -FRAC_PI_2 { turn } else { FRAC_PI_2 }));
+        return Ok((principal_radii, if turn > -FRAC_PI_2 { turn } else { FRAC_PI_2 }));
     }
     Err(Error::Inconsistent(
         "radii and counter_radii must be convex together in every direction (parallel cylinders touch along a line)",
@@ -315,9 +315,9 @@ impl Ellipse {
         let b = k * a;
         let peak_pressure = 1.5 * load / (PI * a * b);
         let approach = 0.75 * load / (contact_modulus * arithmetic_geometric_mean(1.0, k) * a);
-        let made = [a, b, peak_pressure, approach];
+        let quantities = [a, b, peak_pressure, approach];
         refuse_if(
-            !made.iter().all(|value| value.is_finite() && *value > 0.0),
+            !quantities.iter().all(|value| value.is_finite() && *value > 0.0),
             "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
                  numbers of the machine: they are too different in size",
         )?;
@@ -479,8 +479,8 @@ mod tests {
             let radii = 10.0_f64.powf(0.5 * f64::from(exponent));
             let k = axis_ratio(radii);
             let square = k * k;
-            let found = carlson_rd([0.0, 1.0, square]) / carlson_rd([0.0, square, 1.0]);
-            assert!((found / radii - 1.0).abs() < 1e-12, "{radii:e}: {found:e}");
+            let ratio = carlson_rd([0.0, 1.0, square]) / carlson_rd([0.0, square, 1.0]);
+            assert!((ratio / radii - 1.0).abs() < 1e-12, "{radii:e}: {ratio:e}");
         }
     }
 }

@@ -571,13 +571,13 @@ pub(super) fn absent(name: &str) -> Error {
 
 /// A shape plus a field on the cells of a grid, bilinear between cell centres and constant beyond the outer ones.
 #[derive(Debug)]
-pub(crate) struct Lifted<S> {
+pub(crate) struct OffsetShape<S> {
     shape: S,
     grid: Grid,
     lift: Array2<f64>,
 }
 
-impl<S: Surface> Lifted<S> {
+impl<S: Surface> OffsetShape<S> {
     pub(crate) fn new(shape: S, grid: &Grid, lift: Array2<f64>) -> Self {
         Self { shape, grid: *grid, lift }
     }
@@ -596,15 +596,15 @@ impl<S: Surface> Lifted<S> {
     }
 }
 
-impl<S: Surface> Surface for Lifted<S> {
+impl<S: Surface> Surface for OffsetShape<S> {
     fn base(&self) -> Option<&dyn Surface> {
         Some(&self.shape)
     }
 
     fn alternatives(&self) -> Vec<Box<dyn Surface + '_>> {
         let others = self.shape.alternatives().into_iter();
-        let lifted = |shape| Lifted::new(shape, &self.grid, self.lift.clone());
-        others.map(|shape| Box::new(lifted(shape)) as Box<_>).collect()
+        let offset = |shape| OffsetShape::new(shape, &self.grid, self.lift.clone());
+        others.map(|shape| Box::new(offset(shape)) as Box<_>).collect()
     }
 
     fn gap(&self, x: f64, y: f64) -> f64 {
@@ -624,12 +624,12 @@ impl<S: Surface> Surface for Lifted<S> {
 
 /// A shape within a range of x.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limited<'a> {
+pub(crate) struct ShapeInRange<'a> {
     shape: &'a dyn Surface,
     range: [f64; 2],
 }
 
-impl<'a> Limited<'a> {
+impl<'a> ShapeInRange<'a> {
     pub(crate) fn new(shape: &'a dyn Surface, range: [f64; 2]) -> Self {
         Self { shape, range }
     }
@@ -639,7 +639,7 @@ impl<'a> Limited<'a> {
     }
 }
 
-impl Surface for Limited<'_> {
+impl Surface for ShapeInRange<'_> {
     fn base(&self) -> Option<&dyn Surface> {
         Some(self.shape)
     }

@@ -178,10 +178,10 @@ impl<'a> Beyond<'a> {
     fn has(
         &mut self,
         level: usize,
-        asked: [bool; 2],
+        needed_axes: [bool; 2],
         progress: &mut StressProgress,
     ) -> ControlFlow<(), bool> {
-        let axes = [0, 1].map(|axis| self.axes[axis] || asked[axis]);
+        let axes = [0, 1].map(|axis| self.axes[axis] || needed_axes[axis]);
         if axes != self.axes {
             self.wider.clear();
             self.axes = axes;
@@ -254,7 +254,7 @@ impl<'a> Beyond<'a> {
     }
 }
 
-/// Axes along which a grid can be wider and the body goes on.
+/// Axes along which a grid can be wider and the body extends.
 fn open_axes(whole: &HalfSpacePlan) -> [bool; 2] {
     let grid = &whole.grid;
     let goes_on = [whole.body.ends() == [None; 2], true];

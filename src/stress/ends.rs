@@ -1,11 +1,11 @@
-//! What the free ends of a body add to the stress of the body that goes on.
+//! What the free ends of a body add to the stress of the endless body.
 //!
 //! The stress of a quarter space is the sum of those of two half-spaces: one under the even pressure P on the
 //! surface, and one under Q on the end face ([`crate::compliance::ends`]). What is added is therefore the stress of the
 //! layered half-space under the mirror image of the pressure and under P − p on both sides of the end, and that of
 //! a half-space of the substrate below the end face. The two ends of a body are superposed.
 //!
-//! Tractions of friction have no such solution: their stress is that of the body that goes on.
+//! Tractions of friction have no such solution: their stress is that of the endless body.
 
 use ndarray::Array2;
 
@@ -79,12 +79,12 @@ impl EndStress {
         };
         let ([nx, ny], [dx, dy]) = (grid.shape(), grid.spacing());
         let pressure = Array2::from_shape_fn((nx, ny), |(i, j)| whole.pressure[i * ny + j]);
-        let bears = |lines: ndarray::iter::Lanes<'_, f64, ndarray::Ix1>| {
+        let loaded_lines = |lines: ndarray::iter::Lanes<'_, f64, ndarray::Ix1>| {
             let lines = lines.into_iter();
             lines.filter(|line| line.iter().any(|p| *p != 0.0)).count()
         };
-        let width = bears(pressure.columns()) as f64 * dy;
-        let size = width.max(bears(pressure.rows()) as f64 * dx);
+        let width = loaded_lines(pressure.columns()) as f64 * dy;
+        let size = width.max(loaded_lines(pressure.rows()) as f64 * dx);
         let endless = body.clone().with_ends([None; 2])?;
         let mut images = EndImages::new(grid);
         let known = [0, 1].map(|k| body.ends()[k].filter(|_| span.faces[k].is_some()));

@@ -137,7 +137,7 @@ impl Stress {
             .map(ratio)
             .filter(|(_, ratio)| *ratio > UNRESOLVED)
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        let said = |(k, ratio): (usize, f64)| {
+        let message = |(k, ratio): (usize, f64)| {
             let place = match self.z[k] {
                 0.0 => "at the surface".to_owned(),
                 depth => format!("at depth {depth:e}"),
@@ -151,10 +151,10 @@ impl Stress {
         };
         let slides = self.friction.iter().any(|part| *part != 0.0);
         let ends = (slides && self.body.ends() != [None; 2]).then(|| {
-            "the stress of the friction is that of a body that goes on past its free ends"
+            "the stress of the friction is that of a body that extends past its free ends"
                 .to_owned()
         });
-        worst.map(said).into_iter().chain(ends).collect()
+        worst.map(message).into_iter().chain(ends).collect()
     }
 
     /// Normal stress σ_xx \[Pa\].

@@ -1,4 +1,5 @@
-//! Stress and displacement of the body that goes on along x and y: one plan, and its influence coefficients at any place.
+//! Stress and displacement of the body that extends along x and y: one plan, and its influence coefficients at any
+//! place.
 
 use std::ops::Range;
 
@@ -52,7 +53,7 @@ pub(super) struct HalfSpacePlan {
 pub(super) struct SolvedPressure {
     pub(super) subcell: SubcellStress,
     /// Transform of the solver's pressure, whose convolution gives displacements.
-    given: Transformed,
+    solver_pressure: Transformed,
 }
 
 /// A load on the surface, in proportion to the pressure.
@@ -129,7 +130,7 @@ impl HalfSpacePlan {
         let repeats = threads.run(|| Repeats::plan(body, grid));
         // One per cent more than the diagonal, for rounding.
         let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
-        let kernels = threads.run(|| Kernels::new(&body.held(), grid, 1.0, reach));
+        let kernels = threads.run(|| Kernels::new(&body.with_rigid_base(), grid, 1.0, reach));
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let shape = grid.shape();
         let loaded = loaded_cells(shape, &[&pressure, uniform]);
@@ -146,8 +147,8 @@ impl HalfSpacePlan {
         let transformed =
             |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
         let uniform = transformed(uniform);
-        let solved =
-            subcell.map(|subcell| SolvedPressure { subcell, given: transformed(&pressure) });
+        let solved = subcell
+            .map(|subcell| SolvedPressure { subcell, solver_pressure: transformed(&pressure) });
         Self {
             body: body.clone(),
             grid: *grid,

@@ -98,12 +98,12 @@ impl StressOptions {
     /// Residual stress of every layer and of the substrate.
     pub(super) fn residual_by_layer(&self, body: &HalfSpace) -> Result<Vec<f64>> {
         let count = body.layers().len() + 1;
-        let given = self.residual.len();
+        let number = self.residual.len();
         let requirement = "at most one for each layer and one for the substrate";
-        require("number of values in residual", given as f64, given <= count, requirement)?;
+        require("number of values in residual", number as f64, number <= count, requirement)?;
         let mut values = vec![0.0; count];
-        for (value, given) in values.iter_mut().zip(&self.residual) {
-            *value = finite("residual", *given)?;
+        for (value, stress) in values.iter_mut().zip(&self.residual) {
+            *value = finite("residual", *stress)?;
         }
         Ok(values)
     }
@@ -165,7 +165,7 @@ impl SlidingSense {
         let friction = finite("friction", options.friction)?;
         require("friction", friction, friction >= 0.0, "at least 0 (turn the direction)")?;
         require("friction", friction, friction <= 1e100, "at most 1e100")?;
-        let given = options.direction.map(check_direction).transpose()?;
+        let direction = options.direction.map(check_direction).transpose()?;
         if friction <= 0.0 {
             return Ok([0.0; 2]);
         }
@@ -181,7 +181,7 @@ impl SlidingSense {
                  above it against the traction",
             ));
         }
-        let [x, y] = given.or(self.direction).ok_or(Error::Inconsistent(
+        let [x, y] = direction.or(self.direction).ok_or(Error::Inconsistent(
             "direction must be given where friction is above 0: only rollers, cylinders and line \
              contacts have a rolling direction to take instead; (1, 0) is along x",
         ))?;

@@ -147,22 +147,22 @@ impl<'a> PressureSource<'a> {
     }
 
     /// [`PressureSource::plan`], of which a stop is an error.
-    pub(super) fn planned(&self, mut asked: WatchedStress) -> Result<StressPlan> {
-        let threads = asked.options().threads;
-        let plan = self.plan(threads, &mut |part| asked.tell(part))?;
+    pub(super) fn planned(&self, mut watched_options: WatchedStress) -> Result<StressPlan> {
+        let threads = watched_options.options().threads;
+        let plan = self.plan(threads, &mut |part| watched_options.tell(part))?;
         plan.ok_or(Error::Stopped)
     }
 
     /// What `evaluate`, which takes so many bytes, makes of a plan for this call; none where planning is stopped.
     pub(super) fn once<T>(
         &self,
-        mut asked: WatchedStress,
+        mut watched_options: WatchedStress,
         memory: u64,
         evaluate: impl FnOnce(&StressPlan, &mut StressProgress) -> T,
     ) -> Result<Option<T>> {
         check_memory(self.grid.shape(), memory + self.memory())?;
-        let threads = asked.options().threads;
-        let mut progress = |part| asked.tell(part);
+        let threads = watched_options.options().threads;
+        let mut progress = |part| watched_options.tell(part);
         let plan = self.plan(threads, &mut progress)?;
         Ok(plan.map(|plan| evaluate(&plan, &mut progress)))
     }
@@ -219,11 +219,12 @@ impl StressPlan {
         depths: &[f64],
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<Stress> {
-        let mut asked = options.into();
+        let mut watched_options = options.into();
         let (body, grid) = (&self.whole.body, &self.whole.grid);
-        let request = Request::checked(body, grid, &self.sliding, depths, asked.options())?;
+        let request =
+            Request::checked(body, grid, &self.sliding, depths, watched_options.options())?;
         check_memory(grid.shape(), request.memory())?;
-        Ok(request.evaluate(self, &mut |part| asked.tell(part)))
+        Ok(request.evaluate(self, &mut |part| watched_options.tell(part)))
     }
 
     /// Σ_c Σ_k K_c[k − i] w_c[k] in the cells i that the plan's pressure loads: the derivative with respect to the pressure
@@ -422,9 +423,9 @@ impl<'a> Evaluation<'a> {
         let around = plan.span.around(point, plan.whole.grid.shape());
         for part in &plan.parts {
             for (cell, weight) in &around {
-                let mut found = [[0.0; COMPONENTS]];
-                part.points(place, false, &[*cell], &mut found, progress)?;
-                sum.iter_mut().zip(found[0]).for_each(|(sum, value)| *sum += weight * value);
+                let mut components = [[0.0; COMPONENTS]];
+                part.points(place, false, &[*cell], &mut components, progress)?;
+                sum.iter_mut().zip(components[0]).for_each(|(sum, value)| *sum += weight * value);
             }
         }
         ControlFlow::Continue(sum)
@@ -457,15 +458,15 @@ impl<'a> Evaluation<'a> {
 pub(super) fn stress_once(
     source: &PressureSource,
     depths: &[f64],
-    asked: WatchedStress,
+    watched_options: WatchedStress,
 ) -> Result<Stress> {
     let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
-    let request = Request::checked(body, grid, sliding, depths, asked.options())?;
+    let request = Request::checked(body, grid, sliding, depths, watched_options.options())?;
     let evaluate =
         |plan: &StressPlan, progress: &mut StressProgress| request.evaluate(plan, progress);
     // Stopped while planning, no depth is done.
     let none = || request.result(zeros(request.components(), 0), 0, None);
-    Ok(source.once(asked, request.memory(), evaluate)?.unwrap_or_else(none))
+    Ok(source.once(watched_options, request.memory(), evaluate)?.unwrap_or_else(none))
 }
 
 /// Arguments of one evaluation, checked.
@@ -617,16 +618,16 @@ impl<'a> Request<'a> {
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
         let (cells, weights): (Vec<_>, Vec<_>) = self.points.weighted_cells().into_iter().unzip();
-        let found = evaluation.points(place, &cells, progress)?;
+        let cell_components = evaluation.points(place, &cells, progress)?;
         for (k, value) in here.iter_mut().enumerate() {
-            let parts = found.iter().zip(&weights);
+            let parts = cell_components.iter().zip(&weights);
             value[0] = parts.map(|(components, weight)| weight * components[k]).sum();
         }
         if let Some(point) = self.known_point(evaluation.plan)
             && let Some(at) = evaluation.point_stress(place)
         {
-            let found = evaluation.at_point(place, &at, &point, progress)?;
-            here.iter_mut().zip(found).for_each(|(value, found)| value[0] = found);
+            let components = evaluation.at_point(place, &at, &point, progress)?;
+            here.iter_mut().zip(components).for_each(|(value, component)| value[0] = component);
         }
         ControlFlow::Continue(())
     }

@@ -115,7 +115,7 @@ pub(super) fn refined_summary(
     source: PressureSource,
     strengths: &Strengths,
     target: f64,
-    mut asked: WatchedStress,
+    mut watched_options: WatchedStress,
 ) -> Result<StressSummary> {
     let requirement = "above 0 and below 1: the largest error of an extreme, as a part of it";
     require("refine", target, target > 0.0 && target < 1.0, requirement)?;
@@ -141,19 +141,23 @@ pub(super) fn refined_summary(
         bodies: all.map(plain).collect::<Result<_>>()?,
         layers: source.body.clone().with_ends([None; 2])?,
         source,
-        options: asked.options(),
+        options: watched_options.options(),
         target,
     };
-    refined.summary(strengths, &mut asked)
+    refined.summary(strengths, &mut watched_options)
 }
 
 impl Refined<'_> {
-    fn summary(&self, strengths: &Strengths, asked: &mut WatchedStress) -> Result<StressSummary> {
+    fn summary(
+        &self,
+        strengths: &Strengths,
+        watched_options: &mut WatchedStress,
+    ) -> Result<StressSummary> {
         let source = &self.source;
         let body = source.body;
         let request =
             SummaryRequest::checked(body, source.grid, &source.sliding, strengths, self.options)?;
-        let mut progress = |part: f64| asked.tell(0.5 * part);
+        let mut progress = |part: f64| watched_options.tell(0.5 * part);
         let Some(plan) = source.plan(self.options.threads, &mut progress)? else {
             return Ok(StressSummary::default());
         };
@@ -163,7 +167,7 @@ impl Refined<'_> {
         if !of_grid.finished {
             return Ok(of_grid.summary(body, strengths));
         }
-        let mut progress = |part: f64| asked.tell(0.5 + 0.5 * part);
+        let mut progress = |part: f64| watched_options.tell(0.5 + 0.5 * part);
         let beyond = std::mem::take(&mut of_grid.beyond);
         // Parts of the grid that finer cells stand for, and the extremes of these.
         let mut cores: Vec<Window> = Vec::new();

@@ -71,7 +71,7 @@ pub(super) struct Points {
 }
 
 /// Linear interpolation between two cells of one axis; `weight` is that of `upper`. In the outer half of the first and
-/// last cells it goes on beyond their centres.
+/// last cells it extends beyond their centres.
 #[derive(Debug, Clone, Copy)]
 struct Interpolation {
     lower: usize,

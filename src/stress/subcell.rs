@@ -21,7 +21,7 @@
 //!
 //! Slopes s and curvatures k are differences of the neighbours' pressures. q is fitted by least squares
 //! to p² of cells that are three cells from the edge and farther; for Hertz' contact it is exact. The
-//! edge is then shifted, by thousandths of a cell, until the cells around bear the force that the
+//! edge is then shifted, by thousandths of a cell, until the cells around carry the force that the
 //! solver's cells do.
 //!
 //! The load of a cell is split into three parts:
@@ -87,7 +87,7 @@ pub(super) struct SubcellStress {
     near: NearPlan,
     uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
-    given: Vec<f64>,
+    solver_pressure: Vec<f64>,
     /// Where the grid repeats, the pressure is reconstructed with a margin of its images.
     margin: Margin,
     /// Pressure that is taken as uniform over the cells of the grid.
@@ -112,7 +112,8 @@ impl SubcellStress {
         let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
         let reach = near.farthest();
         // A free base does not see what has neither force nor moment.
-        let kernels = threads.run(|| Kernels::new(&body.held(), grid, Cuts::SMALLEST, reach));
+        let kernels =
+            threads.run(|| Kernels::new(&body.with_rigid_base(), grid, Cuts::SMALLEST, reach));
         let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),
@@ -121,13 +122,13 @@ impl SubcellStress {
             point_kernels: OnceLock::new(),
             uncertainty,
             near,
-            given: pressure.to_vec(),
+            solver_pressure: pressure.to_vec(),
         })
     }
 
     /// Largest steps of the pressure that are felt in the cells of `window`.
     pub(super) fn steps(&self, window: &Window) -> LocalSteps {
-        self.uncertainty.steps(&self.given, &self.margin.window(window))
+        self.uncertainty.steps(&self.solver_pressure, &self.margin.window(window))
     }
 
     /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
@@ -137,7 +138,7 @@ impl SubcellStress {
 
     /// Largest steps of the pressure that are felt in each cell.
     pub(super) fn steps_by_cell(&self) -> Vec<LocalSteps> {
-        self.margin.middle(&self.uncertainty.steps_by_cell(&self.given))
+        self.margin.middle(&self.uncertainty.steps_by_cell(&self.solver_pressure))
     }
 
     /// Estimated errors of the stress in `body` at `place`, from the size of the cells; with the friction, whether its
@@ -215,9 +216,9 @@ impl SubcellStress {
     pub(super) fn add(&self, near: &NearTable, friction: [f64; 2], stresses: &mut [&mut [f64]]) {
         self.margin.add(stresses, |stresses| self.near.add(near, stresses));
         if near.at_surface() {
-            let given = self.margin.middle(&self.given);
+            let pressure = self.margin.middle(&self.solver_pressure);
             for (k, factor) in tractions(friction) {
-                let tractions = stresses[k].iter_mut().zip(&given);
+                let tractions = stresses[k].iter_mut().zip(&pressure);
                 tractions.for_each(|(stress, p)| *stress = -factor * p);
             }
         }
@@ -235,7 +236,7 @@ impl SubcellStress {
         let added = self.near.sum_at(near, cell);
         stresses.iter_mut().zip(added).for_each(|(s, d)| *s += d);
         if near.at_surface() {
-            let p = self.given[self.near.number(cell)];
+            let p = self.solver_pressure[self.near.number(cell)];
             for (k, factor) in tractions(friction) {
                 stresses[k] = -factor * p;
             }
@@ -295,7 +296,7 @@ impl PointStress<'_> {
                 Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
                 // What is moved between cells goes with the pressure.
                 Tractions::Known([qx, qy]) => {
-                    let moved = p - subcell.given[cell];
+                    let moved = p - subcell.solver_pressure[cell];
                     [p, qx[cell] + friction[0] * moved, qy[cell] + friction[1] * moved]
                 }
             }
@@ -320,7 +321,7 @@ impl PointStress<'_> {
             sum = added(sum, subcell.near.sum_at_point(point, self.depth, stress));
         }
         if self.depth == 0.0 {
-            let mean = subcell.given[subcell.near.number(point.cell)];
+            let mean = subcell.solver_pressure[subcell.near.number(point.cell)];
             let p = subcell.near.pressure_at(point, mean);
             for (k, factor) in tractions(friction) {
                 sum[k] = -factor * p;
@@ -329,21 +330,22 @@ impl PointStress<'_> {
         sum
     }
 
-    /// Ratios of the tractions to the pressure in a cell, or, where it bears none, in the neighbour that bears most.
+    /// Ratios of the tractions to the pressure in a cell, or, where it carries none, in the neighbour that carries
+    /// most.
     fn friction_at(&self, cell @ [i, j]: [usize; 2]) -> [f64; 2] {
         let known = match self.tractions {
             Tractions::Sliding(friction) => return friction,
             Tractions::Known(known) => known,
         };
-        let (given, [nx, ny]) = (&self.subcell.given, self.grid.shape());
+        let (p, [nx, ny]) = (&self.subcell.solver_pressure, self.grid.shape());
         let number = |[i, j]: [usize; 2]| i * ny + j;
         let around = (i.saturating_sub(1)..nx.min(i + 2))
             .flat_map(|i| (j.saturating_sub(1)..ny.min(j + 2)).map(move |j| number([i, j])));
-        let cell = match given[number(cell)] > 0.0 {
+        let cell = match p[number(cell)] > 0.0 {
             true => number(cell),
-            false => around.max_by(|a, b| given[*a].total_cmp(&given[*b])).unwrap_or_default(),
+            false => around.max_by(|a, b| p[*a].total_cmp(&p[*b])).unwrap_or_default(),
         };
-        known.each_ref().map(|q| if given[cell] > 0.0 { q[cell] / given[cell] } else { 0.0 })
+        known.each_ref().map(|q| if p[cell] > 0.0 { q[cell] / p[cell] } else { 0.0 })
     }
 }
 

@@ -294,19 +294,24 @@ impl StressPlan {
         strengths: &Strengths,
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressSummary> {
-        let mut asked = options.into();
+        let mut watched_options = options.into();
         let (body, grid) = (&self.whole.body, &self.whole.grid);
-        let request =
-            SummaryRequest::checked(body, grid, &self.sliding, strengths, asked.options())?;
+        let request = SummaryRequest::checked(
+            body,
+            grid,
+            &self.sliding,
+            strengths,
+            watched_options.options(),
+        )?;
         check_memory(grid.shape(), request.memory)?;
         refuse_if(
-            asked.options().refine.is_some(),
+            watched_options.options().refine.is_some(),
             "refine must be None where the tractions of a contact are known, and in the summary of a plan: \
              Solution.stress_summary of a contact without friction solves finer cells",
         )?;
         let scope = Scope::of(self);
         Ok(request
-            .evaluate(self, scope, &mut |part| asked.tell(part))
+            .evaluate(self, scope, &mut |part| watched_options.tell(part))
             .summary(&self.whole.body, strengths))
     }
 }
@@ -315,14 +320,15 @@ impl StressPlan {
 pub(super) fn summary_once(
     source: &PressureSource,
     strengths: &Strengths,
-    asked: WatchedStress,
+    watched_options: WatchedStress,
 ) -> Result<StressSummary> {
     let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
-    let request = SummaryRequest::checked(body, grid, sliding, strengths, asked.options())?;
+    let request =
+        SummaryRequest::checked(body, grid, sliding, strengths, watched_options.options())?;
     let evaluate = |plan: &StressPlan, progress: &mut StressProgress| {
         request.evaluate(plan, Scope::of(plan), progress)
     };
-    let extremes = source.once(asked, request.memory, evaluate)?.unwrap_or_default();
+    let extremes = source.once(watched_options, request.memory, evaluate)?.unwrap_or_default();
     Ok(extremes.summary(body, strengths))
 }
 
@@ -717,8 +723,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         let (residual, part) = (self.residual[place.layer], self.done as f64 / self.planned as f64);
         let mut value = |k: usize, which: usize| -> ControlFlow<(), f64> {
             if known[k].is_none() {
-                let mut told = |_| (self.progress)(part.min(1.0));
-                let mut sum = self.evaluation.at_point(place, &at, &points[k], &mut told)?;
+                let mut progress = |_| (self.progress)(part.min(1.0));
+                let mut sum = self.evaluation.at_point(place, &at, &points[k], &mut progress)?;
                 if let Some(beside) = &self.scope.beside {
                     let added = beside.at(self.plan.position(&points[k]));
                     sum.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);

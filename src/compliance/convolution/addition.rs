@@ -286,14 +286,14 @@ mod tests {
                 let p = Array2::from_shape_fn((height, width), |(i, j)| {
                     ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0
                 });
-                let found = convolution.apply(&p)?;
+                let displacement = convolution.apply(&p)?;
                 let all = rows(nx);
                 let weight = |i: usize, a: usize| {
                     let row = &all[first + i];
                     let k = a.checked_sub(row.first);
                     k.and_then(|k| row.weights.get(k)).copied().unwrap_or(0.0)
                 };
-                for ((i, j), found) in found.indexed_iter() {
+                for ((i, j), u) in displacement.indexed_iter() {
                     let mut expected = 0.0;
                     for ((k, l), p) in p.indexed_iter() {
                         for a in 0..NODES {
@@ -305,7 +305,7 @@ mod tests {
                         }
                     }
                     let scale = 1e-11 * expected.abs().max(1.0);
-                    assert!((found - expected).abs() < scale, "{found} {expected}");
+                    assert!((u - expected).abs() < scale, "{u} {expected}");
                     let entries: f64 = (p.indexed_iter())
                         .map(|((k, l), p)| convolution.added([i, k], j.abs_diff(l)) * p)
                         .sum();

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
-use crate::model::surface::{Extent, Limited, Surface};
+use crate::model::surface::{Extent, ShapeInRange, Surface};
 use crate::numerics::parallel::Threads;
 
 /// Distance between an end and the edge of a cell, in cells, or the end of a shape, relative to its length, that is
@@ -112,7 +112,7 @@ impl Ends {
         !self.ends.is_empty()
     }
 
-    /// Range of x in which all bodies go on.
+    /// Range of x in which all bodies extend.
     pub(crate) fn range(&self) -> [f64; 2] {
         let on = |side: usize| self.ends.iter().filter(move |end| end.side == side);
         [
@@ -132,8 +132,8 @@ impl Ends {
     }
 
     /// `shape`, which cannot touch beyond the ends.
-    pub(crate) fn limit<'a>(&self, shape: &'a dyn Surface) -> Limited<'a> {
-        Limited::new(shape, self.range())
+    pub(crate) fn limit<'a>(&self, shape: &'a dyn Surface) -> ShapeInRange<'a> {
+        ShapeInRange::new(shape, self.range())
     }
 
     /// Checks that the ends lie on edges of the cells of `grid`, or outside them.
@@ -147,11 +147,11 @@ impl Ends {
         }
         if grid.is_line() {
             return Err(Error::Inconsistent(
-                "ends must not be given in line contact, whose strips go on along x",
+                "ends must not be given in line contact, whose strips extend along x",
             ));
         }
         // A pressure that is uniform over the period has the factor of the bare substrate, though layers that are thick
-        // compared with the period bear it.
+        // compared with the period carry it.
         let thicknesses = self.ends.iter().map(|end| end.ending.body.thickness());
         let (thickness, period) = (thicknesses.fold(0.0, f64::max), grid.size()[1]);
         if grid.is_periodic()[1] && thickness > period {
@@ -219,10 +219,10 @@ impl Ends {
             let nodes = Nodes::new(nearest, dx, nx - beyond);
             let endings: Vec<&Ending> = ends.iter().map(|end| &end.ending).collect();
             let datum = (high - low).max(2.0 * (x - low).abs().max((high - x).abs()));
-            let found = known.iter().find(|(n, d, e, _)| {
+            let entry = known.iter().find(|(n, d, e, _)| {
                 *n == nodes && d.to_bits() == datum.to_bits() && *e == endings
             });
-            let coefficients = match found {
+            let coefficients = match entry {
                 Some((.., coefficients)) => coefficients.clone(),
                 None => threads.run(|| total(&endings, &nodes, (grid, datum), threads))?,
             };
@@ -245,7 +245,7 @@ impl Ends {
     }
 }
 
-/// Checks that the body which carries a `shape` goes on as far as the shape does.
+/// Checks that the body which carries a `shape` extends as far as the shape does.
 ///
 /// # Errors
 /// [`Error::EndWithinShape`].

@@ -13,7 +13,7 @@
 //! derived here.
 //!
 //! Below kL = 0.1, D_00 and D_11 grow as 1/k: long waves stretch and bend a plate of plane stress. The rest is a
-//! logarithm, that of the quarter spaces, and what goes on from the table.
+//! logarithm, that of the quarter spaces, and what continues from the table.
 //!
 //! A plate that is infinitely deep yields without limit to a load that is uniform along y. Its shift and its tilt are
 //! therefore counted from those at a depth of about its length, or the width of the grid if that is more: from D_00
@@ -221,10 +221,10 @@ mod tests {
         for [kl, poisson, values @ ..] in expected {
             let displacement = PI / kl * (1.0 + 0.6 * poisson);
             for (pair, value) in pairs.into_iter().zip(values) {
-                let found = coefficient(pair, kl, poisson);
+                let coefficient = coefficient(pair, kl, poisson);
                 assert!(
-                    (found - value).abs() < OF_TABLE * displacement,
-                    "{pair:?} kL {kl} ν {poisson}: {found} {value}"
+                    (coefficient - value).abs() < OF_TABLE * displacement,
+                    "{pair:?} kL {kl} ν {poisson}: {coefficient} {value}"
                 );
             }
         }
@@ -296,10 +296,10 @@ mod tests {
             let places = places.into_iter();
             let loads = places.clone().map(|x| (x, false)).chain(places.map(|x| (x, true)));
             for ((x, linear), value) in loads.zip(values) {
-                let found = displacement(k, poisson, x, linear);
+                let displacement = displacement(k, poisson, x, linear);
                 assert!(
-                    (found - value).abs() < tolerance,
-                    "kL {k} ν {poisson}, x {x}, linear {linear}: {found} {value}"
+                    (displacement - value).abs() < tolerance,
+                    "kL {k} ν {poisson}, x {x}, linear {linear}: {displacement} {value}"
                 );
             }
         }

@@ -161,8 +161,8 @@ impl Reduction {
     pub(super) fn of(poisson: f64) -> Arc<Self> {
         static KNOWN: LazyLock<Mutex<HashMap<u64, Arc<Reduction>>>> = LazyLock::new(Mutex::default);
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = known.get(&poisson.to_bits()) {
-            return Arc::clone(found);
+        if let Some(reduction) = known.get(&poisson.to_bits()) {
+            return Arc::clone(reduction);
         }
         if known.len() >= KEPT {
             known.clear();

@@ -61,8 +61,8 @@ fn waves_along_the_end() {
         let reduction = Reduction::of(poisson);
         for (xi, expected) in values {
             // The load and its image are a wave on all x, for which u = 1.
-            let found = 1.0 + added(&reduction, xi, VANISHED) / PI;
-            assert!((found - expected).abs() < 1e-6, "{poisson} {xi}: {found} {expected}");
+            let u = 1.0 + added(&reduction, xi, VANISHED) / PI;
+            assert!((u - expected).abs() < 1e-6, "{poisson} {xi}: {u} {expected}");
         }
     }
     let edge = 1.0 + added(&Reduction::of(0.5), 0.0, VANISHED) / PI;
@@ -82,8 +82,8 @@ fn strips_against_finite_elements() {
         let reduction = Reduction::of(poisson);
         for (xi, expected) in values {
             let images = potential(xi, [0.0, 1.0]) + potential(xi, [-1.0, 0.0]);
-            let found = (images + added(&reduction, xi, 1.0)) / PI;
-            assert!((found - expected).abs() < 1e-5, "{poisson} {xi}: {found} {expected}");
+            let u = (images + added(&reduction, xi, 1.0)) / PI;
+            assert!((u - expected).abs() < 1e-5, "{poisson} {xi}: {u} {expected}");
         }
     }
 }
@@ -261,9 +261,12 @@ fn far_entries_are_those_of_points() -> Result<()> {
             let y = l as f64 * dy;
             let expected = point.displacement([here, y])? - half_space.at([here - there, y]);
             // The end is at the last row.
-            let found = convolution.added([599 - a, 599 - b], l);
+            let influence = convolution.added([599 - a, 599 - b], l);
             let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
-            assert!((found / expected - 1.0).abs() < tolerance, "{a} {b} {l}: {found} {expected}");
+            assert!(
+                (influence / expected - 1.0).abs() < tolerance,
+                "{a} {b} {l}: {influence} {expected}"
+            );
         }
     }
     Ok(())

@@ -286,7 +286,7 @@ mod tests {
             let waves = WaveRule::new(&distances, width, 41.0, 40.0 / c);
             for (i, y) in distances.into_iter().enumerate() {
                 let terms = waves.wavenumbers.iter().zip(&waves.weights);
-                let found: f64 = terms.map(|(k, w)| (-c * k).exp() * w[i]).sum();
+                let integral: f64 = terms.map(|(k, w)| (-c * k).exp() * w[i]).sum();
                 let expected = match width {
                     Width::None => c / (c * c + y * y),
                     Width::Load(a) => (atan(y + a) - atan(y - a)) / (2.0 * a),
@@ -294,7 +294,7 @@ mod tests {
                         (log(y + 2.0 * a) - 2.0 * log(y) + log(y - 2.0 * a)) / (4.0 * a * a)
                     }
                 };
-                assert!((found - expected).abs() < 1e-7, "{width:?} {y}: {found} {expected}");
+                assert!((integral - expected).abs() < 1e-7, "{width:?} {y}: {integral} {expected}");
             }
         }
     }

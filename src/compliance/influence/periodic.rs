@@ -110,21 +110,21 @@ fn of_plate(
     grid: &Grid,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
-    let held = plate.held();
-    let held: Box<dyn Response> = match (body as &dyn Any).downcast_ref::<ResponseSlope>() {
-        Some(slope) => Box::new(slope.of(&held)),
-        None => Box::new(held),
+    let rigid_base = plate.with_rigid_base();
+    let rigid_base: Box<dyn Response> = match (body as &dyn Any).downcast_ref::<ResponseSlope>() {
+        Some(slope) => Box::new(slope.of(&rigid_base)),
+        None => Box::new(rigid_base),
     };
     let waves = PlateWaves::new(plate, grid)?;
     let difference = |k: usize, l: usize| match (k, l) {
-        (0, 0) => -uniform(&*held),
+        (0, 0) => -uniform(&*rigid_base),
         _ => waves.sum([k, l], |[m, n]| {
             let alpha = m.hypot(n);
-            [(body.normal(alpha) - held.normal(alpha)) / alpha]
+            [(body.normal(alpha) - rigid_base.normal(alpha)) / alpha]
         })[0],
     };
     let difference = inverse_even(grid.shape(), grid.shape(), difference, threads);
-    Ok(coefficients(&*held, grid, threads)? + difference)
+    Ok(coefficients(&*rigid_base, grid, threads)? + difference)
 }
 
 /// Waves of loads that are uniform over the cells of a grid that repeats along x and along y, on a plate with a free

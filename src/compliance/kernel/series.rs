@@ -204,14 +204,14 @@ impl Series<1> {
             (mesh, coefficients, tail)
         };
         let [first, finer @ ..] = SPACINGS;
-        let mut found = sampled(first);
+        let mut samples = sampled(first);
         for spacing in finer {
-            if found.2 < CONVERGED * size {
+            if samples.2 < CONVERGED * size {
                 break;
             }
-            found = sampled(spacing);
+            samples = sampled(spacing);
         }
-        let (mesh, coefficients, tail) = found;
+        let (mesh, coefficients, tail) = samples;
         let spectrum = FourierTerms { values: coefficients, negligible: 1e-3 * ROUNDING * size };
         let series = Self::at_surface(&mesh, &[order], &[mesh.transforms(order)], &[spectrum]);
         (series, tail + ROUNDING * size)

@@ -116,10 +116,10 @@ mod tests {
         for k in 0..1000 {
             let r = range[0] * (range[1] / range[0]).powf(f64::from(k) / 999.0);
             let [exact, ..] = f([r; 4]);
-            let found = [few_pieces.at(r * r), few_terms.at(r * r), precise.at(r * r)];
-            for (found, error) in found.iter().zip([1e-9, 1e-9, 1e-12]) {
-                for (found, exact) in found.iter().zip(&exact) {
-                    assert!((found / exact - 1.0).abs() < error, "{r}: {found} {exact}");
+            let approximations = [few_pieces.at(r * r), few_terms.at(r * r), precise.at(r * r)];
+            for (values, error) in approximations.iter().zip([1e-9, 1e-9, 1e-12]) {
+                for (value, exact) in values.iter().zip(&exact) {
+                    assert!((value / exact - 1.0).abs() < error, "{r}: {value} {exact}");
                 }
             }
         }

@@ -260,17 +260,17 @@ fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
         BodyParameter::Young(_) | BodyParameter::Poisson(_) | BodyParameter::Thickness(_) => {}
     }
     let loose = layers.iter().rposition(|layer| layer.interface().slips());
-    let first_held = loose.map_or(0, |last| last + 1);
+    let first_bonded = loose.map_or(0, |last| last + 1);
     if place >= layers.len() {
-        let held = layers[first_held..].iter();
+        let bonded = layers[first_bonded..].iter();
         return match substrate {
             Some(material) if place == layers.len() => {
-                held.map(|layer| held_by(layer, material, parameter)).sum()
+                bonded.map(|layer| held_by(layer, material, parameter)).sum()
             }
             _ => 0.0,
         };
     }
-    if place >= first_held {
+    if place >= first_bonded {
         return held_layer(&layers[place], substrate, parameter);
     }
     let starts = layers[..place]

@@ -86,9 +86,9 @@ impl Sampled {
             return Err(Error::HiddenBySprings);
         }
         let (limits, lengths) = limits(&normal, size)?;
-        let made = Self { values, beside: local, springs, normal, limits, lengths };
-        check(&made)?;
-        Ok(made)
+        let response = Self { values, beside: local, springs, normal, limits, lengths };
+        check(&response)?;
+        Ok(response)
     }
 
     /// Values of û_z/p̂ \[m/Pa\] at the wavenumbers.

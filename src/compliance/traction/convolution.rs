@@ -55,9 +55,9 @@ impl Tangential {
     pub(crate) fn window(&self, shape: [usize; 2]) -> Arc<TangentialWindow> {
         let mut windows = self.windows.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(at) = windows.iter().position(|window| window.shape == shape) {
-            let found = windows.remove(at);
-            windows.push(Arc::clone(&found));
-            return found;
+            let window = windows.remove(at);
+            windows.push(Arc::clone(&window));
+            return window;
         }
         if windows.len() >= KEPT {
             windows.remove(0);

@@ -73,8 +73,8 @@ impl<'a> Relief<'a> {
         let [xs, ys] = [0, 1].map(|k| stations(region[k], middle[k], &self.marks[k]));
         let along = |x: f64| {
             let values: Vec<f64> = ys.iter().map(|&y| self.gap([x, y])).collect();
-            let found = valleys(&values).into_iter();
-            found
+            let minima = valleys(&values).into_iter();
+            minima
                 .map(|k| narrowed(&ys, &values, k, |y| self.gap([x, y])))
                 .map(move |(y, gap)| Low { at: [x, y], gap })
                 .collect::<Vec<_>>()
@@ -83,9 +83,9 @@ impl<'a> Relief<'a> {
             |lows: &[Low]| lows.iter().fold(f64::INFINITY, |least, low| least.min(low.gap));
         let mut profile = Vec::new();
         for &x in &xs {
-            let found = along(x);
-            profile.push(lowest(&found));
-            lows.extend(found);
+            let line_lows = along(x);
+            profile.push(lowest(&line_lows));
+            lows.extend(line_lows);
         }
         let mut between = valleys(&profile);
         between.sort_by(|&a, &b| profile[a].total_cmp(&profile[b]));
@@ -228,19 +228,19 @@ pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<
     let pressed = Pressed::by(solution);
     let reach = lows.iter().fold(0.0, |reach: f64, low| reach.max(pressed.farthest(low.at)));
     let bodies = pressed.plan(task, reach)?;
-    let mut found: Option<Overlap> = None;
+    let mut overlap: Option<Overlap> = None;
     for low in lows {
         let displacement: f64 = bodies.iter().map(|body| pressed.displacement(body, low.at)).sum();
         let depth = solution.approach - low.gap - displacement;
         if depth > 0.0 {
             let frame = low.at.map(|at| [at, at]);
-            found = Some(found.map_or(Overlap { frame, depth }, |found| Overlap {
-                frame: enclosing(found.frame, frame),
-                depth: found.depth.max(depth),
+            overlap = Some(overlap.map_or(Overlap { frame, depth }, |overlap| Overlap {
+                frame: enclosing(overlap.frame, frame),
+                depth: overlap.depth.max(depth),
             }));
         }
     }
-    Ok(found)
+    Ok(overlap)
 }
 
 /// The pressure of a solution, uniform on each of a few blocks of cells.

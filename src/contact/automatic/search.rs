@@ -25,7 +25,7 @@ const FRAME_MARGIN: f64 = 0.25;
 const COARSE_CELLS: usize = 48;
 
 /// Cells of the coarse grid in each direction where it holds places that lie apart, each of which may be a quarter of it.
-const HELD_CELLS: usize = 4 * COARSE_CELLS;
+const OVERLAP_CELLS: usize = 4 * COARSE_CELLS;
 
 /// Tolerance on the coarse grid, of which the outermost cells count alone: the pressure there is above a tenth of the peak.
 const FRAME_TOLERANCE: f64 = 1e-4;
@@ -49,7 +49,7 @@ pub(super) struct Search<'a> {
     task: Task<'a>,
     options: Options,
     extent: [Extent; 2],
-    held: Option<Frame>,
+    overlap_frame: Option<Frame>,
 }
 
 impl<'a> Search<'a> {
@@ -72,7 +72,7 @@ impl<'a> Search<'a> {
                 ..options.clone()
             },
             extent,
-            held: None,
+            overlap_frame: None,
         })
     }
 
@@ -97,7 +97,7 @@ impl<'a> Search<'a> {
     fn fit(&mut self, mut frame: Frame, progress: &mut Progress) -> Result<Grid> {
         let (mut enlargements, mut reductions, mut elsewhere) = (0, 0, false);
         loop {
-            let cells = if self.held.is_some() { HELD_CELLS } else { COARSE_CELLS };
+            let cells = if self.overlap_frame.is_some() { OVERLAP_CELLS } else { COARSE_CELLS };
             let grid = self.task.grid_over(frame, [cells; 2])?;
             frame = frame_of(&grid);
             let solution = self.task.solve(grid, &self.options, progress)?;
@@ -117,7 +117,8 @@ impl<'a> Search<'a> {
                 let cell = |number: usize| frame[k][0] + number as f64 * grid.spacing()[k];
                 [cell(contact[k].start), cell(contact[k].end)]
             });
-            let contact = self.held.map_or(contact, |held| enclosing(contact, held));
+            let contact =
+                self.overlap_frame.map_or(contact, |overlaps| enclosing(contact, overlaps));
             let (mut grown, mut shrunk) = (false, false);
             for axis in [0, 1] {
                 let width = frame[axis][1] - frame[axis][0];
@@ -146,9 +147,10 @@ impl<'a> Search<'a> {
 
     /// Remembers the place of an overlap. Returns a rectangle with a margin around this place and the contact.
     fn hold(&mut self, overlap: Overlap, solution: &Solution) -> Frame {
-        let held = self.held.map_or(overlap.frame, |held| enclosing(held, overlap.frame));
-        self.held = Some(held);
-        let frame = enclosing(solution.contact_extent(), held);
+        let overlap_frame =
+            self.overlap_frame.map_or(overlap.frame, |overlaps| enclosing(overlaps, overlap.frame));
+        self.overlap_frame = Some(overlap_frame);
+        let frame = enclosing(solution.contact_extent(), overlap_frame);
         let wider = frame.map(|[low, high]| {
             let margin = FRAME_MARGIN * (high - low);
             [low - margin, high + margin]
@@ -169,7 +171,7 @@ impl<'a> Search<'a> {
     /// The final grid: the contact of the coarse `solution` and a margin around it, in fine cells.
     fn final_grid(&self, solution: &Solution) -> Result<Grid> {
         let contact = solution.contact_extent();
-        let contact = self.held.map_or(contact, |held| enclosing(contact, held));
+        let contact = self.overlap_frame.map_or(contact, |overlaps| enclosing(contact, overlaps));
         let widths = contact.map(|[low, high]| high - low);
         let finest = widths[0].min(widths[1]) / ACROSS;
         let frame: Frame = std::array::from_fn(|axis| {
@@ -192,7 +194,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there, by more than rounding.
+/// Lower and upper sides of a grid that the `contact` touches although the shape extends there, by more than rounding.
 pub(super) fn touched_sides(contact: &Window, grid: &Grid, extent: [Extent; 2]) -> [[bool; 2]; 2] {
     let frame = frame_of(grid);
     [0, 1].map(|k| {

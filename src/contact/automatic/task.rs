@@ -31,7 +31,7 @@ pub(super) struct Task<'a> {
     pub(super) body: &'a Body,
     pub(super) setup: &'a Setup,
     pub(super) motion: &'a Motion,
-    /// Range of x in which both bodies go on.
+    /// Range of x in which both bodies extend.
     pub(super) ends: [f64; 2],
     /// Largest number of cells.
     pub(super) most: usize,

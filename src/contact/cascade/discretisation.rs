@@ -55,7 +55,7 @@
 //!
 //! Where the gap has a corner at which its slope grows by Δs, as a profile of straight lines has between two of them,
 //! the pressure rises as (E* Δs/2π) ln(2a/|x|): Johnson, Contact Mechanics (1985), §5.2,
-//! doi:10.1017/CBO9781139171731. It has no limit, and cells half as long bear E* Δs ln 2/2π more. The error is what
+//! doi:10.1017/CBO9781139171731. It has no limit, and cells half as long carry E* Δs ln 2/2π more. The error is what
 //! cells four times shorter would add to the peak. The estimate was derived here.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -189,9 +189,9 @@ impl Pairs {
     fn add(&mut self, p: &[f64], before: &[f64]) {
         let only = |a: Lanes, b: Lanes| a - where_positive(b, a);
         let ([rim], [squares, starts]) = update_with_largest([p, before], [], |[p, q], []| {
-            let (begun, ended) = (only(p, q), only(q, p));
-            let starts = where_positive(begun, ONE);
-            ([], [begun.fast_max(ended)], [(p - q) * (p - q), starts])
+            let (entry, exit) = (only(p, q), only(q, p));
+            let starts = where_positive(entry, ONE);
+            ([], [entry.fast_max(exit)], [(p - q) * (p - q), starts])
         });
         self.squares += squares;
         self.starts += starts;
@@ -350,8 +350,8 @@ pub(crate) fn corner_error(
         return 0.0;
     }
     let peak = pressure.fold(0.0_f64, |most, p| most.max(*p));
-    let found = pressure.indexed_iter().find(|(_, p)| **p >= peak);
-    let Some(((row, column), _)) = found.filter(|(_, p)| **p > 0.0) else {
+    let peak_cell = pressure.indexed_iter().find(|(_, p)| **p >= peak);
+    let Some(((row, column), _)) = peak_cell.filter(|(_, p)| **p > 0.0) else {
         return 0.0;
     };
     let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
@@ -392,10 +392,10 @@ fn corner(gap: impl Fn(f64) -> f64, length: f64) -> f64 {
         let growths = heights.windows(3).map(|h| (h[2] - 2.0 * h[1] + h[0]) / part);
         total = growths.clone().sum();
         let sharpest = growths.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((place, found)) = sharpest.filter(|(_, found)| found.is_finite()) else {
+        let Some((place, growth)) = sharpest.filter(|(_, growth)| growth.is_finite()) else {
             return 0.0;
         };
-        if found <= 0.0 || found < KEPT * *widest.get_or_insert(found) {
+        if growth <= 0.0 || growth < KEPT * *widest.get_or_insert(growth) {
             return 0.0;
         }
         middle += part * (place as f64 - 0.5 * PARTS as f64);
@@ -423,16 +423,16 @@ mod tests {
                 load: 3.0 * value,
             })
             .collect();
-        let found = estimate(&results, false)?;
-        let peak = found.peak_pressure?;
-        Some([peak, 10.0 * found.approach, found.load / 3.0])
+        let errors = estimate(&results, false)?;
+        let peak = errors.peak_pressure?;
+        Some([peak, 10.0 * errors.approach, errors.load / 3.0])
     }
 
     fn assert_error(values: &[f64], expected: f64) {
-        for found in error(values).expect("two grids or more") {
+        for error in self::error(values).expect("two grids or more") {
             assert!(
-                (found - expected).abs() < 1e-12 * expected.max(1e-2),
-                "{values:?}: {found} {expected}"
+                (error - expected).abs() < 1e-12 * expected.max(1e-2),
+                "{values:?}: {error} {expected}"
             );
         }
     }
@@ -474,11 +474,11 @@ mod tests {
     fn a_singular_pressure_has_no_peak() {
         let result =
             |value: f64| GridResult { peak_pressure: value, approach: value, load: 2.0 * value };
-        let found = estimate(&[0.0, 0.96, 1.2].map(result), true).expect("three grids");
-        assert_eq!(found.peak_pressure, None);
-        assert!((found.approach - 0.48).abs() < 1e-12 && (found.load - 0.96).abs() < 1e-12);
+        let errors = estimate(&[0.0, 0.96, 1.2].map(result), true).expect("three grids");
+        assert_eq!(errors.peak_pressure, None);
+        assert!((errors.approach - 0.48).abs() < 1e-12 && (errors.load - 0.96).abs() < 1e-12);
         let other = estimate(&[0.0, 0.96, 1.2].map(result), false).expect("three grids");
-        assert_eq!(other.plus(found).peak_pressure, None);
+        assert_eq!(other.plus(errors).peak_pressure, None);
         assert!((other.plus(other).load - 2.0 * other.load).abs() < 1e-12);
     }
 
@@ -500,13 +500,13 @@ mod tests {
     fn a_half_space_has_a_small_coefficient() -> Result<()> {
         let body = Body::from(Elastic::new(1.0, 0.0)?);
         let grid = Grid::new([10, 20], [1.0, 1.0])?;
-        let found = Unresolved::new(&[&body], &grid);
-        for (found, spacing) in found.aliases.into_iter().zip([0.1, 0.05]) {
+        let unresolved = Unresolved::new(&[&body], &grid);
+        for (alias, spacing) in unresolved.aliases.into_iter().zip([0.1, 0.05]) {
             let zeta = 1.202_056_903_159_594;
             let expected = 4.0 * 2.0 * (spacing / std::f64::consts::TAU).powi(3) * 0.75 * zeta;
-            assert!((found / expected - 1.0).abs() < 1e-7, "{found:e} {expected:e}");
+            assert!((alias / expected - 1.0).abs() < 1e-7, "{alias:e} {expected:e}");
         }
-        assert!((found.stiffening - 1.0).abs() < 1e-12);
+        assert!((unresolved.stiffening - 1.0).abs() < 1e-12);
         Ok(())
     }
 
@@ -516,8 +516,8 @@ mod tests {
     fn cells_that_do_not_resolve_an_incompressible_layer_err_by_all() -> Result<()> {
         let (h, rubber) = (1e-3, Elastic::new(3.0, 0.5)?);
         let body = Body::from(HalfSpace::new(Substrate::Rigid, [Layer::new(rubber, h)?])?);
-        let found = Unresolved::new(&[&body], &Grid::line(10, 1.0)?);
-        let (expected, [along_x, along_y]) = (h.powi(3) / 3.0, found.aliases);
+        let unresolved = Unresolved::new(&[&body], &Grid::line(10, 1.0)?);
+        let (expected, [along_x, along_y]) = (h.powi(3) / 3.0, unresolved.aliases);
         assert!(along_x.abs() < f64::MIN_POSITIVE);
         assert!((along_y / expected - 1.0).abs() < 0.02, "{along_y:e} {expected:e}");
         Ok(())
@@ -528,8 +528,8 @@ mod tests {
     fn a_hard_layer_stiffens_below_the_cell() -> Result<()> {
         let coat = Layer::new(Elastic::new(100.0, 0.3)?, 1e-6)?;
         let body = Body::from(HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?);
-        let found = Unresolved::new(&[&body], &Grid::new([10, 10], [1.0, 1.0])?);
-        assert!((found.stiffening / 100.0 - 1.0).abs() < 0.01, "{found:?}");
+        let unresolved = Unresolved::new(&[&body], &Grid::new([10, 10], [1.0, 1.0])?);
+        assert!((unresolved.stiffening / 100.0 - 1.0).abs() < 0.01, "{unresolved:?}");
         Ok(())
     }
 
@@ -539,8 +539,8 @@ mod tests {
         pairs.add(&[0.0, 2.0, 3.0, 0.0, 1.0], &[0.0, 0.0, 2.0, 5.0, 0.0]);
         // Exact in binary.
         let expected = [4.0 + 1.0 + 25.0 + 1.0, 2.0, 5.0_f64];
-        let found = [pairs.squares, pairs.starts, pairs.rim];
-        assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits));
+        let sums = [pairs.squares, pairs.starts, pairs.rim];
+        assert_eq!(sums.map(f64::to_bits), expected.map(f64::to_bits));
     }
 
     /// A corner is found wherever it lies in the cell, to the rounding of second differences; circles, parabolas and
@@ -549,8 +549,8 @@ mod tests {
     fn corners_are_told_from_curvature() {
         for place in [-0.5, -0.31, 0.0, 0.123, 0.5] {
             let gap = |x: f64| 0.2 * x + 1e-3 * (x - place).max(0.0) + 1e-3 * x * x;
-            let found = corner(gap, 1.0);
-            assert!((found / 1e-3 - 1.0).abs() < 0.02, "{place}: {found}");
+            let slope_change = corner(gap, 1.0);
+            assert!((slope_change / 1e-3 - 1.0).abs() < 0.02, "{place}: {slope_change}");
         }
         for gap in [|x: f64| x * x, |x: f64| 1.0 - (1.0 - x * x).sqrt(), |x: f64| -(0.9 - x).ln()] {
             assert!(corner(gap, 1.0).abs() <= 0.0);

@@ -67,7 +67,8 @@ impl Freedoms {
         let mut mu = [0.0; 3];
         if self.loaded[0] {
             // By bisection for the force alone, since at first no pressure may be free.
-            let carries = |mu| self.answered(p, bounds, [mu, 0.0, 0.0], &raised).mismatch[0] <= 0.0;
+            let carries =
+                |mu| self.answer_sums(p, bounds, [mu, 0.0, 0.0], &raised).mismatch[0] <= 0.0;
             let [mut low, mut high] = [-1.0, 1.0];
             while high < FARTHEST && !carries(high) {
                 high *= 2.0;
@@ -96,20 +97,20 @@ impl Freedoms {
         mut mu: [f64; 3],
         answer: impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
     ) -> bool {
-        let mut found = self.answered(pressure, bounds, mu, &answer);
+        let mut sums = self.answer_sums(pressure, bounds, mu, &answer);
         let size = |force: f64| force.max(largest(self.target));
         let mut descends = true;
         for _ in 0..STEPS {
-            if largest(found.mismatch) <= 4.0 * f64::EPSILON * size(found.force) || !descends {
+            if largest(sums.mismatch) <= 4.0 * f64::EPSILON * size(sums.force) || !descends {
                 break;
             }
-            let step = self.solve(&found.gram, found.mismatch);
+            let step = self.solve(&sums.gram, sums.mismatch);
             let mut length = 1.0;
             descends = loop {
                 let shorter = [0, 1, 2].map(|k| mu[k] + length * step[k]);
-                let trial = self.answered(pressure, bounds, shorter, &answer);
-                if largest(trial.mismatch) < largest(found.mismatch) {
-                    (mu, found) = (shorter, trial);
+                let trial = self.answer_sums(pressure, bounds, shorter, &answer);
+                if largest(trial.mismatch) < largest(sums.mismatch) {
+                    (mu, sums) = (shorter, trial);
                     break true;
                 }
                 length *= 0.5;
@@ -119,7 +120,7 @@ impl Freedoms {
                 }
             };
         }
-        let balanced = largest(found.mismatch) <= BALANCE_TOLERANCE * size(found.force);
+        let balanced = largest(sums.mismatch) <= BALANCE_TOLERANCE * size(sums.force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
                 let [new, _] = answer(all(pressure[k]), all(bounds.limit(k)), all(1.0 + b));
@@ -130,13 +131,13 @@ impl Freedoms {
     }
 
     /// The sums of the answer to Bμ.
-    fn answered(
+    fn answer_sums(
         &self,
         p: &[f64],
         bounds: &Bounds,
         mu: [f64; 3],
         answer: &impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
-    ) -> Answered {
+    ) -> AnswerSums {
         let (mut sums, mut gram) = ([0.0; 3], [[0.0; 3]; 3]);
         for (number, (x, row)) in self.rows().enumerate() {
             let (along, slope) = (all(1.0 + mu[0] + mu[1] * x), all(mu[2]));
@@ -151,12 +152,12 @@ impl Freedoms {
         let missing = |k: usize| {
             if self.loaded[k] { self.target[k] - sums[k] } else { 0.0 }
         };
-        Answered { force: sums[0], mismatch: [0, 1, 2].map(missing), gram }
+        AnswerSums { force: sums[0], mismatch: [0, 1, 2].map(missing), gram }
     }
 }
 
 /// Sums of a pressure that answers a motion Bμ.
-struct Answered {
+struct AnswerSums {
     force: f64,
     /// Target less Bᵀp.
     mismatch: [f64; 3],
@@ -470,9 +471,9 @@ mod tests {
         freedoms.for_each(lambda, |k, b| {
             values[k] = if p[k] > 0.0 { b } else { f64::INFINITY };
         });
-        let found = fit(&freedoms, &p, &values)?;
+        let coefficients = fit(&freedoms, &p, &values)?;
         for k in 0..3 {
-            assert!((found[k] - lambda[k]).abs() < 1e-14, "{found:?}");
+            assert!((coefficients[k] - lambda[k]).abs() < 1e-14, "{coefficients:?}");
         }
         Ok(())
     }
@@ -490,8 +491,8 @@ mod tests {
             let (x, y) = (x[k / FIT_CELLS[1]], y[k % FIT_CELLS[1]]);
             sums = [sums[0] + value, sums[1] + value * x, sums[2] + value * y];
         }
-        for (found, sum) in freedoms.moments(&values).iter().zip(sums) {
-            assert!((found - sum).abs() < 1e-11, "{found} {sum}");
+        for (moment, sum) in freedoms.moments(&values).iter().zip(sums) {
+            assert!((moment - sum).abs() < 1e-11, "{moment} {sum}");
         }
         let lambda = fit(&freedoms, &p, &values)?;
         freedoms.for_each(lambda, |k, b| values[k] -= b);
@@ -518,13 +519,16 @@ mod tests {
         };
         let sx = 0.5 / (x[7] - x[4]);
         let sy = 0.5 / (y[8] - y[3]);
-        for (found, expected) in [
+        for (coefficients, expected) in [
             (with(&[(cell, 2.5)])?, [2.5, 0.0, 0.0]),
             (with(&[(cell, 2.5), (along_x, 3.0)])?, [2.5 - sx * x[4], sx, 0.0]),
             (with(&[(cell, 2.5), (along_y, 3.0)])?, [2.5 - sy * y[3], 0.0, sy]),
         ] {
             for k in 0..3 {
-                assert!((found[k] - expected[k]).abs() < 1e-13, "{found:?} {expected:?}");
+                assert!(
+                    (coefficients[k] - expected[k]).abs() < 1e-13,
+                    "{coefficients:?} {expected:?}"
+                );
             }
         }
         Ok(())

@@ -69,11 +69,11 @@ impl<'a> Bounds<'a> {
 
     /// Whether the pressure `p` of a cell is free to change.
     pub(crate) fn is_free(&self, cell: usize, p: f64) -> bool {
-        p > 0.0 && !self.is_held(cell, p)
+        p > 0.0 && !self.is_at_limit(cell, p)
     }
 
     /// Whether the upper bound holds the pressure `p` of a cell.
-    fn is_held(&self, cell: usize, p: f64) -> bool {
+    fn is_at_limit(&self, cell: usize, p: f64) -> bool {
         p >= self.limit(cell) && self.is_limited
     }
 
@@ -82,7 +82,7 @@ impl<'a> Bounds<'a> {
     pub(crate) fn wrong(&self, cell: usize, p: f64, gap: f64) -> f64 {
         if p <= 0.0 {
             -gap
-        } else if self.is_held(cell, p) {
+        } else if self.is_at_limit(cell, p) {
             gap
         } else {
             0.0
@@ -127,7 +127,7 @@ pub(crate) fn not_allowed(p: Lanes, limit: Lanes) -> Lanes {
     (p.simd_lt(ZERO) | p.simd_gt(limit)) & ONE
 }
 
-/// Largest pressure that an elastic, perfectly plastic surface bears \[Pa\], above 0; +∞ where it does not yield.
+/// Largest pressure that an elastic, perfectly plastic surface carries \[Pa\], above 0; +∞ where it does not yield.
 ///
 /// Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
 /// Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008.

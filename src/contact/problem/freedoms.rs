@@ -63,8 +63,8 @@ impl Freedoms {
         // Under a load the columns may be centred, which keeps them independent.
         let origin = if loaded[0] { grid.center() } else { [0.0; 2] };
         for k in 0..2 {
-            let given = [motion.eccentricity[k], motion.moment[k], motion.tilt[k]];
-            refuse_if(grid.is_periodic()[k] && given != [None; 3], PERIODIC[k])?;
+            let rotation = [motion.eccentricity[k], motion.moment[k], motion.tilt[k]];
+            refuse_if(grid.is_periodic()[k] && rotation != [None; 3], PERIODIC[k])?;
             let moment = match (motion.eccentricity[k], motion.moment[k], motion.tilt[k]) {
                 (None, None, None) => continue,
                 (None, None, Some(tilt)) => {
@@ -111,8 +111,8 @@ impl Freedoms {
 
     /// A uniform pressure on `cells` cells whose sum is of the size of the target.
     pub(crate) fn typical_pressure(&self, cells: usize) -> f64 {
-        let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        if asked > 0.0 { asked / cells as f64 } else { 1.0 }
+        let target = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        if target > 0.0 { target / cells as f64 } else { 1.0 }
     }
 
     /// Whether the prescribed motion changes the gap.

@@ -66,7 +66,7 @@ pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
 
 /// The smallest window that holds all cells for which `member` is true; `None` where there is no such cell.
 pub(crate) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
-    let mut found: Option<Window> = None;
+    let mut hull: Option<Window> = None;
     for i in window[0].clone() {
         let row = window[1].clone();
         let Some(first) = row.clone().find(|&j| member(i, j)) else {
@@ -74,9 +74,9 @@ pub(crate) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> 
         };
         let last = row.rev().find(|&j| member(i, j)).unwrap_or(first);
         let line = [i..i + 1, first..last + 1];
-        found = Some(found.map_or(line.clone(), |found| enclosing(&found, &line)));
+        hull = Some(hull.map_or(line.clone(), |hull| enclosing(&hull, &line)));
     }
-    found
+    hull
 }
 
 impl Patch {

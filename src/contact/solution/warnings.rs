@@ -15,14 +15,14 @@ use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest, where
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The contact touches the edge of the grid, and the shape goes on beyond it.
+    /// The contact touches the edge of the grid, and the shape extends beyond it.
     GridEdge,
     /// The contact reaches the end of a shape of finite length, as of a roller.
     SharpEnd {
         /// 0 along x, 1 along y.
         axis: usize,
     },
-    /// The contact reaches the free end of one body, where the other goes on.
+    /// The contact reaches the free end of one body, where the other extends beyond it.
     FreeEnd,
     /// A body with layers has a free end, for which there is only a model.
     CoatedEnd,
@@ -162,14 +162,14 @@ impl fmt::Display for Warning {
             }
             Self::SharpEnd { axis: 0 } => write!(
                 f,
-                "the contact reaches the end of the shape along x, and the bodies go on beyond it: the \
+                "the contact reaches the end of the shape along x, and the bodies extend beyond it: the \
                  pressure there is that of a sharp edge on a half-space, far too high for a roller's end, \
                  and grows as the grid is refined; give the bodies their ends"
             ),
             Self::SharpEnd { .. } => write!(
                 f,
                 "the contact reaches the end of the shape along y: the pressure there is that of \
-                 a sharp edge on a half-space that goes on, and grows as the grid is refined"
+                 a sharp edge on a half-space that extends beyond it, and grows as the grid is refined"
             ),
             Self::FreeEnd => write!(
                 f,
@@ -375,7 +375,7 @@ fn sharpness(bodies: &Ends, axis: usize, k: usize, end: f64, spacing: f64) -> Op
 /// How a contact meets the outermost cells of its grid.
 #[derive(Default)]
 struct Rim {
-    /// Whether it touches one of them beyond which the shape goes on.
+    /// Whether it touches one of them beyond which the shape extends.
     goes_on: bool,
     /// Whether it touches one of them beyond which the shape cannot touch.
     ends: bool,
@@ -448,7 +448,7 @@ impl Outline {
         let mut is_cut = false;
         let columns = window[1].len();
         // Runs along x that have begun: cells and sum of pressures in each column, and the largest pressure.
-        let (mut cells, mut begun) = (vec![0.0; columns], vec![0.0; columns]);
+        let (mut cells, mut forces) = (vec![0.0; columns], vec![0.0; columns]);
         let mut highest = vec![0.0; columns];
         let mut gap_before: &[f64] = &vec![0.0; columns];
         let (pressure, gap) = (slice(pressure), slice(gap));
@@ -470,7 +470,7 @@ impl Outline {
             }
             let ([cut], [ended]) = update_with_largest(
                 [row, gap, gap_before],
-                [&mut cells, &mut begun, &mut highest],
+                [&mut cells, &mut forces, &mut highest],
                 |[p, h, before], [n, force, highest]| {
                     let inside = |value| where_positive(p, value);
                     let edges = inside(beyond(before)) + where_positive(n, beyond(h));
@@ -483,7 +483,7 @@ impl Outline {
             along_x += ended;
             gap_before = gap;
         }
-        let [last] = sum([&cells, &begun], |[n, force]| [n * force]);
+        let [last] = sum([&cells, &forces], |[n, force]| [n * force]);
         along_x += last;
         for (line, p) in lines[1][window[1].clone()].iter_mut().zip(highest) {
             *line = p > 0.0;
@@ -510,11 +510,11 @@ mod tests {
 
     fn assert_widths(pressure: &Array2<f64>, expected: [f64; 2]) {
         let gap = Array2::zeros(pressure.dim());
-        let found = outline(pressure, &gap);
-        for (found, expected) in found.widths.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-12 * (1.0 + expected), "{found} {expected}");
+        let contact_outline = outline(pressure, &gap);
+        for (width, expected) in contact_outline.widths.iter().zip(expected) {
+            assert!((width - expected).abs() < 1e-12 * (1.0 + expected), "{width} {expected}");
         }
-        assert!(!found.is_cut);
+        assert!(!contact_outline.is_cut);
     }
 
     #[test]
@@ -541,14 +541,14 @@ mod tests {
             let r2 = (i as f64 - 47.5).powi(2) + (j as f64 - 47.5).powi(2);
             (1.0 - r2 / radius.powi(2)).max(0.0).sqrt()
         });
-        let found = outline(&pressure, &Array2::zeros([96, 96]));
-        for width in found.widths {
+        let contact_outline = outline(&pressure, &Array2::zeros([96, 96]));
+        for width in contact_outline.widths {
             let expected = 9.0 * std::f64::consts::PI / 32.0 * 2.0 * radius;
             // The staircase of cells.
             assert!((width / expected - 1.0).abs() < 5e-3, "{width} {expected}");
         }
         let touching = |lines: &[bool]| lines.iter().filter(|touches| **touches).count();
-        assert_eq!(found.lines.map(|lines| touching(&lines)), [80, 80]);
+        assert_eq!(contact_outline.lines.map(|lines| touching(&lines)), [80, 80]);
     }
 
     /// A contact of one cell beside one that cannot touch, on each of its four sides; at its corner that

@@ -76,7 +76,7 @@ pub(crate) fn solve(
         softness: SOFTNESS / problem.self_influence(),
         contact: free_cells(problem, p).collect(),
         lambda,
-        held: vec![0.0; p.len()],
+        limited_pressure: vec![0.0; p.len()],
         displaced: vec![0.0; p.len()],
         workspace: problem.convolution.workspace(),
         work: 0.0,
@@ -113,8 +113,8 @@ pub(crate) fn solve(
         }
         // What is wrong with the cell where most is: it overlaps, or parts at the hardness.
         let wrong = |k: usize| problem.bounds.wrong(k, p[k], g[k]);
-        let held = (0..p.len()).filter(|&k| !problem.bounds.is_free(k, p[k]));
-        let worst = held.min_by(|&a, &b| wrong(b).total_cmp(&wrong(a)));
+        let bound_cells = (0..p.len()).filter(|&k| !problem.bounds.is_free(k, p[k]));
+        let worst = bound_cells.min_by(|&a, &b| wrong(b).total_cmp(&wrong(a)));
         let parts = worst.is_some_and(|k| p[k] > 0.0 && wrong(k) > 0.0);
         if quality.overlap > criteria.tolerance || (parts && quality.residual > criteria.tolerance)
         {
@@ -142,7 +142,7 @@ struct System<'a> {
     /// λ₀
     lambda: [f64; 3],
     /// Pressure of the cells that stay at the hardness, 0 elsewhere.
-    held: Vec<f64>,
+    limited_pressure: Vec<f64>,
     /// Displacement under it.
     displaced: Vec<f64>,
     workspace: Workspace,
@@ -173,11 +173,11 @@ impl System<'_> {
         if !self.problem.bounds.is_limited() {
             return;
         }
-        self.held.copy_from_slice(p);
+        self.limited_pressure.copy_from_slice(p);
         for &k in &self.contact {
-            self.held[k] = 0.0;
+            self.limited_pressure[k] = 0.0;
         }
-        self.problem.apply(&self.held, &mut self.displaced, &mut self.workspace);
+        self.problem.apply(&self.limited_pressure, &mut self.displaced, &mut self.workspace);
         self.work += self.problem.convolution.work();
     }
 
@@ -214,9 +214,9 @@ impl System<'_> {
             if ends.iter().all(|end| end.is_infinite()) {
                 return Some(lambda);
             }
-            let held = self.contact.iter().any(|&k| p[k] >= bounds.limit(k));
+            let reaches_limit = self.contact.iter().any(|&k| p[k] >= bounds.limit(k));
             self.contact.retain(|&k| bounds.is_free(k, p[k]));
-            if held {
+            if reaches_limit {
                 self.hold(p);
             }
         }
@@ -246,8 +246,8 @@ impl System<'_> {
         let images = [0, 1, 2].map(|k| forward(&lower, b.iter().map(|b| b[k]).collect()));
         let mut matrix =
             images.each_ref().map(|row| images.each_ref().map(|column| dot(row, column)));
-        let held = freedoms.moments(&self.held);
-        let mut right = [0, 1, 2].map(|k| freedoms.target[k] - held[k]);
+        let limited_moments = freedoms.moments(&self.limited_pressure);
+        let mut right = [0, 1, 2].map(|k| freedoms.target[k] - limited_moments[k]);
         for k in 0..3 {
             matrix[k][k] += self.softness;
             right[k] += dot(&images[k], &gap);

@@ -46,12 +46,12 @@ pub(crate) fn solve(
         conjugacy: Conjugacy::default(),
     };
     loop {
-        let (found, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
+        let (multipliers, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
         let SolutionFields { pressure, displacement, .. } = fields;
         let (p, u) = (slice_mut(pressure), slice_mut(displacement));
-        problem.gap_into(u, found, &mut g);
+        problem.gap_into(u, multipliers, &mut g);
         let end = |termination| {
-            Ok(Outcome { solver: Solver::PolonskyKeer, termination, lambda: found.lambda() })
+            Ok(Outcome { solver: Solver::PolonskyKeer, termination, lambda: multipliers.lambda() })
         };
         if now.meets(criteria.tolerance) {
             return end(Termination::Converged);
@@ -67,7 +67,7 @@ pub(crate) fn solve(
         if advance(problem, &inside, &g, &search.direction, step, p) {
             search.conjugacy.restart();
         }
-        problem.rebalance(p, u, found.lambda());
+        problem.rebalance(p, u, multipliers.lambda());
         tally.iterations += 1;
     }
 }
@@ -87,21 +87,21 @@ fn assess(
         problem.judge(p, window, u, near, workspace)
     };
     let mut near = multipliers.lambda();
-    let (mut found, mut now) = judge(near);
+    let (mut new_multipliers, mut now) = judge(near);
     // A tilt that the contact does not determine is 0, and not what it was before.
-    let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
+    let stale = [1, 2].map(|k| near[k].abs() > 0.0 && new_multipliers.change[k].abs() <= 0.0);
     if stale[0] || stale[1] {
         for k in [1, 2] {
             near[k] *= f64::from(!stale[k - 1]);
         }
-        (found, now) = judge(near);
+        (new_multipliers, now) = judge(near);
     }
     if now.meets(tolerance) {
         // Gaps are exact only near the multipliers that they are counted from.
-        (found, now) = judge(found.lambda());
+        (new_multipliers, now) = judge(new_multipliers.lambda());
     }
-    (*multipliers, *quality) = (found, Some(now));
-    (found, now)
+    (*multipliers, *quality) = (new_multipliers, Some(now));
+    (new_multipliers, now)
 }
 
 /// Whether each cell is in the contact. Where nothing touches yet, the cells that overlap are the contact.

@@ -205,17 +205,17 @@ impl<'a> Preconditioned<'a> {
         let (sums, [free, inside]) = self.rows.each(inputs, outputs, |row, [p, u, h], [r]| {
             let (motion, slope) = (all(approach + tilt_x * row.x), all(tilt_y));
             let inputs = [p, bounds.row(row.number), u, h, row.y];
-            let (extremes, [work, mismatch, held, free, inside]) =
+            let (extremes, [work, mismatch, at_hardness, free, inside]) =
                 update_with_largest(inputs, [r], |[p, limit, u, h, y], _| {
                     let overlap = motion + slope * y - (h + u);
                     let residual = residual(p, limit, overlap);
                     let free = is_free(p, limit) & ONE;
                     let inside = in_contact(p, limit, residual) & ONE;
-                    let [work, mismatch, held] = works(p, limit, u, overlap);
-                    let sums = [work, mismatch, held, free, inside];
+                    let [work, mismatch, at_hardness] = works(p, limit, u, overlap);
+                    let sums = [work, mismatch, at_hardness, free, inside];
                     ([residual], depths(p, limit, u, overlap), sums)
                 });
-            let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
+            let sums = QualitySums::of_row(extremes, [work, mismatch, at_hardness]);
             (sums, [free, inside])
         });
         // A step gives no pressure to cells outside the contact: the difference is the cells that left.

@@ -530,9 +530,9 @@ mod tests {
     fn the_integral_is_that_of_the_logarithm_up_to_the_pole() -> Result<()> {
         let profile = LogarithmicProfile::new(1.0, 2.0, 0.0, 1.0)?;
         for (a, b) in [(0.0, 0.3), (0.0, 0.8), (0.5, 0.8), (0.6, 0.601), (0.1, 0.1003)] {
-            let found = profile.integral(a, b) / (b - a);
+            let mean = profile.integral(a, b) / (b - a);
             let exact = series(a, b);
-            assert!((found / exact - 1.0).abs() < 1e-9, "{a} {b}: {found} {exact}");
+            assert!((mean / exact - 1.0).abs() < 1e-9, "{a} {b}: {mean} {exact}");
         }
         // ∫_0^1 −ln(1 − v²) dv = 2 − 2 ln 2, and its parts add up.
         let whole = profile.integral(0.0, 1.0);

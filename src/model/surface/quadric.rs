@@ -118,8 +118,8 @@ fn present<'a>(numbers: impl Iterator<Item = (&'a str, Option<f64>)>) -> Vec<(St
 /// Axis and value of the radius `name` of a counterpart.
 fn counter_radius(name: &str, radii: [Option<f64>; 2]) -> Result<(usize, f64)> {
     let axis = COUNTER_RADII.iter().position(|one| *one == name);
-    let found = axis.and_then(|axis| Some((axis, radii[axis]?)));
-    found.ok_or_else(|| absent(name))
+    let axis_and_radius = axis.and_then(|axis| Some((axis, radii[axis]?)));
+    axis_and_radius.ok_or_else(|| absent(name))
 }
 
 /// An elliptic paraboloid: h = x²/2R_x + y²/2R_y.

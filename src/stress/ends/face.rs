@@ -199,9 +199,9 @@ impl Part for Face {
         lines: &mut [Vec<f64>],
         _: &mut StressProgress,
     ) -> ControlFlow<()> {
-        let found = self.at_depth(place.depth, displacement)?;
+        let lines_at_depth = self.at_depth(place.depth, displacement)?;
         for (k, line) in lines.iter_mut().enumerate() {
-            self.add_row(&found, k, self.shape[0] + end, line);
+            self.add_row(&lines_at_depth, k, self.shape[0] + end, line);
         }
         ControlFlow::Continue(())
     }
@@ -252,8 +252,8 @@ impl FaceTable {
                 return ControlFlow::Break(());
             };
             let mut outputs: Vec<&mut [f64]> = planes.iter_mut().map(|p| &mut p[..]).collect();
-            let mut asked = |_| progress(0.0);
-            plan.plane(&loading, &place, &mut memory, &mut outputs, &mut asked)?;
+            let mut poll = |_| progress(0.0);
+            plan.plane(&loading, &place, &mut memory, &mut outputs, &mut poll)?;
             let kept = planes[first..].iter().map(|plane| {
                 let mut kept = vec![0.0; self.part.rows.end * self.part.columns];
                 self.part.add(plane, &mut kept);

@@ -29,13 +29,13 @@ const MOST_ROWS: usize = 1024;
 pub(super) struct NearEnd {
     /// x of the end.
     pub(super) end: f64,
-    /// 1 where the body goes on towards larger x from there, else −1.
+    /// 1 where the body extends towards larger x from there, else −1.
     pub(super) sign: f64,
     /// Distance of the first row of the grid from the end \[m\].
     pub(super) first: f64,
     /// Rows between the grid's first one and that, which lie beyond the end.
     pub(super) beyond: usize,
-    /// Distance of the first row that bears pressure \[m\].
+    /// Distance of the first row that carries pressure \[m\].
     pub(super) nearest: f64,
     /// Number of the grid's rows in the body.
     rows: usize,
@@ -50,8 +50,8 @@ pub(super) struct NearEnd {
 }
 
 impl NearEnd {
-    /// The `pressure`, on columns of the total `width`, on `grid`, from an end at x = `end` from which the body goes on in
-    /// the direction of `sign`. None where there is no pressure.
+    /// The `pressure`, on columns of the total `width`, on `grid`, from an end at x = `end` from which the body extends
+    /// in the direction of `sign`. None where there is no pressure.
     pub(super) fn new(
         (pressure, width): (&ArrayRef2<f64>, f64),
         grid: &Grid,
@@ -63,8 +63,8 @@ impl NearEnd {
         let x = grid.x();
         let distance = |k: usize| sign * (x[row(k)] - end);
         let beyond = (0..nx).take_while(|k| distance(*k) < 0.0).count();
-        let bears = |k: &usize| pressure.row(row(*k)).iter().any(|p| *p != 0.0);
-        let nearest = distance((beyond..nx).find(bears)?);
+        let is_loaded = |k: &usize| pressure.row(row(*k)).iter().any(|p| *p != 0.0);
+        let nearest = distance((beyond..nx).find(is_loaded)?);
         let scale = width.max(nearest);
         // On rows at increasing distances.
         let from_end =

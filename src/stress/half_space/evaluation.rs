@@ -91,7 +91,7 @@ impl HalfSpacePlan {
             let numbers = done..done + outputs.len();
             done = numbers.end;
             let pressure = match &self.solved {
-                Some(solved) if numbers.start >= STRESSES => &solved.given,
+                Some(solved) if numbers.start >= STRESSES => &solved.solver_pressure,
                 _ => &self.uniform,
             };
             let factor = |load: &SurfaceLoad| load.factor;
@@ -451,9 +451,9 @@ impl Part for HalfSpacePart {
             return ControlFlow::Continue(());
         }
         let loading = Loading::one(self.load, displacement);
-        let found = self.plan.points(&loading, place, &cells, progress)?;
-        for (sums, found) in sums.into_iter().zip(found) {
-            add_scaled(sums.iter_mut(), self.factor, &found);
+        let components = self.plan.points(&loading, place, &cells, progress)?;
+        for (sums, components) in sums.into_iter().zip(components) {
+            add_scaled(sums.iter_mut(), self.factor, &components);
         }
         ControlFlow::Continue(())
     }
@@ -471,9 +471,9 @@ impl Part for HalfSpacePart {
         }
         let there = self.first - self.stride / 2 + (row - self.rows.start) * self.stride;
         let loading = Loading::one(self.load, displacement);
-        let found = self.plan.line(&loading, (place, there), progress)?;
-        for (line, found) in lines.iter_mut().zip(found) {
-            add_scaled(line.iter_mut(), self.factor, &found[self.column..]);
+        let components = self.plan.line(&loading, (place, there), progress)?;
+        for (line, component) in lines.iter_mut().zip(components) {
+            add_scaled(line.iter_mut(), self.factor, &component[self.column..]);
         }
         ControlFlow::Continue(())
     }

@@ -71,7 +71,7 @@ impl Repeats {
         let line = Grid::line(grid.shape()[open], grid.size()[open]);
         let strips = line.ok().filter(|_| periodic != [true; 2]);
         Some(Self {
-            block: CellPlan::new(&body.held(), sides, 1.0, reach),
+            block: CellPlan::new(&body.with_rigid_base(), sides, 1.0, reach),
             plate: is_free(body).then(|| PlateWaves::new(body, grid).ok()).flatten(),
             block_half: sides.map(|side| 0.5 * side),
             strips: strips.map(|line| LinePlan::new(body, &line, 1.0)),
@@ -190,16 +190,16 @@ impl Repeats {
         place: &Place,
         odd: [[bool; 2]; C],
     ) -> Option<[Array2<f64>; C]> {
-        let (plate, held) = (self.plate.as_ref()?, self.body.held());
+        let (plate, rigid_base) = (self.plate.as_ref()?, self.body.with_rigid_base());
         let response = |[m, n]: [f64; 2]| {
             let alpha = m.hypot(n);
             let at = |body: &HalfSpace| Column::new(body, alpha).at(body, place).pressure;
-            let (free, held) = (at(&self.body), at(&held));
+            let (free, fixed) = (at(&self.body), at(&rigid_base));
             let ((a, b), (c, d)) =
-                (free.lateral_stress(place.material), held.lateral_stress(place.material));
+                (free.lateral_stress(place.material), fixed.lateral_stress(place.material));
             let (along, across) = (a - c, b - d);
-            let (p, tau) = (free.p - held.p, free.tau - held.tau);
-            let (w, v) = ((free.w - held.w) / alpha, (free.v - held.v) / alpha);
+            let (p, tau) = (free.p - fixed.p, free.tau - fixed.tau);
+            let (w, v) = ((free.w - fixed.w) / alpha, (free.v - fixed.v) / alpha);
             let (c, s) = (m / alpha, n / alpha);
             let all = [
                 c * c * along + s * s * across,
@@ -396,7 +396,7 @@ mod tests {
                 Substrate::Elastic(_) => 6.0,
             };
             for depth in [0.3, 1.7, deepest] {
-                let (found, _) = waves(body, depth, [3, 0])?;
+                let (field, _) = waves(body, depth, [3, 0])?;
                 let place = place(body, depth, Side::Below)?;
                 let nu = place.material.poisson();
                 let i = 4;
@@ -417,7 +417,7 @@ mod tests {
                     due[4] += amplitude * state.w / alpha * cos;
                 }
                 let mean = [-nu / (1.0 - nu), -nu / (1.0 - nu), -1.0, 0.0];
-                let stresses = [found.xx(), found.yy(), found.zz(), found.xz()];
+                let stresses = [field.xx(), field.yy(), field.zz(), field.xz()];
                 for ((stress, due), mean) in stresses.iter().zip(due).zip(mean) {
                     for j in [0, 7] {
                         let error = stress[[0, i, j]] - due - mean;
@@ -425,8 +425,8 @@ mod tests {
                     }
                 }
                 // Shears across the wave are none.
-                assert!(found.yz().iter().chain(found.xy()).all(|s| s.abs() < 1e-6));
-                let uz = found.uz().expect("it was asked for");
+                assert!(field.yz().iter().chain(field.xy()).all(|s| s.abs() < 1e-6));
+                let uz = field.uz().expect("it was asked for");
                 let waves = uz[[0, i, 0]] - uz[[0, i + 4, 0]];
                 // Half a wave further the sign has changed; the mean drops out.
                 assert!((waves - 2.0 * due[4]).abs() < 2e-6, "{number} {waves:e} {:e}", due[4]);
@@ -440,7 +440,7 @@ mod tests {
     fn crossed_waves_are_those_of_the_body() -> Result<()> {
         for body in &bodies()? {
             let depth = 1.3;
-            let (found, _) = waves(body, depth, [2, 4])?;
+            let (field, _) = waves(body, depth, [2, 4])?;
             let place = place(body, depth, Side::Below)?;
             let (i, j) = (5, 6);
             let mut due = -1.0;
@@ -451,7 +451,7 @@ mod tests {
                     due -= a * b * state.p * x.cos() * y.cos();
                 }
             }
-            let error = found.zz()[[0, i, j]] - due;
+            let error = field.zz()[[0, i, j]] - due;
             assert!(error.abs() < 1e-6, "{error:e}");
         }
         Ok(())

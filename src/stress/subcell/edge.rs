@@ -78,8 +78,8 @@ pub(super) fn edge_cells(
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();
         let fit = |k: &usize| accepted_fit(&known, pressure, shape, band[*k]);
-        let found: Vec<_> = threads.run(|| needed.par_iter().map(fit).collect());
-        for (k, squared) in needed.into_iter().zip(found) {
+        let fits: Vec<_> = threads.run(|| needed.par_iter().map(fit).collect());
+        for (k, squared) in needed.into_iter().zip(fits) {
             if squared.is_none() {
                 open.close(band[k], NEIGHBOURS);
             }
@@ -435,7 +435,7 @@ mod tests {
     #[test]
     fn edges_are_known_where_they_are_smooth() -> Result<()> {
         let hertz = field(|x, y| (1.0 - (x * x + y * y) / 225.0).max(0.0).sqrt());
-        let found = |pressure: &[f64]| -> Result<Vec<EdgeCell>> {
+        let find_edges = |pressure: &[f64]| -> Result<Vec<EdgeCell>> {
             let distances = edge_distances(pressure, SHAPE, BAND + 1);
             let threads = Threads::new(Some(2))?;
             let mut progress = |_| ControlFlow::Continue(());
@@ -444,7 +444,7 @@ mod tests {
                 ControlFlow::Break(()) => panic!("nothing stops it"),
             }
         };
-        let edges = found(&hertz)?;
+        let edges = find_edges(&hertz)?;
         assert!(edges.len() > 300);
         for EdgeCell { cell, squared } in edges {
             let (x, y) = (cell[0] as f64 - 20.3, cell[1] as f64 - 21.1);
@@ -455,9 +455,9 @@ mod tests {
         }
         let wave = field(|x, y| 1.0 + 0.05 * (1.7 * x).sin() * (1.9 * y).cos());
         let rough: Vec<f64> = hertz.iter().zip(&wave).map(|(p, w)| p * w).collect();
-        assert!(found(&rough)?.is_empty());
+        assert!(find_edges(&rough)?.is_empty());
         let punch: Vec<f64> = hertz.iter().map(|p| if *p > 0.0 { 1.0 / p } else { 0.0 }).collect();
-        assert!(found(&punch)?.is_empty());
+        assert!(find_edges(&punch)?.is_empty());
         Ok(())
     }
 

@@ -320,9 +320,9 @@ impl NearPlan {
                 }
             }
             // Roots are in the order of the grid.
-            if let Ok(found) = roots.binary_search_by_key(&cell, |root| root.cell) {
-                let pressures = self.piece_pressures(&roots[found], self.cuts.get(offset.cut));
-                let stress = offset.root_stress(&roots[found], &pressures);
+            if let Ok(index) = roots.binary_search_by_key(&cell, |root| root.cell) {
+                let pressures = self.piece_pressures(&roots[index], self.cuts.get(offset.cut));
+                let stress = offset.root_stress(&roots[index], &pressures);
                 sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
             }
         }

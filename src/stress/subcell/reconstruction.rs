@@ -3,7 +3,7 @@
 //! - In the interior p is parabolic in a cell, with the slopes and curvatures of the neighbours'
 //!   pressures.
 //! - Near the edge it is the root of a polynomial ([`super::edge`]), shifted by thousandths of a cell
-//!   until the cells around bear the force that the solver's cells do.
+//!   until the cells around carry the force that the solver's cells do.
 //! - Elsewhere it stays uniform.
 //!
 //! The uniform part of a cell is its mean plus the shares ±m/2 that it takes of its neighbours' first
@@ -173,7 +173,7 @@ fn uniform_part(
     uniform
 }
 
-/// For each root, by how much p² must rise so that the cells around it bear the solver's force.
+/// For each root, by how much p² must rise so that the cells around it carry the solver's force.
 fn balancing_raises(
     pressure: &[f64],
     uniform: &[f64],
@@ -469,24 +469,24 @@ mod tests {
                     (rise(x) * (1.0 - y * y / 290.0)).max(0.0).sqrt()
                 })
                 .collect();
-            let found = reconstructed(&pressure, shape)?;
-            let Interior { slopes, curvatures } = &found.interior;
+            let reconstruction = reconstructed(&pressure, shape)?;
+            let Interior { slopes, curvatures } = &reconstruction.interior;
             let reach = usize::from(BAND);
             for i in (0..reach).chain(nx - reach..nx) {
                 for cell in i * ny..(i + 1) * ny {
-                    assert_eq!(found.uniform[cell].to_bits(), pressure[cell].to_bits());
+                    assert_eq!(reconstruction.uniform[cell].to_bits(), pressure[cell].to_bits());
                     assert!(slopes.iter().chain(curvatures).all(|part| part[cell] == 0.0));
                 }
             }
             let is_cut = |root: &RootCell| root.cell[0] < reach || root.cell[0] >= nx - reach;
-            assert!(!found.roots.iter().any(is_cut));
-            assert!(found.roots.len() > 100, "{}", found.roots.len());
+            assert!(!reconstruction.roots.iter().any(is_cut));
+            assert!(reconstruction.roots.len() > 100, "{}", reconstruction.roots.len());
         }
         Ok(())
     }
 
-    /// The edge bears the solver's force: two steps leave the square of the first shift, a tenth of a
-    /// cell at most, of what the edge's cells bear, a twentieth of all.
+    /// The edge carries the solver's force: two steps leave the square of the first shift, a tenth of a
+    /// cell at most, of what the edge's cells carry, a twentieth of all.
     #[test]
     fn the_force_is_kept() -> Result<()> {
         let (n, radius) = (61, 24.3);

@@ -477,7 +477,7 @@ mod tests {
     }
 
     /// Bare bodies and coatings that are thin or thick compared with a cell; not those of about a cell,
-    /// nor thin ones that are soft enough to bear the pressure as springs do.
+    /// nor thin ones that are soft enough to carry the pressure as springs do.
     #[test]
     fn the_law_holds_where_cells_see_one_material() -> Result<()> {
         let steel = Elastic::new(1.0, 0.3)?;
@@ -495,8 +495,8 @@ mod tests {
         ] {
             let layer = Layer::new(Elastic::new(ratio, 0.3)?, thickness)?;
             let coated = HalfSpace::new(steel, [layer])?;
-            let found = BodyPair(vec![&coated]).root_law_holds(1.0);
-            assert_eq!(found, expected, "{ratio} {thickness}");
+            let holds = BodyPair(vec![&coated]).root_law_holds(1.0);
+            assert_eq!(holds, expected, "{ratio} {thickness}");
         }
         Ok(())
     }

@@ -74,13 +74,13 @@ impl SampledProfile {
         let samples: Vec<[f64; 2]> = x.iter().zip(drop).map(|(x, drop)| [*x, *drop]).collect();
         let curve =
             Curve { is_straight: false, is_limited: true, corners: Vec::new(), smoothing: None };
-        let made = Self::through(samples.into(), curve);
+        let profile = Self::through(samples.into(), curve);
         let mut between = x.windows(2).map(|x| x[0] + 0.5 * (x[1] - x[0]));
         refuse_if(
-            !between.all(|x| made.drop(x).is_finite()),
+            !between.all(|x| profile.drop(x).is_finite()),
             "profile must have finite slopes: positions are too close, or drops too large",
         )?;
-        Ok(made)
+        Ok(profile)
     }
 
     fn through(samples: Arc<[[f64; 2]]>, curve: Curve) -> Self {
@@ -206,8 +206,8 @@ impl SampledProfile {
 
     /// Number of the piece at x.
     fn piece_at(&self, x: f64) -> usize {
-        let begun = self.pieces.partition_point(|piece| piece.ends[0] <= x);
-        begun.clamp(1, self.pieces.len()) - 1
+        let pieces_before = self.pieces.partition_point(|piece| piece.ends[0] <= x);
+        pieces_before.clamp(1, self.pieces.len()) - 1
     }
 
     /// Integral of the drop from a to b \[m²\], between the ends.
@@ -240,9 +240,9 @@ impl Curve {
         let x: Vec<f64> = samples.iter().map(|[x, _]| *x).collect();
         let mut values: Vec<f64> = samples.iter().map(|[_, drop]| *drop).collect();
         if let Some(wavelength) = self.smoothing {
-            let given = values.clone();
+            let drops = values.clone();
             for [first, last] in &spans {
-                let smooth = smoothed(&x[*first..=*last], &given[*first..=*last], wavelength);
+                let smooth = smoothed(&x[*first..=*last], &drops[*first..=*last], wavelength);
                 for (k, value) in (*first..).zip(smooth) {
                     // A corner has the mean of both sides.
                     let is_met = k == *first && k > 0;

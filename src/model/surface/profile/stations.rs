@@ -197,8 +197,8 @@ mod tests {
         for n in 4..12 {
             let x = uneven(n);
             let values: Vec<f64> = x.iter().map(|x| cubic(*x)).collect();
-            for (x, found) in x.iter().zip(spline(&x, &values)) {
-                assert!((found - slope(*x)).abs() < ROUNDING, "{n}: {found}");
+            for (x, spline_slope) in x.iter().zip(spline(&x, &values)) {
+                assert!((spline_slope - slope(*x)).abs() < ROUNDING, "{n}: {spline_slope}");
             }
         }
         for n in 3..12 {
@@ -206,8 +206,8 @@ mod tests {
             let parabola: Vec<f64> = x.iter().map(|x| (x - 0.4 * n as f64).powi(2)).collect();
             let mut slopes = spline(&x, &parabola);
             limit(&x, &parabola, &mut slopes);
-            for (x, found) in x.iter().zip(slopes) {
-                assert!((found - 2.0 * (x - 0.4 * n as f64)).abs() < ROUNDING, "{n}: {found}");
+            for (x, slope) in x.iter().zip(slopes) {
+                assert!((slope - 2.0 * (x - 0.4 * n as f64)).abs() < ROUNDING, "{n}: {slope}");
             }
         }
     }
