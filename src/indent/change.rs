@@ -128,8 +128,8 @@ impl Point {
         let known_at_edge = f_rate * (self.approach - depth);
         let own = self.moved(known, known_at_edge, &effect, with_excess(&change.hat));
         let fixed = self.fixed(&effect, &free, &change, own)?;
-        let given = f64::from(variable == Variable::Held);
-        let [approach, radius, load] = self.rates(&effect, &free, &fixed, held, given)?;
+        let held_rate = f64::from(variable == Variable::Held);
+        let [approach, radius, load] = self.rates(&effect, &free, &fixed, held, held_rate)?;
         // Along the curve: a punch, what the wider contact adds, and the outer radius.
         add(&mut change.values, approach, &parts.values[0]);
         add(&mut change.hat, approach, &parts.hats[0]);
@@ -201,10 +201,10 @@ impl Point {
                 });
             }
             (IndentParameter::Body(..), adhesion) => {
-                let found = stack.parameters().iter().position(|own| *own == parameter);
-                let found = found.ok_or(unknown)?;
-                effect.number = Some(found);
-                effect.short = -stack.modulus_rate(found);
+                let number = stack.parameters().iter().position(|own| *own == parameter);
+                let number = number.ok_or(unknown)?;
+                effect.number = Some(number);
+                effect.short = -stack.modulus_rate(number);
                 if matches!(adhesion, Adhesion::Jkr { .. }) && tip.fixed_radius().is_none() {
                     effect.edge = -0.5 * self.step() * effect.short;
                 }
@@ -265,20 +265,20 @@ impl Point {
         Ok(fixed)
     }
 
-    /// Derivatives of approach, radius and load where `held` changes by `given`.
+    /// Derivatives of approach, radius and load where `held` changes by `held_rate`.
     fn rates(
         &self,
         effect: &Effect,
         free: &Free,
         fixed: &Fixed,
         held: Held,
-        given: f64,
+        held_rate: f64,
     ) -> Result<[f64; 3]> {
         if self.parts.tip.fixed_radius().is_some() {
             let own = fixed.load + self.stiffness_slope * self.approach * effect.widening;
             let approach = match held {
-                Held::Approach => given,
-                Held::Load => (given - own) / free.load,
+                Held::Approach => held_rate,
+                Held::Load => (held_rate - own) / free.load,
                 Held::Radius => {
                     return Err(Error::Inconsistent(
                         "the radius of a flat punch does not give its load: hold load or approach",
@@ -291,9 +291,9 @@ impl Point {
         let load = fixed.load + free.load * approach;
         let [approach_slope, load_slope] = self.along_with(free);
         let radius = match held {
-            Held::Radius => given,
-            Held::Load => (given - load) / load_slope,
-            Held::Approach => (given - approach) / approach_slope,
+            Held::Radius => held_rate,
+            Held::Load => (held_rate - load) / load_slope,
+            Held::Approach => (held_rate - approach) / approach_slope,
         };
         Ok([approach + approach_slope * radius, radius, load + load_slope * radius])
     }

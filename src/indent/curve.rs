@@ -154,7 +154,7 @@ impl Indent {
         let is_adhering = self.adheres_within();
         let least = match is_adhering {
             true => self.pull_off(Control::Approach)?.approach,
-            // Smaller contacts than those that are computed bear nothing that is seen beside the others.
+            // Smaller contacts than those that are computed carry nothing that is seen beside the others.
             false => match self.tip().range()[0] > 0.0 {
                 true => 0.0,
                 false => self.tip().transform(self.range()[0])[0] * (1.0 + 1e-6),
@@ -329,21 +329,21 @@ impl Indent {
         let is_adhering = self.adheres_within();
         let logs = if is_adhering { 4 } else { 3 };
         let table_at = |log: f64| {
-            let found = tables.iter().find(|table| log <= table.high);
-            found.unwrap_or(&tables[tables.len() - 1])
+            let table = tables.iter().find(|table| log <= table.high);
+            table.unwrap_or(&tables[tables.len() - 1])
         };
         let at = |log: f64| -> [f64; 2] {
             let table = table_at(log);
             let weights = table.weights(log);
             let column = |k| table.column(&weights, k);
             let (value, slope) = (column(4).exp(), column(5));
-            let mut found = [value - approach, value * slope];
+            let mut imbalance = [value - approach, value * slope];
             if is_adhering {
                 let (apart, slope) = (column(6).exp(), column(7));
-                found[0] -= apart;
-                found[1] -= apart * slope;
+                imbalance[0] -= apart;
+                imbalance[1] -= apart * slope;
             }
-            found
+            imbalance
         };
         let (low, high) = (tables[0].low, tables[tables.len() - 1].high);
         let log = newton(|log| Ok(at(log)), [low, high], high)?;

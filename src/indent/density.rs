@@ -39,17 +39,17 @@ impl Density<'_> {
         let (mut cos, mut sin) = (vec![0.0; count], vec![0.0; count]);
         let value = |(k, t): (usize, &f64)| {
             let [value, slope, _] = parts.tip.transform(*t);
-            let mut found = [self.known[0] - self.known[1] * value, -self.known[1] * slope];
+            let mut density = [self.known[0] - self.known[1] * value, -self.known[1] * slope];
             if let Some(rates) = &rates {
-                found[0] -= parts.f() * rates[k][0];
-                found[1] -= parts.f() * rates[k][1];
+                density[0] -= parts.f() * rates[k][0];
+                density[1] -= parts.f() * rates[k][1];
             }
             if let Some(waves) = waves {
                 let layers = oscillating(waves, &self.g, *t, [&mut cos, &mut sin]);
-                found[0] += layers[0];
-                found[1] += layers[1];
+                density[0] += layers[0];
+                density[1] += layers[1];
             }
-            found
+            density
         };
         places.iter().enumerate().map(value).collect()
     }
@@ -80,16 +80,16 @@ impl Density<'_> {
         let parts = self.parts;
         let a = parts.system.radius;
         let [_, slope, _] = parts.tip.transform(a);
-        let mut found = -self.known[1] * slope;
+        let mut edge_slope = -self.known[1] * slope;
         if let Some(rate) = self.rate {
-            found -= parts.f() * parts.tip.rate(rate, &[a])[0][1];
+            edge_slope -= parts.f() * parts.tip.rate(rate, &[a])[0][1];
         }
         if let Some(level) = &parts.system.level {
             let waves = self.g.iter().zip(&level.waves.alpha);
             let terms = waves.zip(&parts.system.edge[1]);
-            found += 2.0 / PI * terms.map(|((g, alpha), sin)| g * alpha * sin).sum::<f64>();
+            edge_slope += 2.0 / PI * terms.map(|((g, alpha), sin)| g * alpha * sin).sum::<f64>();
         }
-        found
+        edge_slope
     }
 
     /// Pressure \[Pa\] at the distance r < a from the axis:
@@ -404,9 +404,9 @@ mod tests {
                 < 1e-14
         );
         let waves = Waves::plan(1.0, 3.0, 1.0, |alpha| (-alpha).exp());
-        for (alpha, found) in waves.alpha.iter().zip(zone.transform(WHOLE, &waves)) {
+        for (alpha, value) in waves.alpha.iter().zip(zone.transform(WHOLE, &waves)) {
             let due = -strength * c * spec_math::cephes64::j1(alpha * c) / alpha;
-            assert!((found - due).abs() < 1e-14, "{alpha}: {found} {due}");
+            assert!((value - due).abs() < 1e-14, "{alpha}: {value} {due}");
         }
         // ∫ √(c²−t²)/√(r²−t²): elliptic integrals E at r < c; r E(c... ) is π/2 · c at r → 0.
         let near_axis = zone.abel(WHOLE, 1e-6) / (-2.0 / PI * strength);

@@ -202,17 +202,17 @@ impl Indent {
             value,
         };
         let range = [low, high];
-        let found = match self.nearest(control, value, floor, range) {
+        let contact = match self.nearest(control, value, floor, range) {
             Ok(Some(point)) => point.check_disc().map(|()| point),
             // The caller gave no radius.
             Ok(None) | Err(Error::Parameter { name: "radius", .. }) => Err(too_large),
             Err(error) => Err(error),
         };
-        match found {
+        match contact {
             Err(error @ (Error::Ring | Error::NoState(_) | Error::Inconsistent(_))) => {
                 self.other(control, value, range)?.ok_or(error)
             }
-            found => found,
+            contact => contact,
         }
     }
 
@@ -242,10 +242,10 @@ impl Indent {
         let mut last = None;
         let error = |log: f64| {
             let point = self.state(log.exp().max(smallest))?;
-            let found = point.given(control) - value;
+            let excess = point.value(control) - value;
             let slope = control.of(point.along()) * point.radius;
             last = Some(point);
-            Ok([found, slope])
+            Ok([excess, slope])
         };
         let log = newton(error, [low.ln(), top.ln()], top.ln())?;
         let point = match last {
@@ -256,7 +256,7 @@ impl Indent {
         if let Some(floor) = floor
             && !is_flat
         {
-            let missed = (point.given(control) - value).abs();
+            let missed = (point.value(control) - value).abs();
             let requirement =
                 "at least that of a contact of 1e-9 of the end radius or of the top layer";
             let is_met = missed <= MISSED * value.abs().max(floor.abs());
@@ -275,7 +275,7 @@ impl Indent {
 
     /// What is given of the contact of radius `a`.
     fn value(&self, control: Control, a: f64) -> Result<f64> {
-        Ok(self.state(a)?.given(control))
+        Ok(self.state(a)?.value(control))
     }
 
     /// The contact at a `value` that is a disc, where load and approach are no monotone functions of its radius: the smallest one,
@@ -289,17 +289,17 @@ impl Indent {
         let size = value.abs().max((last + value).abs());
         while log < high {
             let next = (log + STEP).min(high);
-            let found = error(next)?;
-            if (found > 0.0) != (last > 0.0) {
+            let excess = error(next)?;
+            if (excess > 0.0) != (last > 0.0) {
                 let point = self.state(bracketed(error, [log, next])?.exp())?;
                 if point.check_disc().is_ok() {
                     return Ok(Some(point));
                 }
             }
-            if found > PASSED * size {
+            if excess > PASSED * size {
                 break;
             }
-            (log, last) = (next, found);
+            (log, last) = (next, excess);
         }
         Ok(None)
     }

@@ -52,8 +52,8 @@ impl Point {
         }
     }
 
-    /// What was given of load and approach.
-    pub(super) fn given(&self, control: Control) -> f64 {
+    /// Load or approach, whichever is controlled.
+    pub(super) fn value(&self, control: Control) -> f64 {
         control.of([self.approach, self.load])
     }
 

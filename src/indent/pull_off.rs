@@ -15,7 +15,7 @@ const SCAN: f64 = 4.0;
 /// some 1, one of a thickness h on a rigid base at some √(h/a).
 const SHALLOWEST: f64 = 3e-3;
 
-/// That depth for the softest response, up to which it is looked for: an rⁿ of n ≥ 1/2 bears no load at 1 + 1/n.
+/// That depth for the softest response, up to which it is looked for: an rⁿ of n ≥ 1/2 carries no load at 1 + 1/n.
 const DEEPEST: f64 = 3.0;
 
 /// Rise from the least load or approach, relative to it, after which no other one is looked for on a stack that is softest at its
@@ -35,8 +35,8 @@ impl Indent {
         if let Some(known) = cell.get() {
             return Ok(known.clone());
         }
-        let found = self.find_pull_off(control)?;
-        Ok(cell.get_or_init(|| found).clone())
+        let pull_off = self.find_pull_off(control)?;
+        Ok(cell.get_or_init(|| pull_off).clone())
     }
 
     fn find_pull_off(&self, control: Control) -> Result<PullOff> {
@@ -72,7 +72,7 @@ impl Indent {
                 let apart = self.least_apart(control, [work, strength])?;
                 let least = control.of([apart.approach, apart.load]);
                 match self.least(control) {
-                    Ok(point) if point.given(control) < least => Ok(touching(point)),
+                    Ok(point) if point.value(control) < least => Ok(touching(point)),
                     _ => Ok(PullOff {
                         control,
                         load: apart.load,
@@ -125,7 +125,7 @@ impl Indent {
         let (mut start, mut least) = (log - 3.0, f64::INFINITY);
         while log.exp() < high {
             let state = self.state_from(log.exp(), &mut start);
-            let value = state.map_or(f64::INFINITY, |point| point.given(control));
+            let value = state.map_or(f64::INFINITY, |point| point.value(control));
             places.push(log);
             values.push(value);
             least = least.min(value);
@@ -140,18 +140,18 @@ impl Indent {
         let mut minima: Vec<usize> =
             inner.filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1]).collect();
         minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let mut found = Err(Error::NoState(
+        let mut point = Err(Error::NoState(
             "the load and the approach have no minimum within the radii that can be computed",
         ));
         // A minimum at which the contact is no disc is no state.
         for k in minima {
             let bracket = [places[k + 1], places[k - 1]];
-            found = self.minimum(control, bracket, &mut start);
-            if found.is_ok() {
+            point = self.minimum(control, bracket, &mut start);
+            if point.is_ok() {
                 break;
             }
         }
-        found
+        point
     }
 
     /// The contact of least load or approach between two logarithms of the radius.
@@ -163,7 +163,7 @@ impl Indent {
             // A central difference, whose error moves a minimum by 1e-6 of its width and its value by the square.
             let low = self.state_from((log - DIFFERENCE).exp(), start)?;
             let high = self.state_from((log + DIFFERENCE).exp(), start)?;
-            Ok(high.given(control) - low.given(control))
+            Ok(high.value(control) - low.value(control))
         };
         let log = bracketed(slope, bracket)?;
         let point = self.state(log.exp())?;
@@ -206,10 +206,10 @@ impl Indent {
             ));
         };
         positive("outer radius", outer)?;
-        let found = Apart::new(&self.stack, &self.tip, outer, [work, strength]);
+        let apart = Apart::new(&self.stack, &self.tip, outer, [work, strength]);
         let requirement = "at most that at which the tip begins to touch";
-        require("outer radius", outer, found.gap >= 0.0, requirement)?;
-        Ok(found)
+        require("outer radius", outer, apart.gap >= 0.0, requirement)?;
+        Ok(apart)
     }
 
     /// Work of adhesion \[J/m²\] of which this tip is pulled off by a `force` \[N\], the largest one or that under a given approach;
@@ -235,7 +235,7 @@ impl Indent {
         });
         let start = (force / (1.5 * PI * size)).ln();
         let (mut low, mut high) = (start - 1.0, start + 1.0);
-        let mut found = || {
+        let mut find_logarithm = || {
             while ratio(low)? > 0.0 {
                 low -= 1.0;
             }
@@ -246,7 +246,7 @@ impl Indent {
         };
         self.clone().with_adhesion(with(1.0))?;
         // The caller gave no work and no radius.
-        let log = found().map_err(|_| Error::Parameter {
+        let log = find_logarithm().map_err(|_| Error::Parameter {
             name: "force",
             requirement: "that of a contact within the radii that can be computed",
             value: force,

@@ -552,11 +552,11 @@ mod tests {
                     };
                     let (low, high) = (step(-1e-5)?, step(1e-5)?);
                     let size = tip.numbers()[number].1;
-                    let [found, of_slope] =
+                    let [of_value, of_slope] =
                         tip.rate(TipParameter::Number(number), &[s])[0].map(|rate| rate * size);
                     let (low, high) = (low.transform(s), high.transform(s));
                     assert!(
-                        (found - (high[0] - low[0]) / 2e-5).abs() < 1e-7,
+                        (of_value - (high[0] - low[0]) / 2e-5).abs() < 1e-7,
                         "{tip:?} {s} {number}"
                     );
                     assert!(
@@ -564,7 +564,7 @@ mod tests {
                         "{tip:?} {s} {number}"
                     );
                 }
-                let [found, of_slope] = tip.rate(TipParameter::Area, &[s])[0];
+                let [of_value, of_slope] = tip.rate(TipParameter::Area, &[s])[0];
                 // F of g(r/√κ) is F(s/√κ).
                 let at = |part: f64| {
                     let root = (1.0 + part).sqrt();
@@ -572,7 +572,7 @@ mod tests {
                     [value, slope / root]
                 };
                 let (low, high) = (at(-1e-5), at(1e-5));
-                assert!((found - (high[0] - low[0]) / 2e-5).abs() < 1e-7, "{tip:?} {s}");
+                assert!((of_value - (high[0] - low[0]) / 2e-5).abs() < 1e-7, "{tip:?} {s}");
                 assert!((of_slope - (high[1] - low[1]) / 2e-5).abs() < 1e-6, "{tip:?} {s}");
             }
         }

@@ -353,8 +353,8 @@ mod tests {
                 rule.around(0.75, 0.75, |t| second(t) * (alpha * t).cos()),
                 rule.around(0.75, 0.75, |t| first(t) * (alpha * t).cos()),
             ];
-            for (found, due) in [rows[2][q], rows[1][q]].iter().zip(due) {
-                assert!((found - due).abs() < 1e-13, "{alpha}: {found} {due}");
+            for (transform, due) in [rows[2][q], rows[1][q]].iter().zip(due) {
+                assert!((transform - due).abs() < 1e-13, "{alpha}: {transform} {due}");
             }
         }
     }

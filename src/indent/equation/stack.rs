@@ -97,7 +97,7 @@ impl Stack {
         let ends = |body: &Body| body.half_space().is_some_and(|body| body.ends() != [None; 2]);
         refuse_if(
             bodies.iter().any(ends),
-            "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
+            "bodies that are indented must extend on all sides: leave out their ends, or use nacre.solve",
         )?;
         let tops = bodies.iter().filter_map(|body| body.lengths()).map(|[top, _]| top);
         let (mut parameters, mut short_rates) = (Vec::new(), Vec::new());

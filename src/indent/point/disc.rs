@@ -118,8 +118,9 @@ fn least(places: &[f64], mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
 }
 
 impl Point {
-    /// An error where the contact is no disc: a pressure below 0, of a cohesive zone below −σ₀, within a contact that bears no more,
-    /// or surfaces that overlap outside, of which those beyond a zone are apart by more than w/σ₀, and those in it by less.
+    /// An error where the contact is no disc: a pressure below 0, of a cohesive zone below −σ₀, within a contact that
+    /// carries no more, or surfaces that overlap outside, of which those beyond a zone are apart by more than w/σ₀, and
+    /// those in it by less.
     pub(in crate::indent) fn check_disc(&self) -> Result<()> {
         let tip = &self.parts.tip;
         // The pressure of a bare body below a convex tip falls outwards.
@@ -188,7 +189,7 @@ impl Point {
         inside.into_iter().step_by(step).collect()
     }
 
-    /// Whether the pressure is nowhere below what the surfaces bear.
+    /// Whether the pressure is nowhere below what the surfaces carry.
     fn is_pressed(&self, layers: &Layers) -> Result<bool> {
         if matches!(self.adhesion, Adhesion::Jkr { .. }) {
             return Ok(true);
