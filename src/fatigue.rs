@@ -91,35 +91,35 @@ pub fn shakedown(history: &[State], rule: YieldRule) -> Result<Shakedown> {
                 })
                 .collect();
             let scale = std::f64::consts::FRAC_1_SQRT_2;
-            let found = mirrored(&points, scale);
-            let [a, b, _] = found.centre;
+            let ball = mirrored_ball(&points, scale);
+            let [a, b, _] = ball.centre;
             let [one, other] = [6.0_f64.sqrt() * a, 2.0_f64.sqrt() * b];
-            found.with([0.5 * (other - one), -0.5 * (one + other)])
+            ball.with([0.5 * (other - one), -0.5 * (one + other)])
         }
         YieldRule::InPlaneTresca => {
             let point = |state: &State| [0.5 * (state[1] - state[2]), state[4].abs()];
             let points: Vec<[f64; 2]> = history.iter().map(point).collect();
-            let found = mirrored(&points, 1.0);
-            found.with([0.0, -2.0 * found.centre[0]])
+            let ball = mirrored_ball(&points, 1.0);
+            ball.with([0.0, -2.0 * ball.centre[0]])
         }
     })
 }
 
 /// The smallest ball of points and their mirror images in the last coordinate.
-struct Mirrored<const N: usize> {
+struct MirroredBall<const N: usize> {
     centre: [f64; N],
     radius: f64,
     largest: f64,
     at: [usize; 2],
 }
 
-impl<const N: usize> Mirrored<N> {
+impl<const N: usize> MirroredBall<N> {
     fn with(&self, residual: [f64; 2]) -> Shakedown {
         Shakedown { shear_yield: self.radius, residual, first_yield: self.largest, at: self.at }
     }
 }
 
-fn mirrored<const N: usize>(points: &[[f64; N]], scale: f64) -> Mirrored<N> {
+fn mirrored_ball<const N: usize>(points: &[[f64; N]], scale: f64) -> MirroredBall<N> {
     let image = |point: &[f64; N]| {
         let mut image = *point;
         image[N - 1] = -image[N - 1];
@@ -128,13 +128,13 @@ fn mirrored<const N: usize>(points: &[[f64; N]], scale: f64) -> Mirrored<N> {
     let both: Vec<[f64; N]> = points.iter().copied().chain(points.iter().map(image)).collect();
     let ball = smallest_ball(&both);
     let far = |at: &usize| norm(&points[*at]);
-    let largest = |found: &mut dyn Iterator<Item = usize>| {
-        found.fold(0, |best, next| if far(&next) > far(&best) { next } else { best })
+    let largest = |numbers: &mut dyn Iterator<Item = usize>| {
+        numbers.fold(0, |best, next| if far(&next) > far(&best) { next } else { best })
     };
     let support = ball.support.iter().map(|k| k % points.len());
     let decides = support.reduce(|best, next| if far(&next) > far(&best) { next } else { best });
     let first = largest(&mut (0..points.len()));
-    Mirrored {
+    MirroredBall {
         centre: ball.centre,
         radius: scale * ball.radius,
         largest: scale * far(&first),
@@ -213,19 +213,19 @@ mod tests {
     #[test]
     fn the_residual_stresses_are_the_best() -> crate::Result<()> {
         for rule in [YieldRule::VonMises, YieldRule::InPlaneTresca] {
-            let found = shakedown(&STATES, rule)?;
+            let limit = shakedown(&STATES, rule)?;
             let with = |[x, y]: [f64; 2]| {
                 let moved = STATES.map(|s| [s[0] + x, s[1] + y, s[2], s[3], s[4], s[5]]);
                 shakedown(&moved, rule)
             };
-            let best = with(found.residual)?;
-            assert!((best.first_yield / found.shear_yield - 1.0).abs() < 1e-14);
-            assert!((best.shear_yield / found.shear_yield - 1.0).abs() < 1e-14);
+            let best = with(limit.residual)?;
+            assert!((best.first_yield / limit.shear_yield - 1.0).abs() < 1e-14);
+            assert!((best.shear_yield / limit.shear_yield - 1.0).abs() < 1e-14);
             for [x, y] in
                 [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1], [0.1, 0.1], [0.1, -0.1]]
             {
-                let other = with([found.residual[0] + x, found.residual[1] + y])?;
-                assert!(other.first_yield > found.shear_yield * (1.0 - 1e-14));
+                let other = with([limit.residual[0] + x, limit.residual[1] + y])?;
+                assert!(other.first_yield > limit.shear_yield * (1.0 - 1e-14));
             }
         }
         Ok(())

@@ -64,8 +64,8 @@ impl<'a> Planes<'a> {
     /// The plane of the largest τ_a + k σ_n.
     pub(super) fn findley(&self, factor: f64) -> Plane {
         let value = |plane: &Plane| plane.shear + factor * plane.tension;
-        let found = self.maxima(&value);
-        found
+        let maxima = self.maxima(&value);
+        maxima
             .into_iter()
             .reduce(|a, b| if value(&b) > value(&a) { b } else { a })
             .unwrap_or(self.at(Z))
@@ -75,11 +75,11 @@ impl<'a> Planes<'a> {
     /// τ_a is below, 1 where there is none.
     pub(super) fn matake(&self) -> (Plane, f64) {
         let value = |plane: &Plane| plane.shear;
-        let found = self.maxima(&value);
-        let highest = found.iter().map(value).fold(0.0, f64::max);
+        let maxima = self.maxima(&value);
+        let highest = maxima.iter().map(value).fold(0.0, f64::max);
         let least = highest * (1.0 - TIE) - self.rounding;
         let (equal, others): (Vec<Plane>, Vec<Plane>) =
-            found.into_iter().partition(|plane| plane.shear >= least);
+            maxima.into_iter().partition(|plane| plane.shear >= least);
         let next = others.iter().map(value).fold(0.0, f64::max);
         let gap = if highest > self.rounding { 1.0 - next / highest } else { 1.0 };
         let is_curve = equal.len() > ISOLATED && highest > self.rounding;
@@ -122,17 +122,17 @@ impl<'a> Planes<'a> {
             }
         }
         let [first, second, last] = STEPS;
-        let mut found: Vec<Plane> = Vec::new();
+        let mut maxima: Vec<Plane> = Vec::new();
         for start in starts {
             let plane = self.climbed(start, [first, second], value);
-            if !found.iter().any(|other| dot(&other.normal, &plane.normal).abs() > SAME.cos()) {
-                found.push(plane);
+            if !maxima.iter().any(|other| dot(&other.normal, &plane.normal).abs() > SAME.cos()) {
+                maxima.push(plane);
             }
         }
-        let highest = found.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-        let shear = found.iter().map(|plane| plane.shear).fold(0.0, f64::max);
-        found.retain(|plane| value(plane) >= highest - CLOSE * shear - self.rounding);
-        found.into_iter().map(|plane| self.climbed(plane, [second, last], value)).collect()
+        let highest = maxima.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        let shear = maxima.iter().map(|plane| plane.shear).fold(0.0, f64::max);
+        maxima.retain(|plane| value(plane) >= highest - CLOSE * shear - self.rounding);
+        maxima.into_iter().map(|plane| self.climbed(plane, [second, last], value)).collect()
     }
 
     /// The maximum near a plane, by a search in directions that turn, which does not stop at a kink: six in turn, with
