@@ -129,7 +129,7 @@ impl<'a> Linearisation<'a> {
         }
         let adjoint = |seed: &Seed| self.saddle(&seed.pressure, seed.motion);
         let adjoints: Vec<Saddle> = seeds.iter().map(adjoint).collect::<Result<_>>()?;
-        let mut found: Vec<Gradient> = (outputs.iter().zip(&seeds).zip(&adjoints))
+        let mut gradients: Vec<Gradient> = (outputs.iter().zip(&seeds).zip(&adjoints))
             .map(|((output, seed), adjoint)| self.gradient_of(output, seed, adjoint))
             .collect();
         let cells = seeds.iter().flat_map(|seed| &seed.displaced);
@@ -137,7 +137,7 @@ impl<'a> Linearisation<'a> {
         for parameter in &parameters {
             let slope = self.slope(parameter, &cells)?;
             let parts = seeds.iter().zip(&adjoints).zip(&stresses);
-            for (gradient, ((seed, adjoint), stress)) in found.iter_mut().zip(parts) {
+            for (gradient, ((seed, adjoint), stress)) in gradients.iter_mut().zip(parts) {
                 let mut value = self.derivative(seed, adjoint, &slope, parameter);
                 if let Some(stress) = stress {
                     self.options.go_on()?;
@@ -146,7 +146,7 @@ impl<'a> Linearisation<'a> {
                 gradient.values.push((parameter.clone(), value));
             }
         }
-        for (gradient, stress) in found.iter_mut().zip(&stresses) {
+        for (gradient, stress) in gradients.iter_mut().zip(&stresses) {
             if let Some(stress) = stress
                 && stress.slides(self.solution)
                 && wrt.is_none_or(|paths| paths.contains(&"friction"))
@@ -155,7 +155,7 @@ impl<'a> Linearisation<'a> {
                 gradient.values.push((Parameter::Friction, value));
             }
         }
-        Ok(found)
+        Ok(gradients)
     }
 
     /// [`Linearisation::gradients`] of one output.
@@ -163,8 +163,8 @@ impl<'a> Linearisation<'a> {
     /// # Errors
     /// As [`Linearisation::gradients`].
     pub fn gradient(&self, output: &Output, wrt: Option<&[&str]>) -> Result<Gradient> {
-        let mut found = self.gradients(std::slice::from_ref(output), wrt)?;
-        Ok(found.remove(0))
+        let mut gradients = self.gradients(std::slice::from_ref(output), wrt)?;
+        Ok(gradients.remove(0))
     }
 
     fn saddle(&self, right: &[f64], balance: [f64; 3]) -> Result<Saddle> {

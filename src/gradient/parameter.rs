@@ -114,8 +114,8 @@ pub(super) fn named(
     paths: &[&str],
 ) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
-        let found = known.iter().find(|one| one.to_string() == **path);
-        found.cloned().ok_or_else(|| refusal(solution, path, known))
+        let parameter = known.iter().find(|one| one.to_string() == **path);
+        parameter.cloned().ok_or_else(|| refusal(solution, path, known))
     };
     paths.iter().map(find).collect()
 }

@@ -244,8 +244,8 @@ impl Seed {
                 let at = [solution.grid().x()[cell[0]], solution.grid().y()[cell[1]]];
                 let moved = |[delta, sx, sy]: [f64; 3]| delta + sx * at[0] + sy * at[1];
                 // The undeformed gap, from the fields of the solution.
-                let given = [solution.approach, solution.tilt[0], solution.tilt[1]];
-                let undeformed = solution.gap()[cell] - solution.displacement[cell] + moved(given);
+                let motion = [solution.approach, solution.tilt[0], solution.tilt[1]];
+                let undeformed = solution.gap()[cell] - solution.displacement[cell] + moved(motion);
                 if !undeformed.is_finite() {
                     return Err(Error::no_derivative(
                         "the gap",
@@ -291,15 +291,15 @@ fn axis_of(axis: usize) -> Result<usize> {
 
 /// The largest and the second largest of `values`, with their numbers.
 pub(super) fn largest(values: &[f64]) -> [(usize, f64); 2] {
-    let mut found = [(0, f64::NEG_INFINITY); 2];
+    let mut largest_two = [(0, f64::NEG_INFINITY); 2];
     for (k, &value) in values.iter().enumerate() {
-        if value > found[0].1 {
-            found = [(k, value), found[0]];
-        } else if value > found[1].1 {
-            found[1] = (k, value);
+        if value > largest_two[0].1 {
+            largest_two = [(k, value), largest_two[0]];
+        } else if value > largest_two[1].1 {
+            largest_two[1] = (k, value);
         }
     }
-    found
+    largest_two
 }
 
 /// Distance from the edge, in cells, of the pressures that set the level.
@@ -491,7 +491,7 @@ pub enum Measure {
     Principal(usize),
     /// Half the difference of the largest and the smallest principal stress.
     MaxShear,
-    /// Traction √(σ_xz² + σ_yz²) along the plane z = const, which an interface bears.
+    /// Traction √(σ_xz² + σ_yz²) along the plane z = const, which an interface carries.
     PlaneShear,
 }
 

@@ -26,8 +26,8 @@ const ROUNDING: f64 = 1e-13;
 /// Difference between the displacement of a solution and that of its pressure, relative to the largest.
 const OTHER_DISPLACEMENT: f64 = 1e-5;
 
-/// Asked before each iteration of a linear solve whether to continue.
-pub(super) type Asked<'a> = Option<&'a dyn Fn() -> ControlFlow<()>>;
+/// Callback before each iteration of a linear solve that says whether to continue.
+pub(super) type StopCheck<'a> = Option<&'a dyn Fn() -> ControlFlow<()>>;
 
 /// A contact linearised at its solution. Arrays are those of the tangent's window, in C order.
 pub(super) struct Linearised {
@@ -64,7 +64,7 @@ pub(super) struct Saddle {
 
 impl Linearised {
     /// Polishes `solution`.
-    pub(super) fn new(solution: &Solution, watch: Asked) -> Result<Self> {
+    pub(super) fn new(solution: &Solution, watch: StopCheck) -> Result<Self> {
         check(solution)?;
         let grid = solution.grid();
         let shape = grid.shape();
@@ -77,12 +77,12 @@ impl Linearised {
         });
         let motion = [solution.approach, solution.tilt[0], solution.tilt[1]];
         let tangent = Tangent::plan(solution, window)?;
-        let asked = &solution.report.motion;
-        let load = asked.load.unwrap_or(0.0);
-        let mut loaded = [asked.load.is_some(), false, false];
+        let control = &solution.report.motion;
+        let load = control.load.unwrap_or(0.0);
+        let mut loaded = [control.load.is_some(), false, false];
         let mut target = [load / grid.cell_area(), 0.0, 0.0];
         for axis in 0..2 {
-            let moment = asked.moment[axis].or(asked.eccentricity[axis].map(|e| e * load));
+            let moment = control.moment[axis].or(control.eccentricity[axis].map(|e| e * load));
             loaded[axis + 1] = moment.is_some();
             target[axis + 1] = moment.unwrap_or(0.0) / grid.cell_area();
         }
@@ -148,7 +148,7 @@ impl Linearised {
     }
 
     /// Makes pressure and motion exact on the contact, from which cells may leave, and which they may join.
-    fn polish(&mut self, undeformed: &[f64], watch: Asked) -> Result<()> {
+    fn polish(&mut self, undeformed: &[f64], watch: StopCheck) -> Result<()> {
         for _ in 0..ROUNDS {
             self.plan_columns()?;
             for _ in 0..PASSES {
@@ -261,7 +261,7 @@ impl Linearised {
         right: &[f64],
         balance: [f64; 3],
         tolerance: f64,
-        watch: Asked,
+        watch: StopCheck,
     ) -> Result<Saddle> {
         let balance = self.tangent.to_scaled(balance);
         let mut psi = vec![0.0; right.len()];
@@ -282,8 +282,8 @@ impl Linearised {
         }
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
         let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
-        let found = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
-        psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
+        let correction = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
+        psi.iter_mut().zip(correction).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
         image.iter_mut().zip(right).for_each(|(image, r)| *image -= r);
         let mut scaled = [0.0; 3];

@@ -91,13 +91,13 @@ fn planes(
     friction: f64,
 ) -> Result<Vec<Weights>> {
     let plan = solution.uniform_stress_plan(output.member, body, pressure)?;
-    let mut found = Vec::new();
+    let mut fields_by_plane = Vec::new();
     for (z, side) in depths(body, &output.place)? {
         let field = plan.stress(&[z], &options(solution, output, friction, side))?;
         let flat = |component: ndarray::Array3<f64>| component.iter().copied().collect();
-        found.push(field.components.map(flat));
+        fields_by_plane.push(field.components.map(flat));
     }
-    Ok(found)
+    Ok(fields_by_plane)
 }
 
 impl StressSeed {
@@ -140,9 +140,9 @@ impl StressSeed {
 
     /// Σ w σ of planes of another body or friction.
     fn weighted(&self, solution: &Solution, body: &HalfSpace, friction: f64) -> Result<f64> {
-        let found = planes(solution, &self.output, body, &self.pressure, friction)?;
+        let fields_by_plane = planes(solution, &self.output, body, &self.pressure, friction)?;
         let mut sum = 0.0;
-        for (plane, fields) in self.planes.iter().zip(&found) {
+        for (plane, fields) in self.planes.iter().zip(&fields_by_plane) {
             for (weights, field) in plane.weights.iter().zip(fields) {
                 sum += weights.iter().zip(field).map(|(w, s)| w * s).sum::<f64>();
             }
@@ -207,8 +207,8 @@ fn at_point(
             *sum += weight * field[i * ny + j];
         }
     }
-    let found = measured(output.measure, stress);
-    if found.is_repeated {
+    let measure = measured(output.measure, stress);
+    if measure.is_repeated {
         return Err(Error::no_derivative(
             "the principal stress",
             "it is repeated there, where its directions are undetermined; take von Mises' stress or a component",
@@ -216,11 +216,11 @@ fn at_point(
     }
     let mut weights: Weights = std::array::from_fn(|k| vec![0.0; fields[k].len()]);
     for ([i, j], weight) in cells {
-        for (weights, slope) in weights.iter_mut().zip(found.slopes) {
+        for (weights, slope) in weights.iter_mut().zip(measure.slopes) {
             weights[i * ny + j] = weight * slope;
         }
     }
-    Ok((found.value, weights))
+    Ok((measure.value, weights))
 }
 
 /// Order q of the mean that stands for the largest stress: it is below it by the q-th root of the number of cells, a
@@ -277,9 +277,9 @@ fn soft_maximum(
             if share.abs() < NEGLIGIBLE * largest {
                 continue;
             }
-            let found = measured(output.measure, stress(plane, k));
-            repeated |= found.is_repeated;
-            for (weights, slope) in weights.iter_mut().zip(found.slopes) {
+            let measure = measured(output.measure, stress(plane, k));
+            repeated |= measure.is_repeated;
+            for (weights, slope) in weights.iter_mut().zip(measure.slopes) {
                 weights[k] = share * slope;
             }
         }
