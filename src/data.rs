@@ -22,7 +22,7 @@ use crate::model::surface::{
 macro_rules! value {
     (
         $kind:ident by $data:ident { $($(#[$meta:meta])* $field:ident: $type:ty = $read:expr;)* }
-        $of:ident, $given:ident => $make:expr
+        $of:ident, $fields:ident => $make:expr
     ) => {
         #[derive(Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
@@ -39,7 +39,7 @@ macro_rules! value {
 
         impl<'de> Deserialize<'de> for $kind {
             fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
-                let $given = $data::deserialize(data)?;
+                let $fields = $data::deserialize(data)?;
                 let make = || -> Result<Self> { $make };
                 make().map_err(D::Error::custom)
             }
@@ -49,7 +49,7 @@ macro_rules! value {
 
 value! {
     Elastic by ElasticData { young: f64 = of.young(); poisson: f64 = of.poisson(); }
-    of, given => Self::new(given.young, given.poisson)
+    of, fields => Self::new(fields.young, fields.poisson)
 }
 
 value! {
@@ -57,7 +57,7 @@ value! {
         normal: Option<f64> = of.normal();
         tangential: Option<f64> = of.tangential();
     }
-    of, given => Self::new(given.normal, given.tangential)
+    of, fields => Self::new(fields.normal, fields.tangential)
 }
 
 /// A word, or the numbers of a spring.
@@ -113,9 +113,9 @@ value! {
         interface: Interface = of.interface();
         name: Option<String> = of.name().map(String::from);
     }
-    of, given => {
-        let layer = Self::new(given.material, given.thickness)?.with_interface(given.interface);
-        match given.name {
+    of, fields => {
+        let layer = Self::new(fields.material, fields.thickness)?.with_interface(fields.interface);
+        match fields.name {
             Some(name) => layer.with_name(name),
             None => Ok(layer),
         }
@@ -130,7 +130,7 @@ value! {
         #[serde(default, skip_serializing_if = "goes_on")]
         ends: [Option<f64>; 2] = of.ends();
     }
-    of, given => Self::new(given.substrate, given.layers)?.with_ends(given.ends)
+    of, fields => Self::new(fields.substrate, fields.layers)?.with_ends(fields.ends)
 }
 
 /// Whether a body has no free end.
@@ -153,12 +153,12 @@ value! {
         #[serde(default, skip_serializing_if = "is_open")]
         periodic: [bool; 2] = of.is_periodic();
     }
-    of, given => {
-        let grid = match given.shape {
-            [1, cells] => Self::line(cells, given.size[1])?,
-            shape => Self::new(shape, given.size)?,
+    of, fields => {
+        let grid = match fields.shape {
+            [1, cells] => Self::line(cells, fields.size[1])?,
+            shape => Self::new(shape, fields.size)?,
         };
-        grid.centered_at(given.center)?.periodic(given.periodic)
+        grid.centered_at(fields.center)?.periodic(fields.periodic)
     }
 }
 
@@ -168,8 +168,8 @@ value! {
         counter_radius_x: Option<f64> = of.counter_radii()[0];
         counter_radius_y: Option<f64> = of.counter_radii()[1];
     }
-    of, given => Self::new(given.radius)?
-        .with_counter_radii([given.counter_radius_x, given.counter_radius_y])
+    of, fields => Self::new(fields.radius)?
+        .with_counter_radii([fields.counter_radius_x, fields.counter_radius_y])
 }
 
 value! {
@@ -179,8 +179,8 @@ value! {
         counter_radius_x: Option<f64> = of.counter_radii()[0];
         counter_radius_y: Option<f64> = of.counter_radii()[1];
     }
-    of, given => Self::new(given.radius_x, given.radius_y)?
-        .with_counter_radii([given.counter_radius_x, given.counter_radius_y])
+    of, fields => Self::new(fields.radius_x, fields.radius_y)?
+        .with_counter_radii([fields.counter_radius_x, fields.counter_radius_y])
 }
 
 value! {
@@ -188,9 +188,9 @@ value! {
         radius: f64 = of.radius();
         counter_radius: Option<f64> = of.counter_radius();
     }
-    of, given => {
-        let cylinder = Self::new(given.radius)?;
-        match given.counter_radius {
+    of, fields => {
+        let cylinder = Self::new(fields.radius)?;
+        match fields.counter_radius {
             Some(radius) => cylinder.with_counter_radius(radius),
             None => Ok(cylinder),
         }
@@ -199,7 +199,7 @@ value! {
 
 value! {
     FlatPunch by FlatPunchData { radius: f64 = of.radius(); }
-    of, given => Self::new(given.radius)
+    of, fields => Self::new(fields.radius)
 }
 
 value! {
@@ -207,7 +207,7 @@ value! {
         flat_length: f64 = of.flat_length();
         crown_radius: f64 = of.crown_radius();
     }
-    of, given => Self::new(given.flat_length, given.crown_radius)
+    of, fields => Self::new(fields.flat_length, fields.crown_radius)
 }
 
 value! {
@@ -217,7 +217,7 @@ value! {
         flat_length: f64 = of.flat_length();
         end_factor: f64 = of.end_factor();
     }
-    of, given => Self::new(given.amplitude, given.length, given.flat_length, given.end_factor)
+    of, fields => Self::new(fields.amplitude, fields.length, fields.flat_length, fields.end_factor)
 }
 
 value! {
@@ -229,12 +229,12 @@ value! {
         corners: Vec<f64> = of.corners().to_vec();
         smoothing: Option<f64> = of.smoothing();
     }
-    of, given => {
-        let mut profile = Self::new(&given.x, &given.drop)?.with_corners(&given.corners)?;
-        if !given.smooth {
+    of, fields => {
+        let mut profile = Self::new(&fields.x, &fields.drop)?.with_corners(&fields.corners)?;
+        if !fields.smooth {
             profile = profile.straight();
         }
-        match given.smoothing {
+        match fields.smoothing {
             Some(wavelength) => profile.smoothed(wavelength),
             None => Ok(profile),
         }
@@ -250,15 +250,15 @@ value! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         apex: Option<f64> = of.apex();
     }
-    of, given => {
-        let mut roller = Self::with_profile(given.radius, given.profile)?;
-        if let Some(length) = given.length {
+    of, fields => {
+        let mut roller = Self::with_profile(fields.radius, fields.profile)?;
+        if let Some(length) = fields.length {
             roller = roller.with_length(length)?;
         }
-        if let Some(radius) = given.counter_radius {
+        if let Some(radius) = fields.counter_radius {
             roller = roller.with_counter_radius(radius)?;
         }
-        match given.apex {
+        match fields.apex {
             Some(apex) => roller.with_apex(apex),
             None => Ok(roller),
         }
@@ -274,14 +274,14 @@ value! {
         #[serde(default, skip_serializing_if = "is_open")]
         periodic: [bool; 2] = of.is_periodic();
     }
-    of, given => {
-        let shape = [given.heights.len(), given.heights.first().map_or(0, Vec::len)];
-        let heights = Array2::from_shape_vec(shape, given.heights.concat()).map_err(|_| {
+    of, fields => {
+        let shape = [fields.heights.len(), fields.heights.first().map_or(0, Vec::len)];
+        let heights = Array2::from_shape_vec(shape, fields.heights.concat()).map_err(|_| {
             Error::Inconsistent("heights must be rows of the same length")
         })?;
-        Self::new(heights, given.spacing)?
-            .centered_at(given.center)?
-            .periodic(given.periodic)
+        Self::new(heights, fields.spacing)?
+            .centered_at(fields.center)?
+            .periodic(fields.periodic)
     }
 }
 
@@ -341,8 +341,8 @@ impl<'de> Deserialize<'de> for Warning {
             let reason = *REASONS.get(axis)?;
             Some(Self::Unestimated { reason }).filter(|warning| warning.kind() == kind)
         };
-        let found = all.iter().find(|warning| warning.kind() == kind);
-        found
+        let warning = all.iter().find(|warning| warning.kind() == kind);
+        warning
             .copied()
             .or_else(unestimated)
             .ok_or_else(|| D::Error::custom(format!("no warning is of the kind {kind:?}")))

@@ -211,7 +211,7 @@ pub enum Error {
         /// Period along y \[m\].
         period: f64,
     },
-    /// A body that ends where the shape that it carries goes on.
+    /// A body that ends where the shape that it carries extends beyond it.
     #[error(
         "ends of the counterbody must not lie within the shape that it carries: it ends at x = {end:e}, and the shape \
          at {shape:e}"
@@ -270,7 +270,7 @@ pub enum Error {
         /// The approach of full contact \[m\].
         most: f64,
     },
-    /// A load above what the surfaces bear at their hardness.
+    /// A load above what the surfaces carry at their hardness.
     #[error(
         "load must be below what the hardness can carry on the cells that can touch, {}, was {}: where all of them \
          yield, no approach is determined", plain(*bears), plain(*load)
@@ -431,8 +431,8 @@ pub(crate) fn same_shape<T>(
     expected: [usize; 2],
 ) -> Result<()> {
     match array.dim().into() {
-        found if found == expected => Ok(()),
-        found => Err(Error::Shape { name, expected, found }),
+        shape if shape == expected => Ok(()),
+        shape => Err(Error::Shape { name, expected, found: shape }),
     }
 }
 
