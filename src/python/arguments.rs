@@ -179,15 +179,15 @@ fn nested<'py>(name: &str, value: Bound<'py, PyAny>, depth: usize) -> PyResult<B
     let Some(axes) = axes(&value)? else {
         return Ok(value);
     };
-    let held = match value.getattr_opt("data")? {
+    let array = match value.getattr_opt("data")? {
         Some(data) => data,
         None => value.getattr("values")?,
     };
-    let labelled = held.hasattr("dims")?;
+    let labelled = array.hasattr("dims")?;
     // The data may have a unit of its own.
-    let held = plain(name, held)?;
+    let array = plain(name, array)?;
     if labelled {
-        return Ok(held);
+        return Ok(array);
     }
     let lower: Vec<String> = axes.iter().map(|axis| axis.to_lowercase()).collect();
     let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
@@ -198,14 +198,14 @@ fn nested<'py>(name: &str, value: Bound<'py, PyAny>, depth: usize) -> PyResult<B
                     coordinate.check_ascending(name)?;
                 }
             }
-            if lower[0] == "y" { held.getattr("T") } else { Ok(held) }
+            if lower[0] == "y" { array.getattr("T") } else { Ok(array) }
         }
-        ["x" | "y"] => Ok(held),
+        ["x" | "y"] => Ok(array),
         _ if lower.contains(&"x") || lower.contains(&"y") => Err(PyValueError::new_err(format!(
             "{name} must have the dimensions x and y, got {}",
             lower.join(", ")
         ))),
-        _ => Ok(held),
+        _ => Ok(array),
     }
 }
 
@@ -312,8 +312,8 @@ pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyRes
     let refuse = || {
         let few = value.lt(least).unwrap_or(false);
         let least = format!("an integer of at least {least}");
-        let asked = if few { &least } else { "an integer that this machine can count to" };
-        PyValueError::new_err(format!("{name} must be {asked}, got {value}"))
+        let requirement = if few { &least } else { "an integer that this machine can count to" };
+        PyValueError::new_err(format!("{name} must be {requirement}, got {value}"))
     };
     integer(name, value)?.extract::<usize>().ok().filter(|&n| n >= least).ok_or_else(refuse)
 }
@@ -357,7 +357,7 @@ pub(super) fn flags(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[b
     })
 }
 
-/// Coordinates of the free ends of a body; it goes on where one is `None`, or infinite on its own side.
+/// Coordinates of the free ends of a body; it extends without end where one is `None`, or infinite on its own side.
 pub(super) fn ends(value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
     let [low, high] = pair("ends", value)?;
     Ok([low.filter(|x| *x != f64::NEG_INFINITY), high.filter(|x| *x != f64::INFINITY)])
@@ -477,8 +477,8 @@ impl serde::de::Error for Unknown {
 
 /// Word that stands for a value.
 pub(super) fn word_of(value: &impl Serialize) -> String {
-    let told = serde_json::to_value(value).unwrap_or_default();
-    told.as_str().unwrap_or_default().to_owned()
+    let json = serde_json::to_value(value).unwrap_or_default();
+    json.as_str().unwrap_or_default().to_owned()
 }
 
 /// Hash of a value from its `repr`, which equal values share.

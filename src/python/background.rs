@@ -17,7 +17,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 enum Message<M, T> {
     /// Arguments for the callback, and whether its answer counts.
-    Told(M, bool),
+    Call(M, bool),
     Done(T),
 }
 
@@ -69,13 +69,13 @@ where
     let (sender, mut messages) = mpsc::channel();
     let (answer, answers) = mpsc::channel::<bool>();
     let stopped = Arc::new(AtomicBool::new(false));
-    let told = sender.clone();
+    let calls = sender.clone();
     let mut caller = Caller {
         stopped: Arc::clone(&stopped),
         callback: callback.is_some().then(|| {
             // After an interrupt nobody listens any more.
             Box::new(move |message, asks| {
-                told.send(Message::Told(message, asks)).is_ok() && answers.recv().unwrap_or(false)
+                calls.send(Message::Call(message, asks)).is_ok() && answers.recv().unwrap_or(false)
             }) as Box<dyn FnMut(M, bool) -> bool + Send>
         }),
     };
@@ -89,7 +89,7 @@ where
         let messages = &mut messages;
         match py.detach(move || messages.recv_timeout(POLL_INTERVAL)) {
             Ok(Message::Done(done)) => break Ok(done),
-            Ok(Message::Told(message, asks)) => match tell(py, callback.as_ref(), message, asks) {
+            Ok(Message::Call(message, asks)) => match tell(py, callback.as_ref(), message, asks) {
                 Ok(go_on) => {
                     let _ = answer.send(go_on);
                 }

@@ -34,11 +34,11 @@ impl PyPlan {
         coefficients: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let coefficients = coefficients.map(|given| real_matrix("coefficients", given));
+        let coefficients = coefficients.map(|object| real_matrix("coefficients", object));
         let setup = Setup {
             counterbody: counterbody.map(self::body).transpose()?,
-            coefficients: coefficients.transpose()?.map(|given| given.into_shared()),
-            threads: threads.map(|given| count("threads", 1, given)).transpose()?,
+            coefficients: coefficients.transpose()?.map(|matrix| matrix.into_shared()),
+            threads: threads.map(|number| count("threads", 1, number)).transpose()?,
         };
         let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
@@ -59,8 +59,8 @@ impl PyPlan {
     }
 
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let given = self.0.setup().coefficients.as_ref();
-        given.map(|given| read_only(py, given.to_owned())).transpose()
+        let coefficients = self.0.setup().coefficients.as_ref();
+        coefficients.map(|matrix| read_only(py, matrix.to_owned())).transpose()
     }
 
     fn threads(&self) -> usize {
@@ -150,11 +150,11 @@ fn solve_each(
             done.fetch_add(1, Ordering::Relaxed);
         }
     };
-    let mut told = 0;
+    let mut last_count = 0;
     contact.solve_each(&cases, options, &keep, &mut || {
         let done = done.load(Ordering::Relaxed);
-        if done > told {
-            told = done;
+        if done > last_count {
+            last_count = done;
             caller.tell(|| (done, cases.len()));
         }
         caller.go_on()
@@ -162,44 +162,44 @@ fn solve_each(
 }
 
 /// Shape that is pressed in.
-pub(super) fn shape_of(given: &Given) -> PyResult<Shape> {
-    let object = given.of::<Bound<PyAny>>("shape", "a nacre.Shape")?;
+pub(super) fn shape_of(arguments: &Given) -> PyResult<Shape> {
+    let object = arguments.of::<Bound<PyAny>>("shape", "a nacre.Shape")?;
     Ok(shape(&object)?.get().0.clone())
 }
 
 /// Rigid motion that is asked.
-pub(super) fn motion(given: &Given) -> PyResult<Motion> {
+pub(super) fn motion(arguments: &Given) -> PyResult<Motion> {
     Ok(Motion {
-        load: given.number("load")?,
-        approach: given.number("approach")?,
-        eccentricity: given.pair("eccentricity")?,
-        moment: given.pair("moment")?,
-        tilt: given.pair("tilt")?,
+        load: arguments.number("load")?,
+        approach: arguments.number("approach")?,
+        eccentricity: arguments.pair("eccentricity")?,
+        moment: arguments.pair("moment")?,
+        tilt: arguments.pair("tilt")?,
     })
 }
 
 /// Way in which a solution is found, from a uniform pressure.
-fn options(given: &Given) -> PyResult<Options> {
+fn options(arguments: &Given) -> PyResult<Options> {
     Ok(Options {
-        tolerance: given.real("tolerance")?,
-        max_iterations: given.count("max_iterations", 0)?,
-        algorithm: given.word("algorithm")?,
+        tolerance: arguments.real("tolerance")?,
+        max_iterations: arguments.count("max_iterations", 0)?,
+        algorithm: arguments.word("algorithm")?,
         initial: None,
-        hardness: given.get("hardness")?.map(|given| hardness(&given)).transpose()?,
+        hardness: arguments.get("hardness")?.map(|value| hardness(&value)).transpose()?,
         indentation: None,
-        cells: given.count("max_cells", SMALLEST_GRID)?,
+        cells: arguments.count("max_cells", SMALLEST_GRID)?,
     })
 }
 
 /// Bodies and grid of a call that plans, where one is given.
-pub(super) fn planning(given: &Given) -> PyResult<(Body, Setup, Option<Grid>)> {
-    let grid: Option<PyGrid> = given.of("grid", "a nacre.Grid")?;
+pub(super) fn planning(arguments: &Given) -> PyResult<(Body, Setup, Option<Grid>)> {
+    let grid: Option<PyGrid> = arguments.of("grid", "a nacre.Grid")?;
     let setup = Setup {
-        counterbody: given.get("counterbody")?.as_ref().map(body).transpose()?,
+        counterbody: arguments.get("counterbody")?.as_ref().map(body).transpose()?,
         coefficients: None,
-        threads: given.count("threads", 1)?,
+        threads: arguments.count("threads", 1)?,
     };
-    let body = body(&given.of::<Bound<PyAny>>("body", "a body")?)?;
+    let body = body(&arguments.of::<Bound<PyAny>>("body", "a body")?)?;
     Ok((body, setup, grid.map(|grid| grid.0)))
 }
 

@@ -19,12 +19,12 @@ pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
 /// A `ValueError` if a field is missing, unknown, or holds a value that does not fit.
 pub(super) fn read<T: DeserializeOwned>(kind: &str, text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|error| {
-        let said = error.to_string();
-        let said = said.split(" at line ").next().unwrap_or_default();
-        let is_field = said.starts_with("missing field") || said.starts_with("unknown field");
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        let is_field = message.starts_with("missing field") || message.starts_with("unknown field");
         let key = key_before(text, error.column()).filter(|_| !is_field);
         let place = key.map(|key| format!("the value of the key {key:?} does not fit: "));
-        PyValueError::new_err(format!("{kind}: {}{said}", place.unwrap_or_default()))
+        PyValueError::new_err(format!("{kind}: {}{message}", place.unwrap_or_default()))
     })
 }
 
@@ -37,19 +37,19 @@ fn key_before(text: &str, column: usize) -> Option<&str> {
 /// JSON text of a summary and its warnings.
 pub(super) fn summary_text(summary: &StressSummary) -> PyResult<String> {
     #[derive(Serialize)]
-    struct Told<'a> {
+    struct SummaryWithWarnings<'a> {
         #[serde(flatten)]
         summary: &'a StressSummary,
         warnings: Vec<String>,
     }
-    text(&Told { summary, warnings: summary.warnings() })
+    text(&SummaryWithWarnings { summary, warnings: summary.warnings() })
 }
 
 /// JSON text of the result of a `kind` that `given` describes, read and written again: checked.
 #[pyfunction]
 pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
-    fn again<T: Serialize + DeserializeOwned>(kind: &str, given: &str) -> PyResult<String> {
-        text(&read::<T>(kind, given)?)
+    fn again<T: Serialize + DeserializeOwned>(kind: &str, json: &str) -> PyResult<String> {
+        text(&read::<T>(kind, json)?)
     }
     match kind {
         "CreepCoefficients" => again::<CreepCoefficients>(kind, given),

@@ -33,11 +33,11 @@ pub(super) fn fatigue_stress<'py>(
     history: &Bound<'py, PyAny>,
 ) -> PyResult<(Row<'py, f64>, Row<'py, usize>, Row<'py, f64>)> {
     let criterion = Criterion::new(word("kind", kind)?, bending.0, torsion.0)?;
-    let found = each(py, history, move |states| criterion.stress(states))?;
+    let equivalents = each(py, history, move |states| criterion.stress(states))?;
     let numbers = |of: fn(&crate::fatigue::Equivalent) -> f64| {
-        found.iter().map(of).collect::<Array1<f64>>().into_pyarray(py)
+        equivalents.iter().map(of).collect::<Array1<f64>>().into_pyarray(py)
     };
-    let at: Array1<usize> = found.iter().map(|one| one.at).collect();
+    let at: Array1<usize> = equivalents.iter().map(|one| one.at).collect();
     let stresses = numbers(|one| one.stress);
     Ok((stresses, at.into_pyarray(py), numbers(|one| one.gap.unwrap_or(f64::NAN))))
 }
@@ -51,13 +51,13 @@ pub(super) fn shakedown<'py>(
     rule: &str,
 ) -> PyResult<(Table<'py, f64>, Table<'py, usize>)> {
     let rule = word("rule", rule)?;
-    let found = each(py, history, move |states| shaken(states, rule))?;
-    let rows = found.iter().map(|one| {
+    let limits = each(py, history, move |states| shaken(states, rule))?;
+    let rows = limits.iter().map(|one| {
         let [x, y] = one.residual;
         [one.shear_yield, x, y, one.first_yield]
     });
     let values = Array2::from(rows.collect::<Vec<_>>());
-    let at = Array2::from(found.iter().map(|one| one.at).collect::<Vec<_>>());
+    let at = Array2::from(limits.iter().map(|one| one.at).collect::<Vec<_>>());
     Ok((values.into_pyarray(py), at.into_pyarray(py)))
 }
 
@@ -67,23 +67,23 @@ fn each<T: Send + 'static>(
     history: &Bound<'_, PyAny>,
     work: impl Fn(&[State]) -> crate::Result<T> + Send + Sync + 'static,
 ) -> PyResult<Vec<T>> {
-    let given: ArrayD<f64> = real_array("history", history)?;
-    let shape = given.shape().to_vec();
-    let given = given.into_dimensionality::<Ix3>().ok().filter(|given| given.dim().2 == 6);
-    let given = given.ok_or_else(|| {
+    let stresses: ArrayD<f64> = real_array("history", history)?;
+    let shape = stresses.shape().to_vec();
+    let stresses = stresses.into_dimensionality::<Ix3>().ok().filter(|all| all.dim().2 == 6);
+    let stresses = stresses.ok_or_else(|| {
         PyValueError::new_err(format!("history must have the shape (…, times, 6), got {shape:?}"))
     })?;
-    let histories: Vec<Vec<State>> = given
+    let histories: Vec<Vec<State>> = stresses
         .outer_iter()
         .map(|one| {
             one.rows().into_iter().map(|state| [0, 1, 2, 3, 4, 5].map(|k| state[k])).collect()
         })
         .collect();
     let threads = Threads::new(None)?;
-    let found = background::run(py, None, move |caller: &mut background::Caller<(f64,)>| {
-        let mut found: Vec<Option<crate::Result<T>>> = histories.iter().map(|_| None).collect();
+    let outcomes = background::run(py, None, move |caller: &mut background::Caller<(f64,)>| {
+        let mut outcomes: Vec<Option<crate::Result<T>>> = histories.iter().map(|_| None).collect();
         let several = 4 * threads.count();
-        for (results, histories) in found.chunks_mut(several).zip(histories.chunks(several)) {
+        for (results, histories) in outcomes.chunks_mut(several).zip(histories.chunks(several)) {
             if caller.go_on().is_break() {
                 break;
             }
@@ -93,7 +93,7 @@ fn each<T: Send + 'static>(
                 });
             });
         }
-        found.into_iter().flatten().collect::<crate::Result<Vec<T>>>()
+        outcomes.into_iter().flatten().collect::<crate::Result<Vec<T>>>()
     })?;
-    Ok(found?)
+    Ok(outcomes?)
 }

@@ -29,17 +29,17 @@ use crate::model::surface::Surface;
 pub(super) struct PyFrictionSolved(pub(super) Arc<FrictionSolution>);
 
 /// Coefficient of friction: a number, or one for each cell.
-fn coefficient(given: &Bound<'_, PyAny>) -> PyResult<Friction> {
-    let values = real_array("friction", given)?;
+fn coefficient(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
+    let values = real_array("friction", value)?;
     Ok(match values.ndim() {
         0 => Friction::Uniform(values.sum()),
-        _ => Friction::Cells(real_matrix("friction", given)?),
+        _ => Friction::Cells(real_matrix("friction", value)?),
     })
 }
 
 /// Both components of a field (2, nx, ny).
-fn components(name: &str, given: &Bound<'_, PyAny>) -> PyResult<[Array2<f64>; 2]> {
-    let field = real_array(name, given)?;
+fn components(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[Array2<f64>; 2]> {
+    let field = real_array(name, value)?;
     let shape = field.shape().to_vec();
     match field.into_dimensionality::<Ix3>() {
         Ok(field) if field.len_of(Axis(0)) == 2 => {
@@ -144,14 +144,14 @@ impl PyFrictionSolved {
 }
 
 /// Steps that are asked for.
-enum Asked {
+enum Moves {
     Slide(Vec<Step>),
     RollSteadily(Rolling),
     /// Rolling by so many cells, one at a time.
     RollCells(Rolling, usize),
 }
 
-impl Asked {
+impl Moves {
     /// The move of the step `number`; none after the last one.
     fn step(&self, number: usize) -> Option<Move<'_>> {
         match self {
@@ -180,7 +180,7 @@ impl Asked {
 struct Problem {
     contact: Arc<Contact>,
     shape: Shape,
-    asked: Asked,
+    moves: Moves,
     options: FrictionOptions,
 }
 
@@ -206,29 +206,31 @@ impl PyFrictionSteps {
         let (number, problem) = (self.number, Arc::clone(&self.problem));
         let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
         let last = self.last.take();
-        let found = background::run(py, progress, move |caller: &mut Caller<(usize, String)>| {
-            let mut tell =
-                |report: &FrictionReport| caller.ask(|| (number, text(report).unwrap_or_default()));
-            // The first step begins where another call ended.
-            let last = last.as_deref().map(|solution| Last { solution, is_own: number > 0 });
-            let Problem { contact, shape, asked, options } = &*problem;
-            let next = asked.step(number)?;
-            Some(contact.friction_step(shape, next, options, last, &mut tell))
-        })?;
-        let Some(found) = found else {
+        let solution =
+            background::run(py, progress, move |caller: &mut Caller<(usize, String)>| {
+                let mut tell = |report: &FrictionReport| {
+                    caller.ask(|| (number, text(report).unwrap_or_default()))
+                };
+                // The first step begins where another call ended.
+                let last = last.as_deref().map(|solution| Last { solution, is_own: number > 0 });
+                let Problem { contact, shape, moves, options } = &*problem;
+                let next = moves.step(number)?;
+                Some(contact.friction_step(shape, next, options, last, &mut tell))
+            })?;
+        let Some(solution) = solution else {
             return Ok(None);
         };
-        let found = found.map_err(|error| {
+        let solution = solution.map_err(|error| {
             let error = PyErr::from(error);
             if self.several {
                 let _ = error.add_note(py, format!("step {number}"));
             }
             error
         })?;
-        let found = Arc::new(found);
-        self.last = Some(Arc::clone(&found));
+        let solution = Arc::new(solution);
+        self.last = Some(Arc::clone(&solution));
         self.number += 1;
-        Ok(Some(PyFrictionSolved(found)))
+        Ok(Some(PyFrictionSolved(solution)))
     }
 }
 
@@ -242,11 +244,11 @@ pub(super) fn slide(
     plan: Option<&Bound<'_, PyPlan>>,
 ) -> PyResult<PyFrictionSteps> {
     let (first, several) = (step(&given)?, steps.is_some());
-    let asked = match steps {
+    let steps = match steps {
         Some(steps) => history(py, first, &steps)?,
         None => vec![first],
     };
-    begun(py, &given, plan, |_| Ok((Asked::Slide(asked), several)))
+    friction_steps(py, &given, plan, |_| Ok((Moves::Slide(steps), several)))
 }
 
 /// Steps of rolling, as the arguments of `nacre.roll` or of `Contact.roll` say.
@@ -263,59 +265,59 @@ pub(super) fn roll(
             "initial must be given with cells: the steady state does not depend on it",
         ));
     }
-    begun(py, &given, plan, |shape| {
+    friction_steps(py, &given, plan, |shape| {
         let rolling = rolling(shape, &given)?;
         Ok(match cells {
-            Some(cells) => (Asked::RollCells(rolling, cells), true),
-            None => (Asked::RollSteadily(rolling), false),
+            Some(cells) => (Moves::RollCells(rolling, cells), true),
+            None => (Moves::RollSteadily(rolling), false),
         })
     })
 }
 
-/// What `asked` says of a shape, on `plan` or on one that is made for it.
-fn begun(
+/// The steps of the moves of a shape, on `plan` or on one that is made for it.
+fn friction_steps(
     py: Python<'_>,
-    given: &Given,
+    arguments: &Given,
     plan: Option<&Bound<'_, PyPlan>>,
-    asked: impl FnOnce(&Shape) -> PyResult<(Asked, bool)>,
+    moves: impl FnOnce(&Shape) -> PyResult<(Moves, bool)>,
 ) -> PyResult<PyFrictionSteps> {
     let last: Option<Bound<'_, PyFrictionSolved>> =
-        given.of("initial", "a nacre.types.FrictionSolution")?;
+        arguments.of("initial", "a nacre.types.FrictionSolution")?;
     let last = last.map(|last| Arc::clone(&last.get().0));
     let default = FrictionOptions::default();
-    let most = given.count("max_convolutions", 1)?;
+    let most = arguments.count("max_convolutions", 1)?;
     let options = FrictionOptions {
-        tolerance: given.real("tolerance")?,
+        tolerance: arguments.real("tolerance")?,
         max_convolutions: most.unwrap_or(default.max_convolutions),
-        coupling: given.flag("coupling")?,
-        order: given.count("order", 1)?.unwrap_or(default.order),
+        coupling: arguments.flag("coupling")?,
+        order: arguments.count("order", 1)?.unwrap_or(default.order),
     };
-    let progress = given.callable("progress")?;
-    given.flag("check")?;
-    let shape = shape_of(given)?;
-    let (asked, several) = asked(&shape)?;
+    let progress = arguments.callable("progress")?;
+    arguments.flag("check")?;
+    let shape = shape_of(arguments)?;
+    let (moves, several) = moves(&shape)?;
     let contact = match plan {
         Some(plan) => Arc::clone(&plan.get().0),
-        None => planned(py, given, &shape, asked.widest(), last.as_deref())?,
+        None => planned(py, arguments, &shape, moves.widest(), last.as_deref())?,
     };
-    let problem = Arc::new(Problem { contact, shape, asked, options });
+    let problem = Arc::new(Problem { contact, shape, moves, options });
     Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
 }
 
 /// A contact of the given bodies: on the given grid, on that of the step before, or on one that fits the shape.
 fn planned(
     py: Python<'_>,
-    given: &Given,
+    arguments: &Given,
     shape: &Shape,
     motion: Option<Motion>,
     last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
-    let (body, setup, grid) = planning(given)?;
-    let cells = given.count("max_cells", SMALLEST_GRID)?;
+    let (body, setup, grid) = planning(arguments)?;
+    let cells = arguments.count("max_cells", SMALLEST_GRID)?;
     let grid = grid.or_else(|| last.map(|last| *last.grid()));
     if motion.is_none() && last.is_none() {
-        let said = "load or approach must be given, in the call or in the first step";
-        return Err(PyValueError::new_err(said));
+        let message = "load or approach must be given, in the call or in the first step";
+        return Err(PyValueError::new_err(message));
     }
     let (shape, motion) = (shape.clone(), motion.unwrap_or_default());
     let contact = background::run(py, None, move |caller: &mut Caller<()>| {
@@ -332,21 +334,21 @@ fn planned(
     Ok(Arc::new(contact))
 }
 
-/// One step. Along z it moves as `given` says, if it says anything.
-fn step(given: &Given) -> PyResult<Step> {
-    let motion = motion(given)?;
+/// One step. Along z it moves as `arguments` say, if they say anything.
+fn step(arguments: &Given) -> PyResult<Step> {
+    let motion = motion(arguments)?;
     Ok(Step {
         motion: (motion != Motion::default()).then_some(motion),
-        friction: friction(given)?,
-        shift: given.pair("shift")?,
-        force: given.pair("force")?,
-        twist: given.number("twist")?,
-        torque: given.number("torque")?,
+        friction: friction(arguments)?,
+        shift: arguments.pair("shift")?,
+        force: arguments.pair("force")?,
+        twist: arguments.number("twist")?,
+        torque: arguments.number("torque")?,
     })
 }
 
 /// Steps of a history. The first one moves along z, and has the friction, as the call says where it does not say it.
-fn history(py: Python<'_>, call: Step, given: &[Given]) -> PyResult<Vec<Step>> {
+fn history(py: Python<'_>, call: Step, arguments: &[Given]) -> PyResult<Vec<Step>> {
     let plain = Step { motion: call.motion, friction: call.friction.clone(), ..Step::default() };
     if plain != call {
         return Err(PyValueError::new_err(
@@ -354,8 +356,8 @@ fn history(py: Python<'_>, call: Step, given: &[Given]) -> PyResult<Vec<Step>> {
         ));
     }
     let mut steps = Vec::new();
-    for (number, given) in given.iter().enumerate() {
-        steps.push(step(given).inspect_err(|error| {
+    for (number, of_step) in arguments.iter().enumerate() {
+        steps.push(step(of_step).inspect_err(|error| {
             let _ = error.add_note(py, format!("step {number}"));
         })?);
     }
@@ -368,10 +370,10 @@ fn history(py: Python<'_>, call: Step, given: &[Given]) -> PyResult<Vec<Step>> {
 }
 
 /// Rolling of a shape; it says in which direction if it rolls in one alone.
-fn rolling(shape: &Shape, given: &Given) -> PyResult<Rolling> {
-    let friction = friction(given)?
+fn rolling(shape: &Shape, arguments: &Given) -> PyResult<Rolling> {
+    let friction = friction(arguments)?
         .ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
-    let direction: Option<String> = given.of("direction", "a str")?;
+    let direction: Option<String> = arguments.of("direction", "a str")?;
     let direction = match (direction, shape.rolling_direction()) {
         (Some(direction), _) => word("direction", &direction)?,
         (None, Some([x, _])) if x.abs() < 0.5 => RollingDirection::PlusY,
@@ -383,19 +385,19 @@ fn rolling(shape: &Shape, given: &Given) -> PyResult<Rolling> {
         }
     };
     Ok(Rolling {
-        creepage: given.pair("creepage")?,
-        force: given.pair("force")?,
-        spin: given.real("spin")?,
-        ..Rolling::new(motion(given)?, friction, direction)
+        creepage: arguments.pair("creepage")?,
+        force: arguments.pair("force")?,
+        spin: arguments.real("spin")?,
+        ..Rolling::new(motion(arguments)?, friction, direction)
     })
 }
 
-fn friction(given: &Given) -> PyResult<Option<Friction>> {
-    given.get("friction")?.map(|given| coefficient(&given)).transpose()
+fn friction(arguments: &Given) -> PyResult<Option<Friction>> {
+    arguments.get("friction")?.map(|value| coefficient(&value)).transpose()
 }
 
-fn cells(given: &Bound<'_, PyAny>) -> PyResult<usize> {
-    count("cells", 8, given)
+fn cells(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("cells", 8, value)
 }
 
 /// JSON text of Kalker's linear coefficients of two bodies with any layers; `nacre.creep_coefficients`.
@@ -409,9 +411,9 @@ pub(super) fn creep_coefficients(
 ) -> PyResult<String> {
     let counterbody = counterbody.map(half_space).transpose()?.map(Body::from);
     let Pair(axes) = semi_axes;
-    let found = background::run(py, None, move |caller: &mut Caller<()>| {
+    let coefficients = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());
         crate::friction::creep_coefficients(body, counterbody, axes, Some(cells), Some(&mut watch))
     })??;
-    text(&found)
+    text(&coefficients)
 }

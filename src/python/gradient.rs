@@ -38,12 +38,12 @@ impl PyLinear {
     ) -> PyResult<T> {
         let (solution, shape) = (Arc::clone(&self.solution), self.shape.clone());
         let tolerance = self.tolerance;
-        let found = background::run(py, None, move |caller: &mut Caller<()>| {
+        let outcome = background::run(py, None, move |caller: &mut Caller<()>| {
             let shape = shape.as_ref().map(|shape| shape as &dyn Surface);
             let options = LinearOptions { tolerance, watch: Some(&|| caller.go_on()) };
             work(&Linearisation::plan(&solution, shape, &options)?)
         })?;
-        Ok(found?)
+        Ok(outcome?)
     }
 }
 
@@ -55,7 +55,7 @@ impl PyLinear {
         shape: Option<&Bound<'_, PyAny>>,
         tolerance: Real,
     ) -> PyResult<Self> {
-        let shape = shape.map(|given| Ok::<_, PyErr>(self::shape(given)?.get().0.clone()));
+        let shape = shape.map(|object| Ok::<_, PyErr>(self::shape(object)?.get().0.clone()));
         Ok(Self {
             solution: Arc::clone(&solved.get().0),
             shape: shape.transpose()?,
@@ -75,17 +75,23 @@ impl PyLinear {
             Err(_) => Ok(Output::Weighted(real_matrix("cotangent", output)?)),
         });
         let parsed = parsed.collect::<PyResult<Vec<_>>>()?;
-        let found = self.run(py, move |plan| {
+        let gradients = self.run(py, move |plan| {
             let wrt: Option<Vec<&str>> =
                 wrt.as_ref().map(|paths| paths.iter().map(String::as_str).collect());
             plan.gradients(&parsed, wrt.as_deref())
         })?;
-        let told = |found: crate::gradient::Gradient| {
-            let values = found.values.into_iter();
+        let parts = |gradient: crate::gradient::Gradient| {
+            let values = gradient.values.into_iter();
             let values = values.map(|(parameter, value)| (parameter.to_string(), value)).collect();
-            Ok((found.value, values, found.margin, found.warnings, read_only(py, found.gap)?))
+            Ok((
+                gradient.value,
+                values,
+                gradient.margin,
+                gradient.warnings,
+                read_only(py, gradient.gap)?,
+            ))
         };
-        found.into_iter().map(told).collect()
+        gradients.into_iter().map(parts).collect()
     }
 
     /// Largest change of each parameter for which the contact keeps its cells.
@@ -101,11 +107,16 @@ impl PyLinear {
         gap: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Change<'py>> {
         let gap = gap.map(|gap| real_matrix("gap", gap)).transpose()?;
-        let found = self.run(py, move |plan| {
+        let change = self.run(py, move |plan| {
             let rates: Vec<(&str, f64)> =
                 rates.iter().map(|(path, rate)| (path.as_str(), *rate)).collect();
             plan.jvp(&rates, gap.as_deref())
         })?;
-        Ok((read_only(py, found.pressure)?, found.approach, found.tilt.into(), found.valid_step))
+        Ok((
+            read_only(py, change.pressure)?,
+            change.approach,
+            change.tilt.into(),
+            change.valid_step,
+        ))
     }
 }

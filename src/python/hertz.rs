@@ -92,9 +92,10 @@ impl PyHertz {
         names: Vec<String>,
         coordinates: Vec<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let read = names.iter().zip(&coordinates).map(|(name, given)| real_array(name, given));
-        let found = read.collect::<PyResult<Vec<ArrayD<f64>>>>()?;
-        let [first, others @ ..] = &found[..] else {
+        let read =
+            names.iter().zip(&coordinates).map(|(name, coordinate)| real_array(name, coordinate));
+        let arrays = read.collect::<PyResult<Vec<ArrayD<f64>>>>()?;
+        let [first, others @ ..] = &arrays[..] else {
             return Err(PyValueError::new_err("coordinates must be given"));
         };
         if let Some(other) = others.iter().find(|other| other.shape() != first.shape()) {

@@ -86,8 +86,8 @@ fn named(indent: &Indent) -> Parameters {
 /// Parameters of these paths.
 fn chosen(known: &Parameters, paths: Vec<String>) -> PyResult<Vec<IndentParameter>> {
     let find = |path: String| {
-        let found = known.iter().find(|(own, _)| *own == path);
-        found.map(|(_, parameter)| *parameter).ok_or_else(|| {
+        let entry = known.iter().find(|(own, _)| *own == path);
+        entry.map(|(_, parameter)| *parameter).ok_or_else(|| {
             let all: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
             PyValueError::new_err(format!(
                 "wrt must be paths among {}, got {path:?}",
@@ -156,13 +156,13 @@ impl PyIndentation {
     fn at(&self, py: Python<'_>, given: Given<'_>, branch: &str) -> PyResult<PyIndentStates> {
         let branch: Branch = word("branch", branch)?;
         let all = [("load", Held::Load), ("approach", Held::Approach), ("radius", Held::Radius)];
-        let mut found = Vec::new();
+        let mut conditions = Vec::new();
         for (name, held) in all {
             if let Some(value) = given.get(name)? {
-                found.push((held, real_array(name, &value)?));
+                conditions.push((held, real_array(name, &value)?));
             }
         }
-        let (Some((held, values)), true) = (found.pop(), found.is_empty()) else {
+        let (Some((held, values)), true) = (conditions.pop(), conditions.is_empty()) else {
             return Err(PyValueError::new_err(
                 "exactly one of load, approach and radius must be given",
             ));
@@ -270,8 +270,8 @@ impl PyIndentStates {
     }
 
     fn variable(&self, path: &str) -> PyResult<Variable> {
-        let found = chosen(&self.parameters, vec![path.to_owned()])?;
-        Ok(Variable::Parameter(found[0]))
+        let parameters = chosen(&self.parameters, vec![path.to_owned()])?;
+        Ok(Variable::Parameter(parameters[0]))
     }
 }
 

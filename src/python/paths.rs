@@ -105,15 +105,15 @@ pub(super) fn with_value<'py>(
 /// All numbers in an object by path, in their order.
 #[pyfunction]
 pub(super) fn numbers(object: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
-    let mut found = Vec::new();
-    collect(object, String::new(), &mut found)?;
-    Ok(found)
+    let mut numbers = Vec::new();
+    collect(object, String::new(), &mut numbers)?;
+    Ok(numbers)
 }
 
 fn collect(
     object: &Bound<'_, PyAny>,
     path: String,
-    found: &mut Vec<(String, f64)>,
+    numbers: &mut Vec<(String, f64)>,
 ) -> PyResult<()> {
     if let Some(parts) = parts(object)? {
         for (key, part) in parts {
@@ -123,12 +123,12 @@ fn collect(
                 Ok(name) => format!("{path}.{name}"),
                 Err(_) => format!("{path}[{key}]"),
             };
-            collect(&part, inside, found)?;
+            collect(&part, inside, numbers)?;
         }
     } else if let Ok(number) = object.extract()
         && object.cast::<PyBool>().is_err()
     {
-        found.push((path, number));
+        numbers.push((path, number));
     }
     Ok(())
 }

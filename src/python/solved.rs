@@ -52,7 +52,7 @@ struct FreeEndsData {
 
 /// Report for Python: its data, the sentences of its warnings, and how free ends are counted.
 #[derive(Serialize)]
-struct Told {
+struct ReportJson {
     data: ReportData,
     messages: Vec<String>,
     free_ends: Option<FreeEndsData>,
@@ -64,7 +64,7 @@ pub(super) type ReportParts = (String, PyGrid, PyBody, Option<PyBody>);
 /// The report for `nacre.types.Report`.
 pub(super) fn report_parts(report: &Report) -> ReportParts {
     let of = report.clone();
-    let told = Told {
+    let report_json = ReportJson {
         messages: report.warnings.iter().map(ToString::to_string).collect(),
         free_ends: report
             .free_ends()
@@ -86,13 +86,13 @@ pub(super) fn report_parts(report: &Report) -> ReportParts {
         },
     };
     let counterbody = report.counterbody.as_ref().map(PyBody::from);
-    let told = text(&told).unwrap_or_default();
-    (told, PyGrid(report.grid), (&report.body).into(), counterbody)
+    let report_text = text(&report_json).unwrap_or_default();
+    (report_text, PyGrid(report.grid), (&report.body).into(), counterbody)
 }
 
 /// Report of JSON text, a grid and bodies, checked.
-fn report_of((told, grid, body, counterbody): ReportParts) -> PyResult<Report> {
-    let of: ReportData = read("Report", &told)?;
+fn report_of((json, grid, body, counterbody): ReportParts) -> PyResult<Report> {
+    let of: ReportData = read("Report", &json)?;
     for (name, value) in [
         ("convolutions", of.convolutions),
         ("residual", of.residual.min(f64::MAX)),
@@ -169,11 +169,11 @@ impl From<Solution> for PySolved {
 }
 
 /// Hardness: a number, or one for each cell.
-pub(super) fn hardness(given: &Bound<'_, PyAny>) -> PyResult<Hardness> {
-    let values = real_array("hardness", given)?;
+pub(super) fn hardness(value: &Bound<'_, PyAny>) -> PyResult<Hardness> {
+    let values = real_array("hardness", value)?;
     Ok(match values.ndim() {
         0 => Hardness::Uniform(values.sum()),
-        _ => Hardness::Cells(real_matrix("hardness", given)?),
+        _ => Hardness::Cells(real_matrix("hardness", value)?),
     })
 }
 
@@ -183,7 +183,7 @@ impl PySolved {
     #[new]
     fn new(fields: Given, position: &str, report: ReportParts) -> PyResult<Self> {
         let field = |name: &str| -> PyResult<_> {
-            fields.get(name)?.map(|given| real_matrix(name, &given)).transpose()
+            fields.get(name)?.map(|value| real_matrix(name, &value)).transpose()
         };
         let needed = |name: &str| {
             let missing = || PyValueError::new_err(format!("{name} must be an array, got None"));
@@ -195,7 +195,7 @@ impl PySolved {
         if let Some(coefficients) = field("coefficients")? {
             solution = solution.with_coefficients(coefficients)?;
         }
-        let hardness = fields.get("hardness")?.map(|given| hardness(&given)).transpose()?;
+        let hardness = fields.get("hardness")?.map(|value| hardness(&value)).transpose()?;
         Ok(solution.yielding(hardness, field("indentation")?)?.into())
     }
 
@@ -225,7 +225,7 @@ impl PySolved {
             "gap" => Some(py.detach(|| of.gap())),
             "displacement" => Some(of.displacement.clone()),
             "indentation" => of.indentation.clone(),
-            "coefficients" => of.coefficients.as_ref().map(|given| given.to_owned()),
+            "coefficients" => of.coefficients.as_ref().map(|matrix| matrix.to_owned()),
             "line_load" => return Ok(Some(read_only(py, of.line_load())?.into_any())),
             _ => match &of.hardness {
                 Some(Hardness::Uniform(value)) => {

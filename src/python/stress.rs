@@ -51,14 +51,14 @@ pub(super) enum Of {
 }
 
 impl Of {
-    /// The body that `given` names, and its layers.
-    fn body(&self, given: &Given) -> PyResult<(Member, HalfSpace)> {
+    /// The body that `arguments` name, and its layers.
+    fn body(&self, arguments: &Given) -> PyResult<(Member, HalfSpace)> {
         let solution = match self {
             Self::Plan(plan) => return Ok((Member::Body, plan.get().0.body().clone())),
             Self::Solved(solved) => &*solved.get().0,
             Self::Friction(solved) => &solved.get().0.normal,
         };
-        let member = given.word("body")?;
+        let member = arguments.word("body")?;
         Ok((member, solution.member(member)?.clone()))
     }
 }
@@ -96,14 +96,14 @@ pub(super) fn stress_under<'py>(
 
 fn evaluated<'py>(
     z: &Bound<'py, PyAny>,
-    given: &Given,
+    arguments: &Given,
     body: &HalfSpace,
     evaluate: impl FnOnce(&[f64], WatchedStress) -> crate::Result<Stress> + Send + 'static,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (depths, one) = depths(z)?;
-    let mut options = options(given, body)?;
-    let [x, y] = section(given, &mut options)?;
-    let stress = watched(z.py(), given.callable("progress")?, move |progress| {
+    let mut options = options(arguments, body)?;
+    let [x, y] = section(arguments, &mut options)?;
+    let stress = watched(z.py(), arguments.callable("progress")?, move |progress| {
         evaluate(&depths, options.watched(progress))
     })?;
     field::fields(z.py(), stress, [one, x, y])
@@ -147,28 +147,28 @@ pub(super) fn stress_plan(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<
 }
 
 /// Puts section, side and displacement into the options; returns whether x and y were given.
-fn section(given: &Given, options: &mut StressOptions) -> PyResult<[bool; 2]> {
-    options.side = given.word("side")?;
-    let (x, y) = (given.number("x")?, given.number("y")?);
+fn section(arguments: &Given, options: &mut StressOptions) -> PyResult<[bool; 2]> {
+    options.side = arguments.word("side")?;
+    let (x, y) = (arguments.number("x")?, arguments.number("y")?);
     options.section = match (x, y) {
         (None, None) => Section::Plane,
         (Some(x), None) => Section::X(x),
         (None, Some(y)) => Section::Y(y),
         (Some(x), Some(y)) => Section::Axis([x, y]),
     };
-    options.displacement = given.flag("displacement")?;
+    options.displacement = arguments.flag("displacement")?;
     Ok([x.is_some(), y.is_some()])
 }
 
 /// Options with friction, residual stress and threads.
-fn options(given: &Given, body: &HalfSpace) -> PyResult<StressOptions> {
-    let direction: Option<Pair> = given.of("direction", "a pair of numbers")?;
-    let residual = by_layer(given, "residual", body)?;
+fn options(arguments: &Given, body: &HalfSpace) -> PyResult<StressOptions> {
+    let direction: Option<Pair> = arguments.of("direction", "a pair of numbers")?;
+    let residual = by_layer(arguments, "residual", body)?;
     Ok(StressOptions {
-        friction: given.real("friction")?,
+        friction: arguments.real("friction")?,
         direction: direction.map(|direction| direction.0),
         residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
-        threads: given.count("threads", 1)?,
+        threads: arguments.count("threads", 1)?,
         ..StressOptions::default()
     })
 }
@@ -186,15 +186,15 @@ pub(super) fn layer_values(
 /// Values of some layers, from the surface down and the substrate last. The argument is a sequence of
 /// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
 /// have it.
-fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
-    let Some(mut given) = given.get(name)? else {
+fn by_layer(arguments: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
+    let Some(mut object) = arguments.get(name)? else {
         return Ok(Vec::new());
     };
     // A Series names the layers by its index.
-    if given.hasattr("index")?
-        && let Some(to_dict) = given.getattr_opt("to_dict")?
+    if object.hasattr("index")?
+        && let Some(to_dict) = object.getattr_opt("to_dict")?
     {
-        given = to_dict.call0()?;
+        object = to_dict.call0()?;
     }
     let layers = body.layers().len();
     let parts = layers + usize::from(matches!(body.substrate(), Substrate::Elastic(_)));
@@ -204,13 +204,13 @@ fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<
             Err(PyTypeError::new_err(format!("{name} must hold real numbers, got {}", Repr(value))))
         }
     };
-    let Ok(mapping) = given.cast::<PyDict>() else {
-        let items = listed(&given).map(|items| items.into_iter().map(|item| item.extract()));
+    let Ok(mapping) = object.cast::<PyDict>() else {
+        let items = listed(&object).map(|items| items.into_iter().map(|item| item.extract()));
         let values: Vec<Option<Real>> =
             items.and_then(Iterator::collect::<PyResult<_>>).map_err(|_| {
                 PyTypeError::new_err(format!(
                     "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
-                    Repr(&given)
+                    Repr(&object)
                 ))
             })?;
         if values.len() > parts {

@@ -37,7 +37,7 @@ pub(super) fn repr<V: Value>(value: &V, py: Python<'_>) -> PyResult<String> {
 
 /// Text of a call. Arguments that say nothing, as None or `smooth=True`, are left out; the first `unnamed` have no names.
 pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> PyResult<String> {
-    let mut shown = Vec::new();
+    let mut texts = Vec::new();
     for (number, (name, argument)) in arguments.iter().enumerate() {
         let text = if let Ok(array) = argument.cast::<PyArrayDyn<f64>>() {
             array_repr(argument.py(), array.to_owned_array())?
@@ -50,11 +50,11 @@ pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> 
         };
         match text.as_str() {
             "None" | "(None, None)" | "(False, False)" | "True" => {}
-            _ if number < unnamed => shown.push(text),
-            _ => shown.push(format!("{name}={text}")),
+            _ if number < unnamed => texts.push(text),
+            _ => texts.push(format!("{name}={text}")),
         }
     }
-    Ok(format!("{called}({})", shown.join(", ")))
+    Ok(format!("{called}({})", texts.join(", ")))
 }
 
 /// Callable and arguments that make a value again; a static method with a name of its own is a `functools.partial`.
@@ -93,7 +93,7 @@ macro_rules! class {
         $class:ident($kind:ty) is $name:literal of $module:literal;
         |$of:ident, $py:ident|
         arguments { $($(#[$doc:meta])* $argument:ident: $of_type:ty = $read:expr;)* }
-        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $found:expr;)* }
+        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $compute:expr;)* }
         methods { $($methods:tt)* }
     ) => {
         class! {
@@ -102,7 +102,7 @@ macro_rules! class {
             |$of, $py|
             attributes {
                 $($(#[$doc])* $argument: $of_type = $read;)*
-                $($(#[$more])* $attribute: $type = $found;)*
+                $($(#[$more])* $attribute: $type = $compute;)*
             }
             methods { $($methods)* }
         }
@@ -120,7 +120,7 @@ macro_rules! class {
         $(#[$meta:meta])*
         $class:ident($kind:ty) is $name:literal of $module:literal;
         |$of:ident, $py:ident|
-        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $found:expr;)* }
+        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $compute:expr;)* }
         methods { $($methods:tt)* }
     ) => {
         $(#[$meta])*
@@ -136,7 +136,7 @@ macro_rules! class {
             #[getter]
             fn $attribute<'py>(&self, $py: Python<'py>) -> PyResult<$type> {
                 let ($of, _) = (&self.0, $py);
-                Ok($found)
+                Ok($compute)
             })*
 
             fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -35,7 +35,7 @@ macro_rules! shape_class {
         $class:ident($kind:ty) is $name:literal;
         |$of:ident, $py:ident|
         arguments { $($(#[$doc:meta])* $argument:ident: $of_type:ty = $read:expr;)* }
-        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $found:expr;)* }
+        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $compute:expr;)* }
         methods { $($methods:tt)* }
     ) => {
         $(#[$meta])*
@@ -59,7 +59,7 @@ macro_rules! shape_class {
             $($(#[$doc])*
             #[getter]
             fn $argument<'py>(slf: &Bound<'py, Self>) -> PyResult<$of_type> {
-                let ($of, $py) = (held::<_, $kind>(slf), slf.py());
+                let ($of, $py) = (inner_shape::<_, $kind>(slf), slf.py());
                 let _ = $py;
                 Ok($read)
             })*
@@ -67,8 +67,8 @@ macro_rules! shape_class {
             $($(#[$more])*
             #[getter]
             fn $attribute<'py>(slf: &Bound<'py, Self>) -> PyResult<$type> {
-                let $of = held::<_, $kind>(slf);
-                Ok($found)
+                let $of = inner_shape::<_, $kind>(slf);
+                Ok($compute)
             })*
         }
     };
@@ -115,8 +115,8 @@ macro_rules! kinds {
             fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 Ok(match self {
                     $(Self::$kind(shape) => {
-                        let made = object(surface::$kind::CLASS, shape.clone());
-                        Bound::new(py, made)?.into_any()
+                        let initializer = object(surface::$kind::CLASS, shape.clone());
+                        Bound::new(py, initializer)?.into_any()
                     })*
                     Self::Combined(_) => Bound::new(py, PyShape(self.clone()))?.into_any(),
                 })
@@ -185,7 +185,7 @@ pub(super) fn object<C: PyClass<BaseType = PyShape>>(
 }
 
 /// Shape that an object holds.
-pub(super) fn held<'a, C: PyClass<BaseType = PyShape>, K>(object: &'a Bound<'_, C>) -> &'a K
+pub(super) fn inner_shape<'a, C: PyClass<BaseType = PyShape>, K>(object: &'a Bound<'_, C>) -> &'a K
 where
     &'a K: From<&'a Shape>,
 {
@@ -202,7 +202,7 @@ impl Combined {
     /// Shapes that are no sums, in their order, each with its whole shift.
     fn flat(&self) -> &Superposition<Shifted<Shape>> {
         self.flat.get_or_init(|| {
-            let mut found = Vec::new();
+            let mut shapes = Vec::new();
             // Parts that are left with the shift of the sum around them, the next one last.
             let mut left: Vec<_> = self.parts.iter().rev().map(|part| (part, [0.0; 2])).collect();
             while let Some(((shape, [x, y]), [around_x, around_y])) = left.pop() {
@@ -211,10 +211,10 @@ impl Combined {
                     Shape::Combined(inner) => {
                         left.extend(inner.parts.iter().rev().map(|part| (part, by)));
                     }
-                    single => found.push(Shifted::by(single.clone(), by)),
+                    single => shapes.push(Shifted::by(single.clone(), by)),
                 }
             }
-            Superposition::new(found).unwrap_or_else(|_| unreachable!("one shape at least"))
+            Superposition::new(shapes).unwrap_or_else(|_| unreachable!("one shape at least"))
         })
     }
 

@@ -24,12 +24,12 @@ const AXES: [&str; 3] = ["z", "x", "y"];
 pub(super) fn fields(
     py: Python<'_>,
     stress: Stress,
-    given: [bool; 3],
+    is_number: [bool; 3],
 ) -> PyResult<Bound<'_, PyDict>> {
     let warnings = stress.warnings();
     let Stress { z, x, y, body, side, friction, components, uncertainty, displacement } = stress;
     let lengths = [z.len(), x.len(), y.len()];
-    let kept = (0..3).filter(|&axis| !given[axis] || lengths[axis] != 1);
+    let kept = (0..3).filter(|&axis| !is_number[axis] || lengths[axis] != 1);
     let fields = PyDict::new(py);
     fields.set_item("z", read_only(py, z)?)?;
     fields.set_item("x", read_only(py, x)?)?;
@@ -85,8 +85,8 @@ impl StressState<'_> {
                 "axes must be among {AXES:?}, got {other:?}"
             )));
         }
-        let given = AXES.map(|axis| !self.axes.iter().any(|kept| kept == axis));
-        if given.iter().zip(&coordinates).any(|(&given, axis)| given && axis.len() != 1) {
+        let is_number = AXES.map(|axis| !self.axes.iter().any(|kept| kept == axis));
+        if is_number.iter().zip(&coordinates).any(|(&number, axis)| number && axis.len() != 1) {
             return Err(PyValueError::new_err(format!(
                 "axes must name each axis with more or less than one coordinate, got {:?}",
                 self.axes
@@ -100,10 +100,12 @@ impl StressState<'_> {
             word("side", &self.side)?,
             self.friction,
             arrays("components", &self.components, COMPONENTS)?,
-            displacement.map(|given| arrays("displacement", given, DISPLACEMENTS)).transpose()?,
+            displacement
+                .map(|displacement| arrays("displacement", displacement, DISPLACEMENTS))
+                .transpose()?,
             uncertainty.map(|errors| line("uncertainty", errors)).transpose()?,
         )?;
-        Ok((stress, given))
+        Ok((stress, is_number))
     }
 }
 
@@ -123,8 +125,8 @@ fn arrays<const N: usize>(
 ) -> PyResult<[Array3<f64>; N]> {
     let wrong = || PyValueError::new_err(format!("{whole} must have the keys {names:?}"));
     let mut arrays = [(); N].map(|()| Array3::default((0, 0, 0)));
-    for (name, found) in names.into_iter().zip(&mut arrays) {
-        *found = array(name, &fields.get_item(name)?.ok_or_else(wrong)?)?;
+    for (name, component) in names.into_iter().zip(&mut arrays) {
+        *component = array(name, &fields.get_item(name)?.ok_or_else(wrong)?)?;
     }
     if fields.len() == N { Ok(arrays) } else { Err(wrong()) }
 }
@@ -135,8 +137,8 @@ pub(in crate::python) fn checked_stress<'py>(
     py: Python<'py>,
     stress: StressState<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (stress, given) = stress.stress()?;
-    fields(py, stress, given)
+    let (stress, is_number) = stress.stress()?;
+    fields(py, stress, is_number)
 }
 
 /// An invariant of a stress, by its name in Python; three arrays where it has three values.
@@ -147,11 +149,11 @@ pub(in crate::python) fn stress_invariants<'py>(
     name: &str,
 ) -> PyResult<Vec<Bound<'py, PyArray3<f64>>>> {
     let (stress, _) = stress.stress()?;
-    let found = py.detach(|| match name {
+    let fields = py.detach(|| match name {
         "von_mises" => vec![stress.von_mises()],
         "tresca" => vec![stress.tresca()],
         "max_shear" => vec![stress.max_shear()],
         _ => stress.principal().into(),
     });
-    found.into_iter().map(|field| read_only(py, field)).collect()
+    fields.into_iter().map(|field| read_only(py, field)).collect()
 }
