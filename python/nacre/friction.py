@@ -103,7 +103,9 @@ def creep_coefficients(
     >>> coated.c11 < 0.5 * nacre.creep_coefficients(steel, steel, (1e-3, 1e-3)).c11
     True
     """
-    return CreepCoefficients._made(core.creep_coefficients(body, counterbody, semi_axes, cells))
+    return CreepCoefficients._from_text(
+        core.creep_coefficients(body, counterbody, semi_axes, cells)
+    )
 
 
 def history(solutions: Sequence[FrictionSolution]) -> xarray.Dataset:

@@ -93,20 +93,20 @@ def read(path: Path, names: Collection[str]) -> tuple[str, dict[str, npt.NDArray
         try:
             with h5py.File(file, "r") as content:
                 state = content.attrs[STATE]
-                found = {}
+                items = {}
                 for name in names:
                     if name not in content:
                         continue
                     if content.get(name, getclass=True, getlink=True) is not h5py.HardLink:
                         raise ValueError(f"{name} is a link")
-                    found[name] = content[name]
-                for name, item in found.items():
+                    items[name] = content[name]
+                for name, item in items.items():
                     stored = not (item.chunks or item.external or item.is_virtual)
                     if item.dtype.kind != "f" or not stored:
                         raise ValueError(f"{name} must be real numbers that are stored plainly")
-                if sum(item.nbytes for item in found.values()) > size:
+                if sum(item.nbytes for item in items.values()) > size:
                     raise ValueError("its arrays are larger than the file")
-                arrays = {name: np.asarray(item[()]) for name, item in found.items()}
+                arrays = {name: np.asarray(item[()]) for name, item in items.items()}
         except Exception as error:  # whatever HDF5 says of a file that it cannot read
             raise ValueError(f"it is no result that nacre wrote: {error}") from error
     if not isinstance(state, str):

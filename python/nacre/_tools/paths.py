@@ -15,38 +15,38 @@ DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
 """Arguments of a solve, beside the shape, that have derivatives."""
 
 
-def numbers(made: Mapping[str, Any]) -> dict[str, float]:
+def numbers(arguments: Mapping[str, Any]) -> dict[str, float]:
     """Return all numbers of arguments by path."""
-    return dict(core.numbers(described(made)))
+    return dict(core.numbers(described(arguments)))
 
 
 def put(
-    made: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
+    arguments: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
 ) -> None:
     """Replace the number at a path of arguments, with the errors of `holder`."""
-    made |= core.with_value(holder(made, path, names, of), path, value)
+    arguments |= core.with_value(holder(arguments, path, names, of), path, value)
 
 
-def holder(made: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
+def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
     """Return the argument that holds the number at a path, by name.
 
     Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
     """
     name = re.split(r"[.\[]", path)[0]
-    said = f"{names} must name parameters of {of} by path, got {path!r}"
-    if name not in made:
-        raise ValueError(said)
-    held = described({name: made[name]})
+    message = f"{names} must name parameters of {of} by path, got {path!r}"
+    if name not in arguments:
+        raise ValueError(message)
+    argument = described({name: arguments[name]})
     try:
-        found = core.at(held, path)
+        number = core.at(argument, path)
     except LookupError as missing:
-        raise ValueError(f"{said}: no {missing}") from None
-    if not isinstance(found, int | float | np.number):
+        raise ValueError(f"{message}: no {missing}") from None
+    if not isinstance(number, int | float | np.number):
         raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
-    return held
+    return argument
 
 
-def described(made: Mapping[str, Any]) -> dict[str, Any]:
+def described(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
-    bare = {name for name in BODIES if isinstance(made.get(name), core.Elastic)}
-    return {k: core.HalfSpace(one) if k in bare else one for k, one in made.items()}
+    bare = {name for name in BODIES if isinstance(arguments.get(name), core.Elastic)}
+    return {k: core.HalfSpace(one) if k in bare else one for k, one in arguments.items()}

@@ -13,7 +13,7 @@ from typing import Any
 
 from nacre._tools.extras import extra
 
-_shown: list[str] = []
+_open_bars: list[str] = []
 """Work of which a bar may be there."""
 SOON = 2.0
 """Time after which a bar shows that work goes on [s]."""
@@ -21,18 +21,18 @@ EVERY = 60.0
 """Shortest time between two lines in a log [s]: a night has a few hundred of them."""
 
 
-def check_progress(given: Any) -> None:
+def check_progress(progress: Any) -> None:
     """Raise a `TypeError` unless an argument is a function, or None."""
-    if given is not None and not callable(given):
-        raise TypeError(f"progress must be callable, got {given!r}")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, got {progress!r}")
 
 
 @contextmanager
-def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], None]]:
-    """Yield a function that advances the progress by one case; `found` cases need no solve."""
-    if wanted is not None and not isinstance(wanted, bool):
-        raise TypeError(f"progress must be True, False or None, got {wanted!r}")
-    if wanted is False:
+def case_progress(progress: bool | None, total: int, stored: int) -> Iterator[Callable[[], None]]:
+    """Yield a function that advances the progress by one case; `stored` cases need no solve."""
+    if progress is not None and not isinstance(progress, bool):
+        raise TypeError(f"progress must be True, False or None, got {progress!r}")
+    if progress is False:
         yield lambda: None
         return
     with extra("files"):
@@ -49,7 +49,7 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
     # Without ipywidgets, rich would show a warning and an empty line in a notebook.
     notebook = console.is_jupyter and find_spec("ipywidgets") is not None
     if not (console.is_terminal or notebook):
-        lines = _Lines(total, found, at_once=bool(wanted))
+        lines = _Lines(total, stored, at_once=bool(progress))
         yield lines.advance
         lines.end()
         return
@@ -61,22 +61,22 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
         TimeRemainingColumn(),
     )
     with Progress(*parts, console=console) as bar:
-        task = bar.add_task(f"solving{_found(found, total)}", total=total, completed=found)
+        task = bar.add_task(f"solving{_stored_text(stored, total)}", total=total, completed=stored)
         yield lambda: bar.advance(task)
 
 
 @contextmanager
-def lasting(what: str, given: Any = None) -> Iterator[Any]:
-    """Yield what is called with the progress: `given`, or a bar in a terminal or a notebook.
+def lasting(what: str, progress: Any = None) -> Iterator[Any]:
+    """Yield what is called with the progress: `progress`, or a bar in a terminal or a notebook.
 
     It is called with the share that is done or with a text. Nothing is shown in the first two
     seconds, inside of other work that is shown, in threads, or without rich.
     """
-    check_progress(given)
+    check_progress(progress)
     watched = "ipykernel" in sys.modules or sys.stderr.isatty()
-    outermost = not _shown and current_thread() is main_thread()
-    if given is not None or not (watched and outermost) or find_spec("rich") is None:
-        yield given
+    outermost = not _open_bars and current_thread() is main_thread()
+    if progress is not None or not (watched and outermost) or find_spec("rich") is None:
+        yield progress
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -93,11 +93,11 @@ def lasting(what: str, given: Any = None) -> Iterator[Any]:
         if time.monotonic() - start > SOON:
             bar.start()
 
-    _shown.append(what)
+    _open_bars.append(what)
     try:
         yield tell
     finally:
-        _shown.remove(what)
+        _open_bars.remove(what)
         bar.stop()
 
 
@@ -118,15 +118,15 @@ def alive() -> Iterator[None]:
         ended.set()
 
 
-def _found(found: int, total: int) -> str:
-    return f" ({found} of {total} found in the store)" if found else ""
+def _stored_text(stored: int, total: int) -> str:
+    return f" ({stored} of {total} found in the store)" if stored else ""
 
 
 class _Lines:
     """Lines on standard error, at most one in `EVERY` seconds."""
 
-    def __init__(self, total: int, found: int, *, at_once: bool) -> None:
-        self.total, self.found, self.done = total, found, found
+    def __init__(self, total: int, stored: int, *, at_once: bool) -> None:
+        self.total, self.stored, self.done = total, stored, stored
         self.start = self.last = time.monotonic()
         self.written = at_once
         if at_once:
@@ -147,8 +147,8 @@ class _Lines:
         self.last = time.monotonic()
         seconds = self.last - self.start
         text = f"nacre.sweep: {self.done} of {self.total} cases"
-        text += _found(self.found, self.total)
-        solved = self.done - self.found
+        text += _stored_text(self.stored, self.total)
+        solved = self.done - self.stored
         if solved:
             text += f", {_time(seconds)} so far"
             if left := self.total - self.done:

@@ -298,7 +298,7 @@ class Scale:
         return cls._chosen(largest, size, unit, own)
 
     @classmethod
-    def given(cls, largest: float, unit: str) -> Scale:
+    def in_unit(cls, largest: float, unit: str) -> Scale:
         """Return the scale for numbers in any unit, as Datasets have it, in the units that are set.
 
         A unit that is not known is kept.

@@ -50,7 +50,7 @@ from typing import Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre.results.outputs import Room, named
+from nacre.results.outputs import Room, outputs_by_name
 
 __all__ = ["Case", "CaseError"]
 
@@ -62,7 +62,7 @@ with extra("cli"):
     from nacre.case.reference import Place, nearest, place, table_for
     from nacre.case.schema import MOST_VALUES, CaseTable, Keys, Range, WrongValue, at
 
-SHOWN = 60
+MOST_CHARACTERS = 60
 """Largest number of characters of a wrong value that an error shows."""
 LONGEST = 1000
 """Largest number of characters of an error, whose keys may be long."""
@@ -172,8 +172,8 @@ class Case:
         table = self._table
         if not isinstance(table, CaseTable) or table.stress is None:
             return None
-        found = table.stress.keywords() | table.limits(table.stress, "yield_stress", "strength")
-        return self._without_friction(found)
+        keywords = table.stress.keywords() | table.limits(table.stress, "yield_stress", "strength")
+        return self._without_friction(keywords)
 
     def fatigue(self) -> dict[str, Any] | None:
         """Return the arguments of `nacre.fatigue.assess`, or None without a table ``fatigue``."""
@@ -181,15 +181,15 @@ class Case:
         if not isinstance(table, CaseTable) or table.fatigue is None:
             return None
         try:
-            found = table.fatigue.keywords() | table.limits(table.fatigue, "shear_yield")
+            keywords = table.fatigue.keywords() | table.limits(table.fatigue, "shear_yield")
         except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
-        return self._without_friction(found)
+        return self._without_friction(keywords)
 
-    def _without_friction(self, found: dict[str, Any]) -> dict[str, Any]:
+    def _without_friction(self, keywords: dict[str, Any]) -> dict[str, Any]:
         """Return keywords without those of friction where the tractions are known."""
         left = () if self.friction is None else ("friction", "direction")
-        return {name: value for name, value in found.items() if name not in left}
+        return {name: value for name, value in keywords.items() if name not in left}
 
     def life(self) -> dict[str, Any] | None:
         """Return the arguments of `BearingSolution.life`, or None without a table for it."""
@@ -223,9 +223,11 @@ class Case:
                 or key.startswith("bearing.film.")
                 or key.endswith((".yield_stress", ".strength", ".shear_yield"))
             ):
-                message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
+                message = (
+                    f"{self.name}: sweep.parameters: {_short_repr(key)} changes nothing in a solve"
+                )
                 raise CaseError(message)
-        found: dict[str, Any] = {
+        arguments: dict[str, Any] = {
             "parameters": {
                 key: values.numbers() if isinstance(values, Range) else values
                 for key, values in sweep.parameters.items()
@@ -234,11 +236,11 @@ class Case:
         if sweep.outputs is not None:
             try:
                 with at("sweep"):
-                    named(sweep.outputs, self.room)
+                    outputs_by_name(sweep.outputs, self.room)
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
-            found["outputs"] = sweep.outputs
-        count = math.prod(map(len, found["parameters"].values()))
+            arguments["outputs"] = sweep.outputs
+        count = math.prod(map(len, arguments["parameters"].values()))
         if count > MOST_VALUES:
             raise CaseError(
                 f"{self.name}: sweep.parameters: must make at most {MOST_VALUES} cases, got {count}"
@@ -246,12 +248,12 @@ class Case:
         if store is None and sweep.store is not None:
             store = self._inside(sweep.store)
         if store is not None:
-            found["store"] = store
+            arguments["store"] = store
         if isinstance(self._table, CaseTable) and self._table.stress is not None:
-            found["stress"] = self._without_friction(self._table.stress.keywords())
+            arguments["stress"] = self._without_friction(self._table.stress.keywords())
         if (fatigue := self.fatigue()) is not None:
-            found["fatigue"] = fatigue
-        return found
+            arguments["fatigue"] = fatigue
+        return arguments
 
     def _inside(self, store: str) -> Path:
         """Return the path of a store, which must be in the folder of the case, as its journal."""
@@ -263,7 +265,7 @@ class Case:
         if not all(end.is_relative_to(folder) for end in ends):
             raise CaseError(
                 f"{self.name}: sweep.store: must be in the folder of the case, got "
-                f"{_shown(store)}; nacre sweep --store takes a file anywhere"
+                f"{_short_repr(store)}; nacre sweep --store takes a file anywhere"
             )
         return path
 
@@ -275,10 +277,10 @@ class Case:
         try:
             core.at(self.data, key)
         except LookupError as error:
-            solved = {t: self.data[t] for t in self._table.solved if t in self.data}
-            keys = ", ".join(nearest(key, [path for path, _ in core.numbers(solved)])[:3])
+            solved_tables = {t: self.data[t] for t in self._table.solved if t in self.data}
+            keys = ", ".join(nearest(key, [path for path, _ in core.numbers(solved_tables)])[:3])
             raise CaseError(
-                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the "
+                f"{self.name}: sweep.parameters: {_short_repr(key)} is not a key of this case; the "
                 f"nearest are {keys}"
             ) from error
 
@@ -291,10 +293,10 @@ class Case:
 
 def _first(error: ValidationError, data: Any) -> str:
     """Return a message about the first error: key, expected value and value found."""
-    found = error.errors(include_url=False)
+    errors = error.errors(include_url=False)
     # A misspelt key is often also a missing one; the misspelt one says more. Of the errors of
     # alternatives, the innermost belongs to the one that was meant.
-    places = [(one, place(data, one["loc"])) for one in found]
+    places = [(one, place(data, one["loc"])) for one in errors]
     misspelt = [pair for pair in places if pair[0]["type"] == "extra_forbidden"]
     first, here = misspelt[0] if misspelt else max(places, key=lambda pair: len(pair[1].path))
     kind = first["type"]
@@ -307,11 +309,11 @@ def _first(error: ValidationError, data: Any) -> str:
     if kind.startswith("union_tag") and isinstance(here.value, dict):
         got = here.value.get("kind")
         kinds = ", ".join(map(repr, nearest(str(got), here.kinds())))
-        said = f"got {_shown(got)}" if "kind" in here.value else "this key is missing"
-        return f"{here.key}.kind: must be one of {kinds}; {said}"
+        problem = f"got {_short_repr(got)}" if "kind" in here.value else "this key is missing"
+        return f"{here.key}.kind: must be one of {kinds}; {problem}"
     if kind == "value_error":
         return f"{here.key}: {first['ctx']['error']}".removeprefix(": ")  # of the whole file
-    return f"{here.key}: must be {here.words()}, got {_shown(here.value)}"
+    return f"{here.key}: must be {here.words()}, got {_short_repr(here.value)}"
 
 
 def _no_key(here: Place, name: str) -> str:
@@ -320,7 +322,7 @@ def _no_key(here: Place, name: str) -> str:
     return f"{key}: there is no such key; the keys here are {', '.join(nearest(name, here.keys()))}"
 
 
-def _shown(value: Any) -> str:
+def _short_repr(value: Any) -> str:
     """Return a value as an error shows it."""
     text = repr(value)
-    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+    return text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}..."

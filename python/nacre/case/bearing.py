@@ -22,11 +22,11 @@ from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import Ring
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
-from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, said
+from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, with_words
 
 KINDS: dict[str, type[Solvable]] = {
-    made.kind: made
-    for made in (
+    bearing_class.kind: bearing_class
+    for bearing_class in (
         CylindricalRoller,
         TaperedRoller,
         SphericalRoller,
@@ -168,7 +168,7 @@ class BearingFilm(Table):
 class BearingKind(Table):
     """Keys that every bearing may have: what is solved, a life, and a film."""
 
-    made: ClassVar[type[Any]]
+    bearing_class: ClassVar[type[Any]]
 
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
@@ -182,7 +182,7 @@ TYPES: dict[str, Any] = {
     "osculation": Pair,
     "profile": Annotated[
         Literal["iso16281", "iso16281_cylindrical", "straight"] | AnyProfile,
-        said('"iso16281", "iso16281_cylindrical", "straight", or a table with the key kind'),
+        with_words('"iso16281", "iso16281_cylindrical", "straight", or a table with the key kind'),
     ],
     "raceway_crown": Rings | None,
     "free_ends": bool,
@@ -193,32 +193,36 @@ TYPES: dict[str, Any] = {
 """Types of keys that are no numbers."""
 
 
-def _table(kind: str, made: type[Any]) -> type[BearingKind]:
+def _table(kind: str, bearing_class: type[Any]) -> type[BearingKind]:
     """Return the table of a bearing: a key for each argument."""
-    told = described(made)
+    descriptions = described(bearing_class)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
-    for one in dataclasses.fields(made):
+    for one in dataclasses.fields(bearing_class):
         hint, default = TYPES.get(one.name, Number), one.default
-        if hint is None or (told and one.name not in told):  # without docstrings none is told
+        # Without docstrings there are no descriptions.
+        if hint is None or (descriptions and one.name not in descriptions):
             continue
         if default is dataclasses.MISSING:
-            fields[one.name] = (hint, Field(description=told.get(one.name, "")))
+            fields[one.name] = (hint, Field(description=descriptions.get(one.name, "")))
             continue
         if default is None or one.name in ("element", "inner", "outer", "raceway_crown"):
             hint, default = hint | None, None
-        given = list(default) if isinstance(default, tuple) else default
-        fields[one.name] = (hint, Field(default=given, description=told.get(one.name, "")))
-    summary = inspect.cleandoc(made.__doc__ or "").partition("\n")[0]
+        default_value = list(default) if isinstance(default, tuple) else default
+        fields[one.name] = (
+            hint,
+            Field(default=default_value, description=descriptions.get(one.name, "")),
+        )
+    summary = inspect.cleandoc(bearing_class.__doc__ or "").partition("\n")[0]
     table: type[BearingKind] = create_model(
-        f"{made.__name__}Case", __base__=BearingKind, __doc__=summary, **fields
+        f"{bearing_class.__name__}Case", __base__=BearingKind, __doc__=summary, **fields
     )
-    table.made = made
+    table.bearing_class = bearing_class
     return table
 
 
-TABLES = {kind: _table(kind, made) for kind, made in KINDS.items()}
+TABLES = {kind: _table(kind, bearing_class) for kind, bearing_class in KINDS.items()}
 """Tables of bearings, by kind."""
 
 if TYPE_CHECKING:
@@ -263,24 +267,24 @@ class BearingCase(Keys):
 
     def _arguments(self) -> dict[str, Any]:
         """Return the bearing and the keywords of its ``solve``, where all numbers are in SI."""
-        given = self.bearing.model_dump(
+        arguments = self.bearing.model_dump(
             exclude={"kind", "solve", "life", "film"}, exclude_unset=True
         )
-        for name in given:
+        for name in arguments:
             value = getattr(self.bearing, name)
             if isinstance(value, Body):
-                given[name] = self._body(f"bearing.{name}", value)
+                arguments[name] = self._body(f"bearing.{name}", value)
             elif isinstance(value, Directions):
-                given[name] = value.pair()
+                arguments[name] = value.pair()
             elif name == "profile":
                 with at("bearing.profile"):
                     straight = None if value == "straight" else value
-                    given[name] = straight if isinstance(value, str) else value.make()
+                    arguments[name] = straight if isinstance(value, str) else value.make()
             elif isinstance(value, list):
-                given[name] = tuple(value)
+                arguments[name] = tuple(value)
         with at("bearing"):
-            made = self.bearing.made(**given)
-        return {"bearing": made, **self.bearing.solve.keywords()}
+            bearing = self.bearing.bearing_class(**arguments)
+        return {"bearing": bearing, **self.bearing.solve.keywords()}
 
     def life(self) -> dict[str, Any] | None:
         """Return the keywords of the life, or None where none is asked for."""
@@ -288,5 +292,5 @@ class BearingCase(Keys):
 
     def film(self) -> dict[str, Any] | None:
         """Return the ring and keywords of the film in SI, or None where none is asked for."""
-        asked = self._si().bearing.film
-        return None if asked is None else {"ring": asked.ring, **asked.keywords()}
+        table = self._si().bearing.film
+        return None if table is None else {"ring": table.ring, **table.keywords()}

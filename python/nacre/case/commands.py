@@ -48,18 +48,18 @@ ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
-def _in_folder(given: Any) -> Any:
+def _in_folder(paths: Any) -> Any:
     """Return the paths of an option, or the path; a folder that is missing is an error."""
-    for path in given if isinstance(given, list | tuple) else [given]:
+    for path in paths if isinstance(paths, list | tuple) else [paths]:
         try:
             check_folder(path or Path())
         except FileNotFoundError as error:
             raise typer.BadParameter(str(error)) from error
-    return given
+    return paths
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(show: bool) -> None:
+    if show:
         print(f"nacre {nacre.__version__}")
         raise typer.Exit
 
@@ -110,7 +110,8 @@ def solve(
             raise CaseError(f"{case}: --initial must not be given for a bearing")
         _solve_bearing(case, described, save or [], as_json)
         return
-    arguments, asked, rated = described.arguments(), described.stress(), described.fatigue()
+    arguments = described.arguments()
+    stress_options, fatigue_options = described.stress(), described.fatigue()
     if initial is not None:
         try:
             arguments["initial"] = nacre.load(initial)
@@ -119,11 +120,18 @@ def solve(
     for path in save or []:
         _check_ending(path)
     try:
-        check_direction(arguments, **(asked or {}))
+        check_direction(arguments, **(stress_options or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(described.units):
-        _solve(case, described.friction, arguments, (asked, rated), save or [], as_json)
+        _solve(
+            case,
+            described.friction,
+            arguments,
+            (stress_options, fatigue_options),
+            save or [],
+            as_json,
+        )
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -139,15 +147,15 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
             raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
         _check_ending(path)
     arguments = described.arguments()
-    bearing, asked = arguments.pop("bearing"), described.life()
+    bearing, life_options = arguments.pop("bearing"), described.life()
     added: dict[str, Listed] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():
                 solution = bearing.solve(**arguments)
-                if asked is not None:
-                    added["life"] = solution.life(**asked)
+                if life_options is not None:
+                    added["life"] = solution.life(**life_options)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: bearing: {error}") from error
         if (film := described.film()) is not None:
@@ -170,19 +178,19 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
 def _in_units(state: dict[str, Any], added: dict[str, Listed], units: str) -> dict[str, Any]:
     """Return the state of a solved bearing, which is in SI, in the units of its case."""
     sizes = {unit: 1 / size for unit, size in sizes_of(units).items()}
-    made = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}
-    tables = [(made, [(row.name, row.si()) for row in BEARING])]
+    record = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}
+    tables = [(record, [(row.name, row.si()) for row in BEARING])]
     for name, one in added.items():
-        made[name] = dict(state[name])
-        tables.append((made[name], [(row.name, one._si(row)) for row in one._QUANTITIES]))
+        record[name] = dict(state[name])
+        tables.append((record[name], [(row.name, one._si(row)) for row in one._QUANTITIES]))
     for table, kinds in tables:
         for name, unit in kinds:
             if unit in sizes and table.get(name) is not None:
                 table[name] = (np.asarray(table[name]) * sizes[unit]).tolist()
     rows = np.array([sizes["N"]] * 3 + [sizes["N m"]] * 2)
     columns = np.array([sizes["m"]] * 3 + [1.0] * 2)
-    made["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
-    return made
+    record["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
+    return record
 
 
 def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
@@ -197,12 +205,12 @@ def _solve(
     case: Path,
     friction: str | None,
     arguments: dict[str, Any],
-    summed: tuple[dict[str, Any] | None, dict[str, Any] | None],
+    options: tuple[dict[str, Any] | None, dict[str, Any] | None],
     save: list[Path],
     as_json: bool,
 ) -> None:
     """Solve, save and print in the units that are set."""
-    asked, rated = summed
+    stress_options, fatigue_options = options
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
@@ -210,22 +218,26 @@ def _solve(
                 solved = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             # The notes of an error name the step of a history.
-            said = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
-            raise CaseError(f"{case}: {said}") from error
+            message = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
+            raise CaseError(f"{case}: {message}") from error
         # Of a history, the last step is printed.
         solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
         try:
-            stress = None if asked is None else solution.stress_summary(**asked)
+            stress = None if stress_options is None else solution.stress_summary(**stress_options)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: stress: {error}") from error
         try:
-            fatigue = None if rated is None else nacre.fatigue.assess(solution, **rated)
+            fatigue = (
+                None
+                if fatigue_options is None
+                else nacre.fatigue.assess(solution, **fatigue_options)
+            )
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: fatigue: {error}") from error
     steps = solved if isinstance(solved, nacre.types.History) else None
     if as_json:
-        named = {"stress": stress, "fatigue": fatigue}
-        extremes = {name: one.to_dict() for name, one in named.items() if one is not None}
+        summaries = {"stress": stress, "fatigue": fatigue}
+        extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
@@ -258,7 +270,7 @@ def sweep(
     for path in save or []:
         if path.suffix.lower() != ".csv":
             raise CaseError(f"--save must end in .csv, got {str(path)!r}")
-    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
+    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
             dataset = nacre.sweep(described, retry=retry, **study)
@@ -270,7 +282,7 @@ def sweep(
     else:
         _print_study(dataset)
         where = f"; all in {study['store']}" if "store" in study else ""
-        for text in (str(warning.message) for warning in said):
+        for text in (str(warning.message) for warning in caught):
             if " cases failed" not in text:  # the last line says that
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
@@ -304,10 +316,10 @@ def indent(
         try:
             with alive():
                 solution = solve_indentation(**arguments)
-                found = _indent_numbers(solution)
+                numbers = _indent_numbers(solution)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
-        print(json.dumps(_plain(found), indent=2) if as_json else solution)
+        print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
         for path in save or []:
             solution.save(path)
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 import nacre
-from nacre.case.tables import Count, Directions, Number, Pair, Table, described, said
+from nacre.case.tables import Count, Directions, Number, Pair, Table, described, with_words
 
 SLIDE = described(nacre.slide)
 ROLL = described(nacre.roll)
@@ -27,9 +27,11 @@ class Rolling(Directions):
     across: Number | None = Field(None, description="Value along z × e.")
 
 
-AnyAlong = Annotated[Along | Pair, said("a table with x, y or both, or a pair of finite numbers")]
+AnyAlong = Annotated[
+    Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
+]
 AnyRolling = Annotated[
-    Rolling | Pair, said("a table with along, across or both, or a pair of finite numbers")
+    Rolling | Pair, with_words("a table with along, across or both, or a pair of finite numbers")
 ]
 
 
@@ -65,10 +67,10 @@ class Slide(Sliding):
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `nacre.slide`."""
-        found = super().keywords()
+        arguments = super().keywords()
         if self.steps is not None:
-            found["steps"] = [step.keywords() for step in self.steps]
-        return found
+            arguments["steps"] = [step.keywords() for step in self.steps]
+        return arguments
 
 
 class Roll(Table):

@@ -31,18 +31,18 @@ KEYS: dict[str, tuple[Any, str]] = {
 HALF_ANGLE = "Angle between axis and flank in radians, in place of a slope."
 
 
-class Made(Table):
+class MethodTable(Table):
     """Table of what a static method of a class makes."""
 
-    made: ClassVar[str]
+    call_name: ClassVar[str]
 
     def make(self) -> Any:
         """Return the tip or the adhesion."""
-        given = self.model_dump(exclude={"kind"}, exclude_none=True)
-        return CALLS[self.made][0](**given)
+        arguments = self.model_dump(exclude={"kind"}, exclude_none=True)
+        return CALLS[self.call_name][0](**arguments)
 
 
-class Sloped(Made):
+class Sloped(MethodTable):
     """Table of a tip with a slope, or with a half angle in its place."""
 
     @model_validator(mode="after")
@@ -52,7 +52,7 @@ class Sloped(Made):
         return self
 
 
-def _table(name: str) -> type[Made]:
+def _table(name: str) -> type[MethodTable]:
     """Return the table for one static method: a key for each of its parameters."""
     make, parameters = CALLS[name]
     family, _, kind = name.partition(".")
@@ -70,10 +70,10 @@ def _table(name: str) -> type[Made]:
         fields["half_angle"] = (Number | None, Field(None, description=HALF_ANGLE))
     summary = " ".join((make.__doc__ or "").split())
     title = kind.title().replace("_", "") + family
-    base = Sloped if sloped else Made
-    made: type[Made] = create_model(title, __base__=base, __doc__=summary, **fields)
-    made.made = name
-    return made
+    base = Sloped if sloped else MethodTable
+    table: type[MethodTable] = create_model(title, __base__=base, __doc__=summary, **fields)
+    table.call_name = name
+    return table
 
 
 TABLES = {
@@ -85,8 +85,8 @@ TABLES = {
 """Tables of tips and of adhesion, by kind."""
 
 if TYPE_CHECKING:
-    AnyTip = Made
-    AnyAdhesion = Made
+    AnyTip = MethodTable
+    AnyAdhesion = MethodTable
 else:
     AnyTip, AnyAdhesion = (
         Annotated[
@@ -140,10 +140,10 @@ class IndentCase(Bodies):
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments of `nacre.indent.solve`."""
-        found = self.bodies()
+        keywords = self.bodies()
         with at("tip"):
-            found["tip"] = self.tip.make()
+            keywords["tip"] = self.tip.make()
         if self.adhesion is not None:
             with at("adhesion"):
-                found["adhesion"] = self.adhesion.make()
-        return found | self.indent.model_dump(exclude_none=True)
+                keywords["adhesion"] = self.adhesion.make()
+        return keywords | self.indent.model_dump(exclude_none=True)

@@ -154,27 +154,29 @@ def text() -> str:
     """Return the reference as Markdown that can be read as it is."""
     lines = textwrap.wrap(INTRODUCTION, WIDTH)
     for title, table in sections():
-        told = table.get("description", "")  # without docstrings there is none
-        summary = " ".join(told.split("\n\n")[0].split()).replace("``", "`")
+        description = table.get("description", "")  # without docstrings there is none
+        summary = " ".join(description.split("\n\n")[0].split()).replace("``", "`")
         lines += ["", f"## {title}", "", *textwrap.wrap(summary, WIDTH), ""]
         required = table.get("required", [])
         keys = [(name, node) for name, node in table["properties"].items() if name != "kind"]
         # Keys that must be given come first, and the common ones of shapes last.
         for name, node in sorted(keys, key=lambda key: (key[0] not in required, key[0] == "shift")):
-            said = _key(name, node, name in required)
-            lines += textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+            item = _key(name, node, name in required)
+            lines += textwrap.wrap(item, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
     return "\n".join(lines)
 
 
 def _key(name: str, node: Node, required: bool) -> str:
     """Return the item of a key: its values with their unit, its default, and its meaning."""
-    told = node.get("description", "").replace("``", "`")
+    description = node.get("description", "").replace("``", "`")
     value = words(node).removeprefix("a ").removeprefix("an ")
-    unit = UNIT.search(told)
+    unit = UNIT.search(description)
     default = "; required" if required else ""
     if node.get("default") not in (None, [], {}):
         default = f"; default `{json.dumps(node['default'])}`"
-    return f"- `{name}`: {value}{f' {unit[1]}' if unit else ''}{default}. {UNIT.sub('', told)}"
+    return (
+        f"- `{name}`: {value}{f' {unit[1]}' if unit else ''}{default}. {UNIT.sub('', description)}"
+    )
 
 
 def table_for(data: Any) -> type[Keys]:
@@ -196,14 +198,14 @@ class Place:
     @property
     def key(self) -> str:
         """Key as users write it: names with dots, numbers in brackets."""
-        said = "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in self.path)
-        return said.removeprefix(".")
+        dotted = "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in self.path)
+        return dotted.removeprefix(".")
 
     def tables(self) -> list[Node]:
         """Return the tables that the value may be; by its kind, where it has one."""
-        found = list(tables(self.node))
+        nodes = list(tables(self.node))
         kind = self.value.get("kind") if isinstance(self.value, dict) else None
-        return [one for one in found if kind and kind_of(one) == kind] or found
+        return [one for one in nodes if kind and kind_of(one) == kind] or nodes
 
     def keys(self) -> list[str]:
         """Return the keys that a table here may have."""
@@ -226,10 +228,10 @@ class Place:
             node = next((one for one in lists if list(tables(one))), None)
             value = value[part]
         elif isinstance(part, str) and isinstance(value, dict):
-            found = [one["properties"] for one in self.tables() if part in one["properties"]]
+            properties = [one["properties"] for one in self.tables() if part in one["properties"]]
             others = [one.get("additionalProperties") for one in options(self.node)]
-            if found:
-                node = found[0][part]
+            if properties:
+                node = properties[0][part]
             elif part in value:
                 node = next((one for one in others if one), None)
             value = value.get(part)

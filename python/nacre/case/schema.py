@@ -36,7 +36,7 @@ from nacre.case.tables import (
     Pair,
     Table,
     described,
-    said,
+    with_words,
 )
 from nacre.results.outputs import OUTPUTS
 
@@ -72,7 +72,7 @@ class Material(Table):
 
 
 AnyMaterial = Annotated[
-    str | Material, said("the name of a material, or a table with young and poisson")
+    str | Material, with_words("the name of a material, or a table with young and poisson")
 ]
 
 
@@ -89,7 +89,7 @@ class Spring(Table):
 
 AnyInterface = Annotated[
     Literal["bonded", "frictionless"] | Spring,
-    said('"bonded", "frictionless", or a table with normal and tangential'),
+    with_words('"bonded", "frictionless", or a table with normal and tangential'),
 ]
 
 
@@ -103,7 +103,7 @@ class Layer(Table):
 
 
 Ends = Annotated[
-    list[float], TWO, said("a pair of numbers, or of -inf and inf where the body goes on")
+    list[float], TWO, with_words("a pair of numbers, or of -inf and inf where the body goes on")
 ]
 MOST_LAYERS = 1000
 """Largest number of layers: the time of a contact grows with it."""
@@ -146,8 +146,10 @@ class Grid(Table):
         if self.periodic is not None and self.cells is not None:
             raise ValueError("periodic must not be given for a line contact")
         if self.center is not None and isinstance(self.center, list) != (self.cells is None):
-            asked = "a pair of numbers" if self.cells is None else "a number for a line contact"
-            raise ValueError(f"center must be {asked}, got {self.center!r}")
+            requirement = (
+                "a pair of numbers" if self.cells is None else "a number for a line contact"
+            )
+            raise ValueError(f"center must be {requirement}, got {self.center!r}")
         return self
 
     def make(self) -> nacre.Grid:
@@ -184,8 +186,10 @@ def _solve() -> type[Table]:
         for one in keywords
         if one.kind is one.KEYWORD_ONLY and one.name not in OBJECTS
     }
-    told = "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
-    return create_model("Solve", __base__=Table, __doc__=told, **fields)
+    summary = (
+        "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
+    )
+    return create_model("Solve", __base__=Table, __doc__=summary, **fields)
 
 
 if TYPE_CHECKING:
@@ -209,14 +213,16 @@ class Stress(Table):
 
 def _criterion(kind: str, maker: Any) -> type[Any]:
     """Return the table of a criterion of fatigue, whose limits must both be given."""
-    told = described(maker)
+    descriptions = described(maker)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind of the criterion.")),
-        **{name: (Number, Field(description=told[name])) for name in ("bending", "torsion")},
+        **{
+            name: (Number, Field(description=descriptions[name])) for name in ("bending", "torsion")
+        },
     }
     title = f"{maker.__name__}Table"
-    made: type[Any] = create_model(title, __base__=Table, __doc__=maker.__doc__, **fields)
-    return made
+    table: type[Any] = create_model(title, __base__=Table, __doc__=maker.__doc__, **fields)
+    return table
 
 
 CRITERIA = {kind: _criterion(kind, maker) for kind, maker in nacre.fatigue.CRITERIA.items()}
@@ -240,14 +246,14 @@ class Fatigue(Table):
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""
-        found = {"body": self.body, "friction": self.friction} | super().keywords()
-        made = []
+        arguments = {"body": self.body, "friction": self.friction} | super().keywords()
+        criteria = []
         for number, one in enumerate(self.criteria):
             with at(f"fatigue.criteria[{number}]"):
                 limits: Any = one
                 make = nacre.fatigue.CRITERIA[limits.kind]
-                made.append(make(bending=limits.bending, torsion=limits.torsion))
-        return found | {"criteria": tuple(made)}
+                criteria.append(make(bending=limits.bending, torsion=limits.torsion))
+        return arguments | {"criteria": tuple(criteria)}
 
 
 MOST_VALUES = 100_000
@@ -280,7 +286,7 @@ class Range(Table):
 
 Values = Annotated[
     Range | Annotated[list[Any], Field(min_length=1)],
-    said("a list of values, or a table with first, last and count"),
+    with_words("a list of values, or a table with first, last and count"),
 ]
 
 
@@ -288,7 +294,7 @@ class Sweep(Table):
     """A study, for ``nacre sweep``: every combination of values at some keys of the case."""
 
     parameters: Annotated[
-        dict[str, Values], said("a table of lists, or of tables with first, last and count")
+        dict[str, Values], with_words("a table of lists, or of tables with first, last and count")
     ] = Field(
         description='Values by key, such as parameters."body.layers[0].thickness" = [1e-6, 2e-6].'
     )
@@ -313,7 +319,7 @@ class Keys(Table):
         description="Units of force, length and stress of all numbers in the file, and of what is "
         'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
     )
-    materials: Annotated[dict[str, Material], said("a table of materials")] = Field(
+    materials: Annotated[dict[str, Material], with_words("a table of materials")] = Field(
         {}, description="Materials by name."
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
@@ -343,19 +349,19 @@ class Keys(Table):
 
     def _base(self, body: Body) -> Any:
         """Return the base that the substrate names, or None if that is a material."""
-        named = body.substrate
-        if not isinstance(named, str) or named in self.materials:
+        substrate = body.substrate
+        if not isinstance(substrate, str) or substrate in self.materials:
             return None
-        return {"rigid": nacre.RIGID, "free": nacre.FREE}.get(named)
+        return {"rigid": nacre.RIGID, "free": nacre.FREE}.get(substrate)
 
-    def _material(self, named: str | Material) -> nacre.Elastic:
-        if isinstance(named, str):
-            if named not in self.materials:
+    def _material(self, material: str | Material) -> nacre.Elastic:
+        if isinstance(material, str):
+            if material not in self.materials:
                 known = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({known}), got {named!r}")
-            with at(f"materials.{named}"):
-                return self.materials[named].make()
-        return named.make()
+                raise ValueError(f"must be one of the materials ({known}), got {material!r}")
+            with at(f"materials.{material}"):
+                return self.materials[material].make()
+        return material.make()
 
 
 class Bodies(Keys):
@@ -368,8 +374,8 @@ class Bodies(Keys):
 
     def bodies(self) -> dict[str, Any]:
         """Return the bodies by name."""
-        named = (("body", self.body), ("counterbody", self.counterbody))
-        return {name: self._body(name, body) for name, body in named if body is not None}
+        members = (("body", self.body), ("counterbody", self.counterbody))
+        return {name: self._body(name, body) for name, body in members if body is not None}
 
 
 class CaseTable(Bodies):
@@ -402,16 +408,16 @@ class CaseTable(Bodies):
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
         with at("shape"):
             shape = self.shape.make(folder, System(self.units).metres)
-        found: dict[str, Any] = {"shape": shape, **self.bodies()}
+        keywords: dict[str, Any] = {"shape": shape, **self.bodies()}
         if self.grid is not None:
             with at("grid"):
-                found["grid"] = self.grid.make()
-        return found | self.solve.keywords() | self._friction()
+                keywords["grid"] = self.grid.make()
+        return keywords | self.solve.keywords() | self._friction()
 
     def _friction(self) -> dict[str, Any]:
         """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
-        asked = self.slide or self.roll
-        if asked is None:
+        motion = self.slide or self.roll
+        if motion is None:
             return {}
         name = "roll" if self.slide is None else "slide"
         if self.slide is not None and self.roll is not None:
@@ -425,17 +431,17 @@ class CaseTable(Bodies):
                     f"{place}.friction",
                     f"must be 0 beside the table {name}: its tractions are known",
                 )
-        return asked.keywords()
+        return motion.keywords()
 
     def limits(self, table: Stress | Fatigue | None, *names: str) -> dict[str, list[float | None]]:
         """Return limits of the layers and the substrate of the body of a table, by their names."""
         body = self.body if table is None or table.body == "body" else self.counterbody
         if body is None:
             return {}
-        named = [*(layer.material for layer in body.layers)]
-        named += [body.substrate] if self._base(body) is None else []
-        found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
-        return {name: [getattr(material, name, None) for material in found] for name in names}
+        entries = [*(layer.material for layer in body.layers)]
+        entries += [body.substrate] if self._base(body) is None else []
+        materials = [self.materials.get(one) if isinstance(one, str) else one for one in entries]
+        return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 
 class WrongValue(ValueError):

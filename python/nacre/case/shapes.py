@@ -42,9 +42,9 @@ class Profile(Table):
 
     def make(self) -> nacre.LogarithmicProfile | nacre.SampledProfile:
         """Return the profile."""
-        given = self.model_dump(exclude={"kind"}, exclude_none=True)
+        arguments = self.model_dump(exclude={"kind"}, exclude_none=True)
         kind: str = self.kind  # type: ignore[attr-defined]
-        return PROFILES[kind](**given)  # type: ignore[no-any-return]
+        return PROFILES[kind](**arguments)  # type: ignore[no-any-return]
 
 
 PROFILE_TABLES = {
@@ -75,19 +75,19 @@ class Shape(Table):
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
-        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
-        if "profile" in given:
-            given["profile"] = self.profile.make()  # type: ignore[attr-defined]
+        arguments = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        if "profile" in arguments:
+            arguments["profile"] = self.profile.make()  # type: ignore[attr-defined]
         kind: str = self.kind  # type: ignore[attr-defined]
-        return SHAPES[kind](**given)  # type: ignore[no-any-return]
+        return SHAPES[kind](**arguments)  # type: ignore[no-any-return]
 
 
 SHAPES: dict[str, Any] = {
-    re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
-    for made in vars(nacre._core).values()
-    if isinstance(made, type)
-    and issubclass(made, nacre.types.Shape)
-    and made is not nacre.types.Shape
+    re.sub(r"(?<!^)(?=[A-Z])", "_", shape_class.__name__).lower(): shape_class
+    for shape_class in vars(nacre._core).values()
+    if isinstance(shape_class, type)
+    and issubclass(shape_class, nacre.types.Shape)
+    and shape_class is not nacre.types.Shape
 }
 """Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
 
@@ -110,15 +110,17 @@ class HeightMap(Shape):
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift, in the unit of length of the case."""
-        given = self.model_dump(exclude={"kind", "shift", "path"}, exclude_none=True)
+        arguments = self.model_dump(exclude={"kind", "shift", "path"}, exclude_none=True)
         if self.spacing is not None:
             sides = self.spacing if isinstance(self.spacing, list) else [self.spacing] * 2
-            given["spacing"] = tuple(metres * side for side in sides)
-        read = nacre.HeightMap.read(folder / self.path, **given)
+            arguments["spacing"] = tuple(metres * side for side in sides)
+        height_map = nacre.HeightMap.read(folder / self.path, **arguments)
         if metres == 1.0:
-            return read
-        spacing, center = ((x / metres, y / metres) for x, y in (read.spacing, read.center))
-        return nacre.HeightMap(read.heights / metres, spacing, center, read.periodic)
+            return height_map
+        spacing, center = (
+            (x / metres, y / metres) for x, y in (height_map.spacing, height_map.center)
+        )
+        return nacre.HeightMap(height_map.heights / metres, spacing, center, height_map.periodic)
 
 
 RANDOM = described(rough.random_surface)
@@ -140,8 +142,8 @@ class RandomSurface(Shape):
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
-        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
-        return rough.random_surface(**given)
+        arguments = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        return rough.random_surface(**arguments)
 
 
 class Crossed(Shape):
@@ -195,8 +197,8 @@ OWN_TABLES: dict[str, type[Shape]] = {
     "sum": Sum,
 }
 TABLES: dict[str, type[Shape]] = {
-    kind: table_of(kind, made, Shape, {"profile": AnyProfile})
-    for kind, made in SHAPES.items()
+    kind: table_of(kind, shape_class, Shape, {"profile": AnyProfile})
+    for kind, shape_class in SHAPES.items()
     if kind not in OWN_TABLES
 } | OWN_TABLES
 """Tables of all shapes, by kind."""

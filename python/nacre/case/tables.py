@@ -34,7 +34,7 @@ Counts = Annotated[list[Count], TWO]
 Flags = Annotated[list[bool], TWO]
 
 
-def said(words: str) -> Any:
+def with_words(words: str) -> Any:
     """Return words for a type of values, in the reference and in errors."""
     return Field(json_schema_extra={"words": words})
 
@@ -46,8 +46,8 @@ class Table(BaseModel):
 
     def keywords(self) -> dict[str, Any]:
         """Return the keys that were given, as keywords."""
-        given = {name: getattr(self, name) for name in self.model_fields_set}
-        return {name: _keyword(value) for name, value in given.items()}
+        values = {name: getattr(self, name) for name in self.model_fields_set}
+        return {name: _keyword(value) for name, value in values.items()}
 
 
 class Directions(Table):
@@ -77,14 +77,14 @@ def described(thing: Any) -> dict[str, str]:
     section = re.search(
         r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE
     )
-    found: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     for names, lines in re.findall(
         r"^(\w+(?:, \w+)*) : .*\n((?:[ \t]+.*(?:\n|\Z)|\n)+)",
         section[1] if section else "",
         re.MULTILINE,
     ):
-        found |= dict.fromkeys(names.split(", "), " ".join(lines.split()))
-    return found
+        descriptions |= dict.fromkeys(names.split(", "), " ".join(lines.split()))
+    return descriptions
 
 
 def table_of(
@@ -94,12 +94,12 @@ def table_of(
 
     A parameter is a number where `own` has no other type for it.
     """
-    told = described(maker)
+    descriptions = described(maker)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
     for one in inspect.signature(maker).parameters.values():
-        hint, description = (own or {}).get(one.name, Number), told.get(one.name)
+        hint, description = (own or {}).get(one.name, Number), descriptions.get(one.name)
         if one.default is one.empty:
             fields[one.name] = (hint, Field(description=description))
         else:
@@ -107,5 +107,5 @@ def table_of(
             fields[one.name] = (hint, Field(default=one.default, description=description))
     summary = inspect.cleandoc(maker.__doc__ or "").partition("\n")[0]
     name = kind.title().replace("_", "") + base.__name__
-    made: type[Any] = create_model(name, __base__=base, __doc__=summary, **fields)
-    return made
+    table: type[Any] = create_model(name, __base__=base, __doc__=summary, **fields)
+    return table

@@ -20,10 +20,10 @@ MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
 """Keywords of the motion along z."""
 STEP = (*MOTION, "friction", "shift", "force", "twist", "torque")
 """Keywords of a step of a history."""
-SHOWN = 1000
+MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""
 Progress = Callable[[Report], object]
-Told = Callable[[int, FrictionReport], object]
+StepProgress = Callable[[int, FrictionReport], object]
 """Function that is told the number of a step and its report."""
 
 
@@ -171,7 +171,7 @@ def slide(
     max_convolutions: int = 4000,
     coupling: bool = True,
     initial: FrictionSolution | History | None = None,
-    progress: Told | None = None,
+    progress: StepProgress | None = None,
     check: bool = True,
 ) -> Any:
     """Press a shape into a body and move it tangentially, with friction, in one call.
@@ -288,7 +288,7 @@ def roll(
     max_convolutions: int = 4000,
     coupling: bool = True,
     initial: FrictionSolution | History | None = None,
-    progress: Told | None = None,
+    progress: StepProgress | None = None,
     check: bool = True,
 ) -> Any:
     """Press a shape into a body, which rolls, in one call.
@@ -416,9 +416,9 @@ class Contact:
         threads: int | None = None,
     ) -> Self:
         """Plan the contact."""
-        made = super().__new__(cls)
-        made._plan = core.Plan(body, grid, counterbody, coefficients, threads)
-        return made
+        contact = super().__new__(cls)
+        contact._plan = core.Plan(body, grid, counterbody, coefficients, threads)
+        return contact
 
     @property
     def body(self) -> Planned:
@@ -561,11 +561,13 @@ class Contact:
         >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
         [5.0, 10.0]
         """
-        given = locals()
-        listed = _mappings(("a case", "cases", "solve", "in case"), cases, ("shape", *MOTION))
-        outcomes, failure = self._plan.solve_many(listed, given)
+        keywords = locals()
+        case_keywords = _mappings(
+            ("a case", "cases", "solve", "in case"), cases, ("shape", *MOTION)
+        )
+        outcomes, failure = self._plan.solve_many(case_keywords, keywords)
         solutions: list[Any] = []
-        for number, (case, outcome) in enumerate(zip(listed, outcomes, strict=True)):
+        for number, (case, outcome) in enumerate(zip(case_keywords, outcomes, strict=True)):
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
@@ -600,7 +602,7 @@ class Contact:
         max_convolutions: int = 4000,
         coupling: bool = True,
         initial: FrictionSolution | History | None = None,
-        progress: Told | None = None,
+        progress: StepProgress | None = None,
         check: bool = True,
     ) -> Any:
         """Press a shape into the body and move it tangentially, with friction.
@@ -658,7 +660,7 @@ class Contact:
         max_convolutions: int = 4000,
         coupling: bool = True,
         initial: FrictionSolution | History | None = None,
-        progress: Told | None = None,
+        progress: StepProgress | None = None,
         check: bool = True,
     ) -> Any:
         """Press a shape into the body, which rolls steadily, or cell by cell from a given state.
@@ -705,32 +707,32 @@ class Contact:
 
     def __repr__(self) -> str:
         """Return the call that makes the plan."""
-        given: Any = self.coefficients
-        if given is not None and given.size <= SHOWN:
-            given = given.tolist()
+        coefficients: Any = self.coefficients
+        if coefficients is not None and coefficients.size <= MOST_PRINTED:
+            coefficients = coefficients.tolist()
         return (
             f"Contact({self.body!r}, {self.grid!r}, counterbody={self.counterbody!r}, "
-            f"coefficients={given!r}, threads={self._plan.asked_threads()!r})"
+            f"coefficients={coefficients!r}, threads={self._plan.asked_threads()!r})"
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         keywords = {"coefficients": self.coefficients, "threads": self._plan.asked_threads()}
-        given = (type(self), (self.body, self.grid, self.counterbody), keywords)
-        return copyreg.__newobj_ex__, given  # type: ignore[attr-defined]
+        call = (type(self), (self.body, self.grid, self.counterbody), keywords)
+        return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
 
 
-def _solved(given: dict[str, Any], plan: core.Plan | None = None) -> Solution:
+def _solved(keywords: dict[str, Any], plan: core.Plan | None = None) -> Solution:
     """Return the solution of what a user asked for with these arguments."""
-    _check_cells(given)
-    initial, progress = given["initial"], given["progress"]
+    _check_cells(keywords)
+    initial, progress = keywords["initial"], keywords["progress"]
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
     is_solved = isinstance(initial, Solution)
-    given["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
+    keywords["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
     if callable(progress):
-        given["progress"] = lambda *parts: progress(Report._of(parts))
-    return _finished(core.solve(given, plan), given["shape"], given["check"], stacklevel=4)
+        keywords["progress"] = lambda *parts: progress(Report._of(parts))
+    return _finished(core.solve(keywords, plan), keywords["shape"], keywords["check"], stacklevel=4)
 
 
 def _finished(solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int) -> Solution:
@@ -745,14 +747,14 @@ def _finished(solved: core.Solved, shape: core.Shape, check: bool, stacklevel: i
     return solution
 
 
-def _check_cells(given: Mapping[str, Any]) -> None:
+def _check_cells(keywords: Mapping[str, Any]) -> None:
     """Raise a `ValueError` if a grid is given, and how many cells one may have that is chosen."""
-    if given.get("max_cells") is not None and given["grid"] is not None:
+    if keywords.get("max_cells") is not None and keywords["grid"] is not None:
         raise ValueError("max_cells must not be given beside grid: it limits a grid that is chosen")
 
 
 def _mappings(
-    words: tuple[str, str, str, str], given: Any, names: Sequence[str]
+    words: tuple[str, str, str, str], entries: Any, names: Sequence[str]
 ) -> list[dict[str, Any]]:
     """Return cases or steps as dictionaries with these keys.
 
@@ -760,67 +762,71 @@ def _mappings(
     """
     one, all_, function, note = words
     try:
-        items = iter(given)
+        items = iter(entries)
     except TypeError as error:
-        raise TypeError(f"{all_} must be an iterable of mappings, got {given!r}") from error
-    listed = list(items)
-    for number, item in enumerate(listed):
+        raise TypeError(f"{all_} must be an iterable of mappings, got {entries!r}") from error
+    mappings = list(items)
+    for number, item in enumerate(mappings):
         if not isinstance(item, Mapping):
-            said = f"{one} must be a mapping of keywords of `{function}`, got {item!r}"
+            message = f"{one} must be a mapping of keywords of `{function}`, got {item!r}"
         elif others := [key for key in item if key not in names]:
-            said = f"keys of {one} must be among {', '.join(names)}, got {others[0]!r}"
+            message = f"keys of {one} must be among {', '.join(names)}, got {others[0]!r}"
         elif "shape" in names and item.get("shape") is None:
-            said = f"{one} must have a shape"
+            message = f"{one} must have a shape"
         else:
             continue
-        refused = TypeError(said)
-        refused.add_note(f"{note} {number}")
-        raise refused
-    return [dict(item) for item in listed]
+        refusal = TypeError(message)
+        refusal.add_note(f"{note} {number}")
+        raise refusal
+    return [dict(item) for item in mappings]
 
 
 def _steps(
-    begin: Callable[..., core.FrictionSteps], given: dict[str, Any], plan: core.Plan | None = None
+    begin: Callable[..., core.FrictionSteps],
+    keywords: dict[str, Any],
+    plan: core.Plan | None = None,
 ) -> Any:
     """Return the solutions of a function or method that a user called with these arguments.
 
     Steps are solved one after another, and warn of what they find; an exception carries those that
     are finished.
     """
-    _check_cells(given)
-    progress = given["progress"]
+    _check_cells(keywords)
+    progress = keywords["progress"]
     if callable(progress):
-        given["progress"] = lambda number, text: progress(number, FrictionReport._made(text))
-    if isinstance(given["initial"], History) and given["initial"]:
-        given["initial"] = given["initial"][-1]
-    if isinstance(given["initial"], FrictionSolution):
-        given["initial"] = given["initial"]._solved
-    asked = None
-    if given.get("steps") is not None:
+        keywords["progress"] = lambda number, text: progress(
+            number, FrictionReport._from_text(text)
+        )
+    if isinstance(keywords["initial"], History) and keywords["initial"]:
+        keywords["initial"] = keywords["initial"][-1]
+    if isinstance(keywords["initial"], FrictionSolution):
+        keywords["initial"] = keywords["initial"]._solved
+    step_keywords = None
+    if keywords.get("steps") is not None:
         words = ("a step", "steps", "slide", "step")
-        asked = _mappings(words, given["steps"], STEP)
-    for step in (given, *(asked or ())):
+        step_keywords = _mappings(words, keywords["steps"], STEP)
+    for step in (keywords, *(step_keywords or ())):
         if np.asarray(friction := step.get("friction")).dtype.kind == "b":
             raise TypeError(f"friction must be a number, or one for each cell, got {friction!r}")
-    if asked is not None:
-        steps = core.slide(given, asked, plan)
+    if step_keywords is not None:
+        steps = core.slide(keywords, step_keywords, plan)
     else:
-        steps = begin(given, plan=plan)
-    count = len(asked) if asked else given.get("cells") or 1
+        steps = begin(keywords, plan=plan)
+    count = len(step_keywords) if step_keywords else keywords.get("cells") or 1
     solutions: list[FrictionSolution] = []
     try:
         with lasting("steps", progress) as tell:
             for solved in steps:
                 solution = FrictionSolution._of(solved)
-                ended = solution.report.termination
-                for warning in solution.normal.report.warnings if ended != "stopped" else []:
+                termination = solution.report.termination
+                for warning in solution.normal.report.warnings if termination != "stopped" else []:
                     warnings.warn(warning, core.NacreWarning, stacklevel=3)
-                if given["check"] and ended == "iteration limit":
+                if keywords["check"] and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution
                     raise error
                 solutions.append(solution)
-                if ended == "stopped":
+                if termination == "stopped":
                     break
                 if progress is None and tell is not None:
                     tell(len(solutions) / count)

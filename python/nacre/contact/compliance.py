@@ -260,9 +260,9 @@ class Convolution:
 
     @classmethod
     def _of(cls, planned: core.Convolution) -> Self:
-        made = object.__new__(cls)
-        made._planned = planned
-        return made
+        convolution = object.__new__(cls)
+        convolution._planned = planned
+        return convolution
 
     @staticmethod
     def of_bodies(
@@ -404,5 +404,5 @@ class Convolution:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
-        given = (type(self), (self.coefficients,), {"threads": self._planned.asked_threads})
-        return copyreg.__newobj_ex__, given  # type: ignore[attr-defined]
+        call = (type(self), (self.coefficients,), {"threads": self._planned.asked_threads})
+        return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]

@@ -100,9 +100,9 @@ class FrictionReport(Result):
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        said = cls._checked({"warnings": state.pop("warnings") or ()})
+        checked_warnings = cls._checked({"warnings": state.pop("warnings") or ()})
         known = {name: value for name, value in state.items() if value is not None}
-        return dataclasses.replace(super()._restored(known), **said)
+        return dataclasses.replace(super()._restored(known), **checked_warnings)
 
     def __repr__(self) -> str:
         """Return how the iteration ended."""
@@ -174,9 +174,9 @@ class FrictionSolution(Result, Stressed):
         normal = Solution._of(solved.normal())
         warnings = tuple(normal.report.warnings)
         report = FrictionReport(**numbers.pop("report"), warnings=warnings)
-        made = cls(solved, report=report, **numbers)
-        made.__dict__["normal"] = normal
-        return made
+        solution = cls(solved, report=report, **numbers)
+        solution.__dict__["normal"] = normal
+        return solution
 
     @functools.cached_property
     def normal(self) -> Solution:
@@ -395,8 +395,8 @@ class FrictionSolution(Result, Stressed):
             normal = Solution.from_dict(values.heading("Solution") | state["normal"])
             fields = {name: state[name] for name in ("friction", *VECTORS)}
             rest = {name: state[name] for name in ("motion", "report")}
-            told = as_text(cls.__name__, rest)
-            return cls._of(core.FrictionSolved(normal._solved, rest=told, **fields))
+            text = as_text(cls.__name__, rest)
+            return cls._of(core.FrictionSolved(normal._solved, rest=text, **fields))
 
 
 class History(list[FrictionSolution], Warned):
@@ -439,14 +439,14 @@ class History(list[FrictionSolution], Warned):
         """
         state = self.to_dict()
         state["steps"] = [dict(step) for step in state["steps"]]
-        arrays = [files.taken(step, WITH_FRICTION) for step in state["steps"]]
+        arrays = [files.take_arrays(step, WITH_FRICTION) for step in state["steps"]]
         fields: dict[str, Any] = {}
         for row in WITH_FRICTION:
-            found = [step.get(row.name) for step in arrays]
-            if row.follows or all(values is not None for values in found):
+            columns = [step.get(row.name) for step in arrays]
+            if row.follows or all(values is not None for values in columns):
                 fields[row.name] = [row.of(step) for step in self]
             else:  # of some steps alone, as a coefficient of friction that becomes a field
-                for step, values in zip(state["steps"], found, strict=True):
+                for step, values in zip(state["steps"], columns, strict=True):
                     if values is not None:
                         row.put(step, values.tolist())
         return self._dataset(fields, state)
@@ -546,20 +546,20 @@ class History(list[FrictionSolution], Warned):
     def _table(self) -> list[list[Any]]:
         """Return the numbers of each step, after their headings."""
         first = checked(self)[0]
-        kept = [row for row, _ in tables.numbers(first)]
-        axes = [("x", "y") if row.dims else ("",) for row in kept]
+        quantities = [row for row, _ in tables.numbers(first)]
+        axes = [("x", "y") if row.dims else ("",) for row in quantities]
         heads = [
-            tables.headed(row, first, axis)
-            for row, names in zip(kept, axes, strict=True)
+            tables.heading(row, first, axis)
+            for row, names in zip(quantities, axes, strict=True)
             for axis in names
         ]
         rows = [
-            [k, *np.hstack([np.ravel(row.of(step)) for row in kept]).tolist()]
+            [k, *np.hstack([np.ravel(row.of(step)) for row in quantities]).tolist()]
             for k, step in enumerate(self)
         ]
         ends = (step.report.termination for step in self)
-        ended = [[*row, end] for row, end in zip(rows, ends, strict=True)]
-        return [["step", *heads, "termination"], *ended]
+        table_rows = [[*row, end] for row, end in zip(rows, ends, strict=True)]
+        return [["step", *heads, "termination"], *table_rows]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the named states of the steps, as plain data; see `FrictionSolution.to_dict`."""
@@ -606,8 +606,8 @@ class History(list[FrictionSolution], Warned):
 
     def __getitem__(self, place: Any) -> Any:
         """Return a step, or the history of some of them."""
-        found = super().__getitem__(place)
-        return type(self)(found) if isinstance(place, slice) else found
+        selection = super().__getitem__(place)
+        return type(self)(selection) if isinstance(place, slice) else selection
 
     def __add__(self, other: Any) -> Any:
         """Return the history of these steps and others."""

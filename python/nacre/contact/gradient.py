@@ -54,7 +54,7 @@ def described(output: Output) -> tuple[str, str]:
             # The pressure of a cell is no smooth function of what moves the peak between cells.
             hint = '; take "located_peak" for the peak' if output == "peak_pressure" else ""
             raise ValueError(
-                f"output must be {_listed(WORDS)}, a pair such as "
+                f"output must be {_quoted(WORDS)}, a pair such as "
                 f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"{hint}'
             )
         return output, json.dumps(WORDS[output])
@@ -70,7 +70,7 @@ def described(output: Output) -> tuple[str, str]:
         return f"pressure_norm {power:g}", json.dumps({word: power})
     if word in ("pressure", "displacement", "gap"):
         place = _numbers(word, value, 2)
-        return f"{word} at {_said(place)}", json.dumps({word: place})
+        return f"{word} at {_coordinates(place)}", json.dumps({word: place})
     raise ValueError(
         'output must be ("pressure_norm", r), ("pressure", (x, y)), ("displacement", (x, y)) or '
         f'("gap", (x, y)), got {output!r}'
@@ -86,17 +86,17 @@ def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
         raise ValueError('a stress must have the key "stress"')
     word = table["stress"]
     if word not in MEASURES:
-        raise ValueError(f'stress must be {_listed(MEASURES)}, got "{word}"')
-    given = [key for key in PLACES if key in table]
-    if len(given) != 1:
+        raise ValueError(f'stress must be {_quoted(MEASURES)}, got "{word}"')
+    keys = [key for key in PLACES if key in table]
+    if len(keys) != 1:
         raise ValueError('a stress must have exactly one of the keys "at", "layer" and "interface"')
-    (key,) = given
+    (key,) = keys
     where, side = table[key], table.get("side", "below")
     sharp = {"sharpness": core.real("sharpness", table.get("sharpness", SHARPNESS))}
     place: dict[str, Any]
     if key == "at":
         point = _numbers("at", where, 3)
-        name, place = f"{word} at {_said(point)}", {"point": [point, side]}
+        name, place = f"{word} at {_coordinates(point)}", {"point": [point, side]}
     elif key == "layer":
         number = core.integer(key, where)
         layer = {"layer": number, "depths": core.integer("depths", table.get("depths", DEPTHS))}
@@ -116,11 +116,11 @@ def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
     return name, json.dumps({"stress": stress})
 
 
-def _listed(words: Mapping[str, Any]) -> str:
+def _quoted(words: Mapping[str, Any]) -> str:
     return ", ".join(f'"{word}"' for word in words)
 
 
-def _said(numbers: list[float]) -> str:
+def _coordinates(numbers: list[float]) -> str:
     return f"({', '.join(f'{number:g}' for number in numbers)})"
 
 
@@ -131,7 +131,7 @@ def _numbers(name: str, values: Any, count: int) -> list[float]:
 
 
 @dataclass(frozen=True)
-class Made:
+class MethodCall:
     """The call of a method of `Solution` that makes a value, for pickles."""
 
     solution: Any
@@ -185,7 +185,7 @@ class Gradient(Fields):
     """
     _linear: core.Linear
     """Linearisation of the compiled module, for steps that are asked for later."""
-    _made: Made
+    _call: MethodCall
     """Call that made it."""
 
     @cached_property
@@ -245,7 +245,7 @@ class Gradient(Fields):
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Return the call that makes the gradient again."""
-        return self._made.reduced()
+        return self._call.reduced()
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -272,7 +272,7 @@ class Direction(Fields):
 
     Steps may have either sign.
     """
-    _made: Made
+    _call: MethodCall
     """Call that made it."""
 
     def __eq__(self, other: object) -> bool:
@@ -293,14 +293,14 @@ class Direction(Fields):
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Return the call that makes the change again."""
-        return self._made.reduced()
+        return self._call.reduced()
 
 
 def gradients(
     solution: Any,
     method: str,
     outputs: Sequence[Any],
-    told: Sequence[tuple[str, Any]],
+    named_outputs: Sequence[tuple[str, Any]],
     wrt: Sequence[str] | None,
     **options: Any,
 ) -> list[Gradient]:
@@ -320,7 +320,7 @@ def gradients(
         Shape and tolerance.
     """
     linear, keywords = linearised(solution, **options)
-    found = linear.gradients([output for _, output in told], wrt)
+    derivatives = linear.gradients([output for _, output in named_outputs], wrt)
     return [
         Gradient(
             name,
@@ -330,10 +330,10 @@ def gradients(
             warnings,
             gap,
             linear,
-            Made(solution, method, (output, wrt), keywords),
+            MethodCall(solution, method, (output, wrt), keywords),
         )
         for output, (name, _), (value, values, margin, warnings, gap) in zip(
-            outputs, told, found, strict=True
+            outputs, named_outputs, derivatives, strict=True
         )
     ]
 

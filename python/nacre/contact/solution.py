@@ -20,7 +20,7 @@ from nacre._tools.units import written
 from nacre.contact.gradient import (
     Direction,
     Gradient,
-    Made,
+    MethodCall,
     Output,
     described,
     gradients,
@@ -83,7 +83,7 @@ class Report(Result):
     ('converged', True, [])
     """
 
-    _TOLD = ("free_ends", "warning_kinds", "_told")
+    _DERIVED = ("free_ends", "warning_kinds", "_text")
     _LATER = ("rolling_direction",)
 
     termination: Ending
@@ -159,7 +159,7 @@ class Report(Result):
     """Tolerance that was asked for."""
     seconds: float
     """Seconds that the solve took, without planning."""
-    _told: str
+    _text: str
     """What the compiled module tells of the report, as JSON text."""
 
     @property
@@ -171,28 +171,28 @@ class Report(Result):
     def _of(cls, parts: Parts) -> Self:
         """Return the report of the parts that the compiled module hands over."""
         text, *bodies = parts
-        told = json.loads(text)
-        state = cls._data(told)
+        report_data = json.loads(text)
+        state = cls._data(report_data)
         balance, motion = state["balance"], tuples(state["motion"])
-        found = {
+        fields = {
             "balance": (balance["force"], *balance["moment"]),
-            "free_ends": told["free_ends"],
-            "warnings": told["messages"],
+            "free_ends": report_data["free_ends"],
+            "warnings": report_data["messages"],
             "warning_kinds": [warning["kind"] for warning in state["warnings"]],
             "motion": {k: v for k, v in motion.items() if v not in (None, (None, None))},
             "rolling_direction": tuples(state["rolling_direction"]),
         }
-        return cls(**state | found | dict(zip(BODIES, bodies, strict=True)), _told=text)
+        return cls(**state | fields | dict(zip(BODIES, bodies, strict=True)), _text=text)
 
     @staticmethod
-    def _data(told: dict[str, Any]) -> dict[str, Any]:
+    def _data(report_data: dict[str, Any]) -> dict[str, Any]:
         """Return the state, but for grid and bodies, in what the compiled module tells."""
-        data: dict[str, Any] = told["data"]
+        data: dict[str, Any] = report_data["data"]
         return data | {name: math.inf for name in ENDLESS if data[name] is None}
 
     def _state(self) -> dict[str, Any]:
         bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
-        return self._data(json.loads(self._told)) | bodies
+        return self._data(json.loads(self._text)) | bodies
 
     @classmethod
     def _parts(cls, data: Any) -> Parts:
@@ -200,17 +200,17 @@ class Report(Result):
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
         state = values.named("report", data, cls._names(), cls._LATER)
-        made: Any = []
+        bodies: Any = []
         for name, kind in BODIES.items():
-            given = state.pop(name)
-            if not isinstance(value := values.decode(given), kind):
-                raise ValueError(f'report: the value of the key "{name}" does not fit: {given!r}')
-            made.append(value)
+            encoded = state.pop(name)
+            if not isinstance(value := values.decode(encoded), kind):
+                raise ValueError(f'report: the value of the key "{name}" does not fit: {encoded!r}')
+            bodies.append(value)
         for name, keys in NESTED.items():
             if isinstance(state[name], Mapping):
                 state[name] = values.named(name, state[name], keys)
         state |= {name: None for name in ENDLESS if state[name] == math.inf}
-        return as_text("Report", state), *made
+        return as_text("Report", state), *bodies
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -267,9 +267,9 @@ class Solution(Result, Stressed):
     @classmethod
     def _of(cls, solved: core.Solved, shape: core.Shape | None = None) -> Self:
         """Return a solution of the compiled module."""
-        made = object.__new__(cls)
-        made.__dict__.update(_solved=solved, _shape=shape)
-        return made
+        solution = object.__new__(cls)
+        solution.__dict__.update(_solved=solved, _shape=shape)
+        return solution
 
     @cached_property
     def _numbers(self) -> Numbers:
@@ -310,11 +310,11 @@ class Solution(Result, Stressed):
 
         It includes that of the solutions before.
         """
-        found = self._solved.field("indentation")
-        if found is None:
-            found = np.zeros(self.grid.shape)
-            found.setflags(write=False)
-        return found
+        field = self._solved.field("indentation")
+        if field is None:
+            field = np.zeros(self.grid.shape)
+            field.setflags(write=False)
+        return field
 
     @cached_property
     def coefficients(self) -> Field | None:
@@ -536,10 +536,10 @@ class Solution(Result, Stressed):
         -0.67
         """
         outputs = output if isinstance(output, list) else [output]
-        told = [described(one) for one in outputs]
+        named_outputs = [described(one) for one in outputs]
         options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
-        found = gradients(self, "gradient", outputs, told, wrt, **options)
-        return found if isinstance(output, list) else found[0]
+        all_gradients = gradients(self, "gradient", outputs, named_outputs, wrt, **options)
+        return all_gradients if isinstance(output, list) else all_gradients[0]
 
     def jvp(
         self,
@@ -585,7 +585,7 @@ class Solution(Result, Stressed):
             raise TypeError("directions must be a dict of paths and their rates")
         linear, keywords = linearised(self, shape, tolerance)
         change = linear.jvp(list((directions or {}).items()), gap)
-        return Direction(*change, Made(self, "jvp", (directions, gap), keywords))
+        return Direction(*change, MethodCall(self, "jvp", (directions, gap), keywords))
 
     def vjp(
         self,
@@ -627,8 +627,8 @@ class Solution(Result, Stressed):
         1.0
         """
         options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
-        told = [("weighted pressure", cotangent)]
-        return gradients(self, "vjp", [cotangent], told, wrt, **options)[0]
+        named_outputs = [("weighted pressure", cotangent)]
+        return gradients(self, "vjp", [cotangent], named_outputs, wrt, **options)[0]
 
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
         """Draw map, sections and main numbers; needs ``nacre-contact[plot]``.
@@ -812,11 +812,11 @@ class Solution(Result, Stressed):
         if depths is None and options:
             names = ", ".join(sorted(options))
             raise TypeError(f"{names}: without depths there are no such options")
-        for given, ending, name in (
+        for is_given, ending, name in (
             (depths is not None, ".vtr", "depths are"),
             (whole, ".csv", "whole is"),
         ):
-            if given and Path(path).suffix.lower() in {*writers} - {ending}:
+            if is_given and Path(path).suffix.lower() in {*writers} - {ending}:
                 raise ValueError(f"path must end in {ending} where {name} given, got {str(path)!r}")
         if depths is not None:
             writers[".vtr"] = lambda file: vtk.write_stress(self, file, depths, options)

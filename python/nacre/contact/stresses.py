@@ -59,7 +59,7 @@ class Stress(Result, Warned):
     (0.31, 0.5)
     """
 
-    _TOLD = ("warnings",)
+    _DERIVED = ("warnings",)
     _LATER = ("uncertainty",)
 
     z: Array
@@ -259,21 +259,21 @@ class _Extremes(Result):
     """Peaks, and their errors by name; in plain data an error stands with its peak."""
 
     _COMPILED = True
-    _TOLD = ("uncertainty",)
+    _DERIVED = ("uncertainty",)
     _PEAKS: ClassVar[tuple[str, ...]]
 
     uncertainty: dict[str, float]
 
     @classmethod
-    def _made(cls, text: str) -> Self:
+    def _from_text(cls, text: str) -> Self:
         return cls._read(json.loads(text))
 
     @classmethod
     def _read(cls, data: dict[str, Any]) -> Self:
         """Return the extremes that data of the compiled module describe."""
-        told = {name: data[name] for name in cls._PEAKS if data[name] is not None}
-        errors = {name: peak["uncertainty"] for name, peak in told.items()}
-        peaks = {name: (peak["value"], tuple(peak["at"])) for name, peak in told.items()}
+        peak_data = {name: data[name] for name in cls._PEAKS if data[name] is not None}
+        errors = {name: peak["uncertainty"] for name, peak in peak_data.items()}
+        peaks = {name: (peak["value"], tuple(peak["at"])) for name, peak in peak_data.items()}
         known = {name: error for name, error in errors.items() if error is not None}
         return cls(**data | peaks | {"uncertainty": known})
 
@@ -401,7 +401,7 @@ class StressSummary(Tabular, Warned):
     """
 
     _COMPILED = True
-    _TOLD = ("warnings",)
+    _DERIVED = ("warnings",)
     _LATER = ("friction",)
 
     layers: list[LayerStress]
@@ -420,7 +420,7 @@ class StressSummary(Tabular, Warned):
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
-    def _made(cls, text: str, friction: tuple[float, float] | None = None) -> Self:
+    def _from_text(cls, text: str, friction: tuple[float, float] | None = None) -> Self:
         data = json.loads(text) | {"friction": friction}
         data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
         data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
@@ -430,7 +430,7 @@ class StressSummary(Tabular, Warned):
     def _restored(cls, state: dict[str, Any]) -> Self:
         friction = cls._checked({"friction": state.pop("friction")})["friction"]
         text = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
-        return cls._made(text, friction)
+        return cls._from_text(text, friction)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -446,9 +446,9 @@ class StressSummary(Tabular, Warned):
         heads, *rows = self._file_rows()
         variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
         table = [(row, row.unit) for row in EXTREMES]
-        said = {name: str(value) for name, value in self._comments().items()}
+        attributes = {name: str(value) for name, value in self._comments().items()}
         title = "extremes of the stress"
-        return files.dataset(title, table, variables, {}, self.to_dict(), **said)
+        return files.dataset(title, table, variables, {}, self.to_dict(), **attributes)
 
     def _comments(self) -> dict[str, Any]:
         """Return what stands beside the table."""
@@ -611,7 +611,7 @@ class StressPlan:
         with lasting("stresses", progress) as progress:
             text = core.stress_summary(self._plan, locals())
         sliding = self._solution._sliding(friction, direction, self._member)
-        return _warned(StressSummary._made(text, sliding))
+        return _warned(StressSummary._from_text(text, sliding))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -789,7 +789,7 @@ class Stressed:
         _check_limits_of(self, body, yield_stress, strength)
         with lasting("stresses", progress) as progress:
             text = core.stress_summary(self._solved, locals())
-        return _warned(StressSummary._made(text, self._sliding(friction, direction, body)))
+        return _warned(StressSummary._from_text(text, self._sliding(friction, direction, body)))
 
     def _sliding(
         self, friction: float, direction: Direction | None, body: Member
@@ -898,7 +898,7 @@ def stress(
     return Stress(**core.stress_under(body, grid, pressure, z, locals()))
 
 
-Told = TypeVar("Told", Stress, StressSummary)
+StressResult = TypeVar("StressResult", Stress, StressSummary)
 
 
 def check_limits(name: str, limits: Sequence[float | None], body: core.HalfSpace) -> None:
@@ -924,11 +924,11 @@ def _check_limits_of(
     report = getattr(solution, "normal", solution).report
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     if isinstance(body, core.HalfSpace):
-        for name, given in (("yield_stress", yield_stress), ("strength", strength)):
-            check_limits(name, core.layer_values(body, name, {name: given}), body)
+        for name, limits in (("yield_stress", yield_stress), ("strength", strength)):
+            check_limits(name, core.layer_values(body, name, {name: limits}), body)
 
 
-def _warned(result: Told) -> Told:
+def _warned(result: StressResult) -> StressResult:
     """Issue the warnings of a result, at the line that called its function; return the result."""
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)

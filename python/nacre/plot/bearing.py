@@ -64,23 +64,23 @@ def bearing(solution: BearingSolution, axes: Any = None) -> dict[str, Any]:
     with styled():
         if axes is None:
             figure = plt.figure(figsize=(WIDTH, 0.42 * WIDTH), layout="constrained")
-            made = figure.subplot_mosaic(
+            panels = figure.subplot_mosaic(
                 [["loads", "pressure"]],
                 width_ratios=[1, 1.5],
                 per_subplot_kw={"loads": {"projection": "polar"}},
             )
         elif isinstance(axes, Mapping):
-            made = dict(axes)
+            panels = dict(axes)
         else:
-            made = {"loads": axes}
-        if unknown := [name for name in made if name not in ("loads", "pressure")]:
+            panels = {"loads": axes}
+        if unknown := [name for name in panels if name not in ("loads", "pressure")]:
             raise ValueError(f"axes must be named loads and pressure, got {unknown[0]!r}")
-        if "loads" in made:
-            load_distribution(solution, axes=made["loads"])
-        if "pressure" in made:
+        if "loads" in panels:
+            load_distribution(solution, axes=panels["loads"])
+        if "pressure" in panels:
             element = int(solution.loads[:, 0].argmax())
-            elements_pressure(solution, [element], axes=made["pressure"])
-        return made
+            elements_pressure(solution, [element], axes=panels["pressure"])
+        return panels
 
 
 @in_si
@@ -239,15 +239,15 @@ def elements_pressure(
             else:
                 drawn.append(([element], name, x, values))
         for number, (alike, which, x, values) in enumerate(drawn):
-            told = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
-            label = f"{which} ring" if len(elements) == 1 else told
+            element_label = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
+            label = f"{which} ring" if len(elements) == 1 else element_label
             peak = written(float(values.max()), "Pa", 3)
             style = {**look(number), "label": f"{label} (peak {peak})"}
             axes.plot(length.factor * x, scale.factor * values, **style)
-        said = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
+        title = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
         if solution.model == "iso16281":
-            said += ", Hertz's pressure of laminae"
-        axes.set(xlabel=f"x along the element [{length.unit}]", title=said, ylim=(0, None))
+            title += ", Hertz's pressure of laminae"
+        axes.set(xlabel=f"x along the element [{length.unit}]", title=title, ylim=(0, None))
         if curves:
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
     return axes

@@ -110,8 +110,8 @@ def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = N
         drawn = sum(not str(line.get_label()).startswith("_") for line in axes.lines)
         for number, name in enumerate(found.names):
             colour = COLOURS[(drawn + number) % len(COLOURS)]
-            said = f"{label}, {name}" if label else name
-            axes.plot(friction, found.limits[number][order], color=colour, label=said)
+            line_label = f"{label}, {name}" if label else name
+            axes.plot(friction, found.limits[number][order], color=colour, label=line_label)
             axes.plot(friction, found.first_yield[number][order], color=colour, linewidth=0.6)
         axes.set(xlabel="coefficient of friction", ylabel="peak pressure / shear yield stress")
         axes.set_ylim(bottom=0.0)

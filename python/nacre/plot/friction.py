@@ -288,7 +288,7 @@ def creep_curve(
         axes = axes or new_axes(0.5, 0.4)
         look = next_look(axes) | style
         column = dataset[quantity]
-        scale = Scale.given(float(np.abs(column).max()), column.attrs["units"])
+        scale = Scale.in_unit(float(np.abs(column).max()), column.attrs["units"])
         axes.plot(1e3 * dataset.creepage, scale.factor * column, marker=".", **look)
         name = dataset.creepage.attrs.get("long_name", "creepage")
         label = f"{quantity.replace('_', ' ')} [{scale.unit}]"

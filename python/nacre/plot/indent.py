@@ -131,8 +131,8 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
         look = {"family": "monospace", "va": "top", "transform": below.transAxes}
         # A letter is 0.6 of its size wide; the page keeps a margin.
         size = 0.9 * 72 * WIDTH / (0.6 * LETTERS)
-        said = below.text(0, 1, "\n".join(rows), size=size, **look)
-        said.set_in_layout(False)
+        page_text = below.text(0, 1, "\n".join(rows), size=size, **look)
+        page_text.set_in_layout(False)
         with replacing(Path(path)) as temporary:
             figure.savefig(temporary)
         plt.close(figure)

@@ -121,8 +121,8 @@ def interface_map(
         outline(axes, solution, (across.factor, up.factor))
         if same:
             axes.set_aspect("equal")
-        said = "the contact outlined" if same else "x and y to different scales"
-        axes.set_title(f"interfaces[{interface}] at z = {written(depth, 'm', 3)}; {said}")
+        note = "the contact outlined" if same else "x and y to different scales"
+        axes.set_title(f"interfaces[{interface}] at z = {written(depth, 'm', 3)}; {note}")
     return axes
 
 

@@ -97,13 +97,13 @@ def load_curve(
     pressure = Scale.of(float(curve["pressure"].max()), "Pa")
     values = curve[quantity].values
     scale = None if unit in ("1", "Pa/m") else Scale.of(float(np.abs(values).max()), unit)
-    shown = symbol(unit) if scale is None else scale.unit
+    unit_symbol = symbol(unit) if scale is None else scale.unit
     with styled():
         axes = axes or new_axes(0.7, 0.5)
         look: dict[str, Any] = {"marker": "o", "markersize": 3, **next_look(axes), **style}
         x, y = pressure.factor * curve["pressure"].values, (scale.factor if scale else 1) * values
         axes.loglog(x, y, **look)
-        label = words if unit == "1" else f"{words} [{shown}]"
+        label = words if unit == "1" else f"{words} [{unit_symbol}]"
         axes.set(xlabel=f"mean pressure [{pressure.unit}]", ylabel=label)
     return axes
 
@@ -208,9 +208,9 @@ def spectrum(spectra: xarray.Dataset, axes: Axes | None = None) -> Axes:
         for name in ("undeformed", "deformed"):
             density = spectra[name].values
             # What is rounding beside the largest is not drawn.
-            kept = density > 1e-20 * largest
+            visible = density > 1e-20 * largest
             look = next_look(axes) | {"label": name}
-            axes.loglog(spectra["wavenumber"].values[kept], density[kept], **look)
+            axes.loglog(spectra["wavenumber"].values[visible], density[visible], **look)
         axes.set(
             xlabel=f"wavenumber [{spectra['wavenumber'].attrs['units']}]",
             ylabel=f"spectral density [{spectra['deformed'].attrs['units']}]",

@@ -65,7 +65,7 @@ def section(
         axes = axes or new_axes(1.0, 0.5)
         window = _window(solution, along, quantity)
         length = Scale.of(np.abs(window).max(), "m")
-        scale = Scale.of(_shown(position, values, window).max(initial=0.0), units()[quantity])
+        scale = Scale.of(_visible(position, values, window).max(initial=0.0), units()[quantity])
         axes.plot(length.factor * position, scale.factor * values, **(next_look(axes) | style))
         _finish(axes, along, window, length, scale, quantity)
         if quantity != "line_load":
@@ -118,7 +118,7 @@ def compare(
     cuts = {name: cut(s, along, at, quantity) for name, s in solutions.items()}
     windows = np.array([_window(s, along, quantity) for s in solutions.values()])
     window = np.array([windows[:, 0].min(), windows[:, 1].max()])
-    largest = max(_shown(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
+    largest = max(_visible(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
     length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, units()[quantity])
     with styled():
         axes = axes or new_axes(1.0, 0.55)
@@ -171,10 +171,10 @@ def _window(solution: Solution, along: str, quantity: str) -> Array:
     return np.array([max(contact[0] - margin, low), min(contact[1] + margin, high)])
 
 
-def _shown(position: Array, values: Array, window: Array) -> Array:
+def _visible(position: Array, values: Array, window: Array) -> Array:
     inside = (position >= window[0]) & (position <= window[1]) & np.isfinite(values)
-    shown: Array = np.abs(values[inside])
-    return shown
+    magnitudes: Array = np.abs(values[inside])
+    return magnitudes
 
 
 def _finish(

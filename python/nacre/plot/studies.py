@@ -111,7 +111,7 @@ def curve(
         axes = axes or new_axes(0.6, 0.42)
         x = _side(axes, "x", study[str(field.dims[-1])])
         errors = _errors(study, quantity)
-        names = [None] if field.ndim == 1 else _named(study[str(field.dims[0])])
+        names = [None] if field.ndim == 1 else _labels(study[str(field.dims[0])])
         for number, name in enumerate(names):
             line = next_look(axes) | {"marker": "o", "ms": 3, "label": name} | style
             row = number if field.ndim == 2 else ...
@@ -132,20 +132,20 @@ def _refined(axes: Axes, sides: Sequence[Any], values: Any) -> list[Any]:
     A smooth surface of cubics goes through the values, over the sides as the axes show them.
     """
     scales = [axis.get_transform() for axis in (axes.xaxis, axes.yaxis)]
-    shown = [scale.transform(side) for scale, side in zip(scales, sides, strict=True)]
-    spans = [np.ptp(side) for side in shown]
+    positions = [scale.transform(side) for scale, side in zip(scales, sides, strict=True)]
+    spans = [np.ptp(side) for side in positions]
     fine = [
         np.interp(np.linspace(0, len(side) - 1, 8 * len(side) - 7), np.arange(len(side)), side)
-        for side in shown
+        for side in positions
     ]
     coarse, dense = (
         [part.ravel() / span for part, span in zip(np.meshgrid(*mesh), spans, strict=True)]
-        for mesh in (shown, fine)
+        for mesh in (positions, fine)
     )
     smooth = CubicTriInterpolator(Triangulation(*coarse), np.ravel(values), kind="min_E")
-    found = smooth(*dense).reshape(len(fine[1]), len(fine[0]))
+    fine_values = smooth(*dense).reshape(len(fine[1]), len(fine[0]))
     ends = [scale.inverted().transform(side) for scale, side in zip(scales, fine, strict=True)]
-    return [*ends, found]
+    return [*ends, fine_values]
 
 
 def _label(axes: Axes, lines: ContourSet) -> None:
@@ -168,7 +168,7 @@ def _label(axes: Axes, lines: ContourSet) -> None:
     axes.clabel(lines, fontsize=7, fmt="%.4g", manual=places)
 
 
-def _named(values: xarray.DataArray) -> list[str]:
+def _labels(values: xarray.DataArray) -> list[str]:
     """Return a parameter's values in words, with its name and unit."""
     name = str(values.name).rpartition(".")[2]
     words = values.attrs.get("long_name", name.replace("_", " "))
@@ -211,7 +211,7 @@ def _scale(field: xarray.DataArray, quantity: str) -> Scale:
 def _scale_of(array: xarray.DataArray, largest: float, unit: str) -> Scale:
     """Return the scale of an array: from its own units, or else from the SI unit that is given."""
     own = array.attrs.get("units")
-    return Scale.of(largest, unit) if own is None else Scale.given(largest, str(own))
+    return Scale.of(largest, unit) if own is None else Scale.in_unit(largest, str(own))
 
 
 def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:

@@ -132,11 +132,11 @@ def _points_per_cell(axes: Axes, solution: Solution, factors: Sequence[float]) -
     """Return the sides of a cell in the picture [points], once its limits are set."""
     box = axes.get_window_extent()
     spacing = solution.report.grid.spacing
-    shown = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim())]
+    widths = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim())]
     return [
         72 / axes.figure.dpi * pixels * factor * side / width
         for pixels, factor, side, width in zip(
-            (box.width, box.height), factors, spacing, shown, strict=True
+            (box.width, box.height), factors, spacing, widths, strict=True
         )
     ]
 

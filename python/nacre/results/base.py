@@ -70,18 +70,18 @@ def checked(solutions: object) -> list[FrictionSolution]:
     ValueError
         If there is none, or some slide and some roll, or some are line contacts.
     """
-    found: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
-    if not all(map(has_friction, found)):
+    contacts: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
+    if not all(map(has_friction, contacts)):
         raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
-    if not found:
+    if not contacts:
         raise ValueError("solutions must hold at least one solution, got none")
-    if len({(s.shift is None, s.grid.is_line) for s in found}) > 1:
+    if len({(s.shift is None, s.grid.is_line) for s in contacts}) > 1:
         raise ValueError(
             "solutions must all slide or all roll, in line contact or not, got some of each"
         )
-    if len({(s.grid.shape, s.grid.size, s.grid.center) for s in found}) > 1:
+    if len({(s.grid.shape, s.grid.size, s.grid.center) for s in contacts}) > 1:
         raise ValueError("solutions must be on one grid, got some on others")
-    return found
+    return contacts
 
 
 def _finite(value: Any) -> Any:
@@ -103,23 +103,23 @@ def as_text(kind: str, state: dict[str, Any], *, infinite: bool = False) -> str:
         try:
             fields.append(f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}")
         except (TypeError, ValueError) as error:
-            said = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
-            raise ValueError(said) from error
+            message = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
+            raise ValueError(message) from error
     return "{" + ", ".join(fields) + "}"
 
 
 def _fitted(kind: Any, value: Any) -> Any:
     """Return plain data as a value of the type of a field, or raise a `TypeError`."""
-    made, parts = get_origin(kind), get_args(kind)
-    if NoneType in parts and made is not tuple:  # a type or None
+    origin, parts = get_origin(kind), get_args(kind)
+    if NoneType in parts and origin is not tuple:  # a type or None
         return None if value is None else _fitted(parts[0], value)
-    if made is Literal and any(same(value, word) for word in parts):
+    if origin is Literal and any(same(value, word) for word in parts):
         return value
-    if made is tuple and isinstance(value, list | tuple):
+    if origin is tuple and isinstance(value, list | tuple):
         kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
         if len(kinds) == len(value):
             return tuple(map(_fitted, kinds, value))
-    if made is dict and isinstance(value, dict):
+    if origin is dict and isinstance(value, dict):
         return {_fitted(parts[0], key): _fitted(parts[1], item) for key, item in value.items()}
     if kind is float and type(value) is int:
         return float(value)
@@ -172,7 +172,7 @@ class Result(Fields):
     """Rows of the table of quantities that the result has."""
     _COMPILED: ClassVar[bool] = False
     """Whether the compiled module makes the result, and checks its state."""
-    _TOLD: ClassVar[tuple[str, ...]] = ()
+    _DERIVED: ClassVar[tuple[str, ...]] = ()
     """Fields that are no part of the state, but follow from it."""
     _LATER: ClassVar[tuple[str, ...]] = ()
     """Fields that states of format 1 did not have at first; without them they are None."""
@@ -186,10 +186,10 @@ class Result(Fields):
     def _names(cls) -> list[str]:
         """Return the names in the state."""
         fields = dataclasses.fields(cls)  # type: ignore[arg-type]
-        return [field.name for field in fields if field.name not in cls._TOLD]
+        return [field.name for field in fields if field.name not in cls._DERIVED]
 
     @classmethod
-    def _made(cls, text: str) -> Self:
+    def _from_text(cls, text: str) -> Self:
         """Return the result that JSON text of the compiled module describes."""
         return cls(**tuples(json.loads(text)))
 
@@ -236,7 +236,7 @@ class Result(Fields):
         """Return the result with these fields, checked."""
         name = cls.__name__
         if cls._COMPILED:
-            return cls._made(core.checked(name, as_text(name, state, infinite=True)))
+            return cls._from_text(core.checked(name, as_text(name, state, infinite=True)))
         return cls(**cls._checked(state))
 
     @classmethod
@@ -247,8 +247,8 @@ class Result(Fields):
             try:
                 fields[key] = _fitted(kinds[key], value)
             except TypeError as error:
-                said = f'{cls.__name__}: the value of the key "{key}" does not fit: {value!r}'
-                raise ValueError(said) from error
+                message = f'{cls.__name__}: the value of the key "{key}" does not fit: {value!r}'
+                raise ValueError(message) from error
         return fields
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:

@@ -50,19 +50,19 @@ SLIGHT = 1e-8
 """Share of a vector below which a component is printed as 0."""
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
-_shown: ContextVar[str | None] = ContextVar(
+_units: ContextVar[str | None] = ContextVar(
     "units in which numbers in SI are printed", default=None
 )
 UNFINISHED = "stopped before all depths were done"
 
 
-def in_si(told: Callable[P, T]) -> Callable[P, T]:
+def in_si(function: Callable[P, T]) -> Callable[P, T]:
     """Return a function of what is in SI whatever units are set, as the numbers of bearings are."""
 
-    @functools.wraps(told)
+    @functools.wraps(function)
     def inside(*args: P.args, **kwargs: P.kwargs) -> T:
         with Within(SI):
-            return told(*args, **kwargs)
+            return function(*args, **kwargs)
 
     return inside
 
@@ -70,19 +70,19 @@ def in_si(told: Callable[P, T]) -> Callable[P, T]:
 @contextmanager
 def shown_in(units: str) -> Iterator[None]:
     """Print numbers that are in SI in other units within the context."""
-    token = _shown.set(units)
+    token = _units.set(units)
     try:
         yield
     finally:
-        _shown.reset(token)
+        _units.reset(token)
 
 
 def number(value: float, unit: str, digits: int = 4) -> str:
     """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
-    if (units := _shown.get()) is None:
+    if (units := _units.get()) is None:
         return written(value, unit, digits)
     with display_units(units):
-        scale = Scale.given(value, unit)
+        scale = Scale.in_unit(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
 
 
@@ -116,12 +116,12 @@ def friction_numbers(solution: FrictionSolution) -> list[tuple[str, str]]:
     touching, sticking = int((solution.pressure > 0).sum()), int(solution.stick.sum())
     state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
     coupled = f", {report.sweeps} sweeps" if report.coupled else ""
-    said = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
+    accuracy = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
     return [
         *rows,
         *([("rolls", f"towards {solution.direction}")] if rolls else []),
         ("friction", state if touching else "nothing touches"),
-        ("ended", f"{report.termination}, {said}{coupled}"),
+        ("ended", f"{report.termination}, {accuracy}{coupled}"),
     ]
 
 
@@ -133,15 +133,15 @@ def _rows(
     for row in table:
         if not row.label:
             continue
-        if (made := texts.get(row.name)) is not None:
-            said = made(result)
+        if (text_of := texts.get(row.name)) is not None:
+            text = text_of(result)
         elif (value := row.of(result)) is None:
-            said = None
+            text = None
         elif row.dims:
-            said = pair(shown(value), row.si(line=line, rolls=rolls))
+            text = pair(without_rounding(value), row.si(line=line, rolls=rolls))
         else:
-            said = written(value, row.si(line=line, rolls=rolls))
-        rows += [] if said is None else [(row.label, said)]
+            text = written(value, row.si(line=line, rolls=rolls))
+        rows += [] if text is None else [(row.label, text)]
     return rows
 
 
@@ -153,8 +153,8 @@ def _centred(solution: Solution, name: str, unit: str, scale: float = 1.0) -> st
     """Return a position or a moment; rounding leaves 1e-16 of the largest possible one."""
     values: tuple[float, float] = getattr(solution, name)
     limits = [NOISE * scale * side for side in solution.report.grid.size]
-    kept = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
-    return _along([None if math.isnan(v) else written(v, unit) for v in kept])
+    components = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
+    return _along([None if math.isnan(v) else written(v, unit) for v in components])
 
 
 def _along(texts: Sequence[str | None], mark: str = ", ", form: str = "({})") -> str | None:
@@ -202,29 +202,29 @@ def _indentation(solution: Solution) -> str | None:
     return f"{written(deepest, 'm')} at most, permanent" if deepest > 0 else None
 
 
-def _with_error(solution: FrictionSolution, name: str, said: str, size: float, unit: str) -> str:
+def _with_error(solution: FrictionSolution, name: str, text: str, size: float, unit: str) -> str:
     """Return what is said of a number of rolling, with its discretisation error where there is one.
 
     The error is one of its `size`, or has a unit where it is larger.
     """
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error <= NOISE * size:
-        return said
+        return text
     if error < size:
-        return f"{said} ± {rounded(100 * error / size, 1)} %"
-    return f"{said} ± {written(error, unit, 1) if unit else rounded(error, 1)}"
+        return f"{text} ± {rounded(100 * error / size, 1)} %"
+    return f"{text} ± {written(error, unit, 1) if unit else rounded(error, 1)}"
 
 
 def _force(solution: FrictionSolution) -> str:
     unit = "N/m" if solution.grid.is_line else "N"
-    said = pair(shown(solution.force), unit)
-    return _with_error(solution, "force", said, float(np.hypot(*solution.force)), unit)
+    text = pair(without_rounding(solution.force), unit)
+    return _with_error(solution, "force", text, float(np.hypot(*solution.force)), unit)
 
 
 def _creepage(solution: FrictionSolution) -> str | None:
     if (creepage := solution.creepage) is None:
         return None
-    components = "({:.4g}, {:.4g})".format(*shown(creepage))
+    components = "({:.4g}, {:.4g})".format(*without_rounding(creepage))
     return _with_error(solution, "creepage", components, float(np.hypot(*creepage)), "")
 
 
@@ -237,8 +237,8 @@ def _torque(solution: FrictionSolution) -> str | None:
 
 
 def _twist(solution: FrictionSolution) -> str | None:
-    given = solution.twist is not None and not solution.grid.is_line
-    return f"{solution.twist:.4g} rad" if given else None
+    is_given = solution.twist is not None and not solution.grid.is_line
+    return f"{solution.twist:.4g} rad" if is_given else None
 
 
 def _dissipated(solution: FrictionSolution) -> str:
@@ -273,7 +273,7 @@ FRICTION_TEXTS: Texts = {
 """Values of a contact with friction that are more than a number with its unit."""
 
 
-def shown(values: Sequence[float]) -> list[float]:
+def without_rounding(values: Sequence[float]) -> list[float]:
     """Return two components; one that is rounding beside the other is 0."""
     largest = max(map(abs, values))
     return [value if abs(value) > SLIGHT * largest else 0.0 for value in values]
@@ -291,17 +291,17 @@ def _fallback(report: Report) -> str:
 
 def motion(motion: Mapping[str, Any]) -> str:
     """Return which degrees of freedom are loaded, given and locked, in words."""
-    said = []
+    tilts = []
     for axis, name in enumerate("xy"):
-        asked = [
+        keys = [
             key
             for key in ("eccentricity", "moment", "tilt")
             if motion.get(key, (None,) * 2)[axis] is not None
         ]
         kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
-        said.append(f"{name} {kind[asked[0]] if asked else 'locked'}")
+        tilts.append(f"{name} {kind[keys[0]] if keys else 'locked'}")
     control = "load" if "load" in motion else "approach"
-    return f"{control}; tilt {', '.join(said)}"
+    return f"{control}; tilt {', '.join(tilts)}"
 
 
 def line(solution: Solution) -> str:
@@ -342,13 +342,13 @@ def history(steps: Sequence[FrictionSolution]) -> list[list[str]]:
     rows = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
     rows[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
     motions = [(step.creepage if rolls else step.shift) or (0.0, 0.0) for step in steps]
-    moves = np.reshape(shown(np.ravel(motions).tolist()), (-1, 2))
-    pulls = np.reshape(shown(np.ravel([step.force for step in steps]).tolist()), (-1, 2))
+    moves = np.reshape(without_rounding(np.ravel(motions).tolist()), (-1, 2))
+    pulls = np.reshape(without_rounding(np.ravel([step.force for step in steps]).tolist()), (-1, 2))
     for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
-        said = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
+        motion_cells = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
         forces = [written(part, force) for part in pull]
-        ended = [_dissipated(step), step.report.termination]
-        rows.append([str(number), *forces, *said, *ended])
+        outcome = [_dissipated(step), step.report.termination]
+        rows.append([str(number), *forces, *motion_cells, *outcome])
     return rows
 
 
@@ -358,11 +358,12 @@ def friction_line(solution: FrictionSolution) -> str:
     unit = "N/m" if solution.grid.is_line else "N"
     motion = ("shift", "m") if solution.shift is not None else ("creepage", "")
     values = getattr(solution, motion[0]) or (0.0, 0.0)
-    values = shown(values)
-    said = pair(values, "m") if motion[1] else "({:.4g}, {:.4g})".format(*values)
+    values = without_rounding(values)
+    components = pair(values, "m") if motion[1] else "({:.4g}, {:.4g})".format(*values)
+    force = pair(without_rounding(solution.force), unit)
+    end = "converged" if solution.report.converged else "not converged"
     return printable(
-        f"<FrictionSolution on {nx} x {ny} cells: force {pair(shown(solution.force), unit)}, "
-        f"{motion[0]} {said}, {'converged' if solution.report.converged else 'not converged'}>"
+        f"<FrictionSolution on {nx} x {ny} cells: force {force}, {motion[0]} {components}, {end}>"
     )
 
 
@@ -474,7 +475,7 @@ def markup(
     widest: int = WIDEST,
 ) -> str:
     """Return what a notebook shows of any result: a table, a picture beside it, and notes below."""
-    said = [*notes, *(f"warning: {text}" for text in warnings)]
+    lines = [*notes, *(f"warning: {text}" for text in warnings)]
     cells = [*([_cells("th", head)] if head else []), *(_cells("td", row) for row in rows)]
     encoded = "" if picture is None else base64.b64encode(picture).decode()
     image = picture and (
@@ -484,7 +485,7 @@ def markup(
     return (
         f"<div style='display:flex; gap:16px; align-items:flex-start'>"
         f"<table>{''.join(cells)}</table>{image or ''}</div>"
-        + "".join(f"<p>{html.escape(note)}</p>" for note in said)
+        + "".join(f"<p>{html.escape(note)}</p>" for note in lines)
     )
 
 
@@ -621,8 +622,8 @@ def _spring(interface: str | Spring) -> str:
     """Describe the springs below a layer."""
     if not isinstance(interface, Spring):
         return ""
-    named = (("normal", interface.normal), ("tangential", interface.tangential))
-    stiffnesses = [f"{name} {written(k, 'Pa/m', 3)}" for name, k in named if k is not None]
+    directions = (("normal", interface.normal), ("tangential", interface.tangential))
+    stiffnesses = [f"{name} {written(k, 'Pa/m', 3)}" for name, k in directions if k is not None]
     return f", on springs: {', '.join(stiffnesses)}"
 
 

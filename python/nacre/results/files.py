@@ -14,7 +14,7 @@ from nacre._tools.disk import PICTURES, STATE, read, replacing, write_dataset
 from nacre._tools.extras import extra
 from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol, system
-from nacre.results.quantities import CONTACT, TAKEN, WITH_FRICTION, Quantity
+from nacre.results.quantities import CONTACT, REMOVED, WITH_FRICTION, Quantity
 from nacre.results.tables import SOURCE, numbers, write_cells, write_rows
 from nacre.results.values import check_format, refusing, result_class
 from nacre.results.vtk import write_surface
@@ -44,18 +44,18 @@ def dataset(
     with extra("files"):
         import xarray
 
-    found = xarray.Dataset(variables, coordinates)
+    fields = xarray.Dataset(variables, coordinates)
     for row, unit in table:
-        if row.name in found.variables:
-            found[row.name].attrs = {"units": symbol(unit) or "1", "long_name": row.words}
-    found.attrs = {
+        if row.name in fields.variables:
+            fields[row.name].attrs = {"units": symbol(unit) or "1", "long_name": row.words}
+    fields.attrs = {
         "title": title,
         "source": SOURCE,
         "unit_system": system().name,
         **attributes,
         STATE: json.dumps(state),
     }
-    return found
+    return fields
 
 
 def gridded(result: Any) -> xarray.Dataset:
@@ -64,7 +64,7 @@ def gridded(result: Any) -> xarray.Dataset:
     Attributes hold main numbers, bodies, motion and options, as JSON where they are no numbers.
     """
     table, state = result._QUANTITIES, result.to_dict()
-    arrays = taken(state, table)
+    arrays = take_arrays(state, table)
     variables: dict[str, Any] = {}
     for row in table:
         if row.name in arrays or row.follows:
@@ -74,23 +74,23 @@ def gridded(result: Any) -> xarray.Dataset:
     coordinates: dict[str, Any] = {"x": result.x, "y": result.y}
     if any("component" in dims for dims, _ in variables.values()):
         coordinates["component"] = ["x", "y"]
-    found = {
+    numbers_by_name = {
         row.name: tuple(np.ravel(value).tolist()) if row.dims else value
         for row, value in numbers(result)
     }
     units = ((row, result._si(row)) for row in table)
-    attributes = found | result._attributes()
+    attributes = numbers_by_name | result._attributes()
     return dataset(result._TITLE, units, variables, coordinates, state, **attributes)
 
 
-def taken(state: dict[str, Any], table: Iterable[Quantity]) -> dict[str, Array]:
+def take_arrays(state: dict[str, Any], table: Iterable[Quantity]) -> dict[str, Array]:
     """Take the arrays out of a state, and return them by the names of their quantities."""
-    found = {}
+    arrays = {}
     for row in table:
         if isinstance(values := row.within(state), np.ndarray):
-            found[row.name] = values
-            row.put(state, TAKEN)
-    return found
+            arrays[row.name] = values
+            row.put(state, REMOVED)
+    return arrays
 
 
 def save(path: AnyPath, writers: Mapping[str, Callable[[Path], object]]) -> Path:

@@ -14,7 +14,7 @@ from nacre._tools.units import printable
 from nacre.results import display, files
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import AXIS, Quantity
-from nacre.results.tables import headed
+from nacre.results.tables import heading
 
 if TYPE_CHECKING:
     import xarray
@@ -99,7 +99,7 @@ class Listed(Tabular, Warned, is_base=True):
         for row in self._QUANTITIES:
             values = np.ravel(row.of(self)).tolist()
             names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
-            heads = [headed(row, self, name) for name in (names if row.dims else [""])]
+            heads = [heading(row, self, name) for name in (names if row.dims else [""])]
             cells += zip(heads, values, strict=True)
         return zip(*cells, strict=True)
 

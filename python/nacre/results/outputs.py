@@ -99,11 +99,11 @@ ERROR = "_discretisation"
 
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
     """Return the safety factors of all layers that have these names."""
-    found = (layer.safety_factors for layer in summary.layers)
-    return [factors[name] for factors in found for name in names if name in factors]
+    by_layer = (layer.safety_factors for layer in summary.layers)
+    return [factors[name] for factors in by_layer for name in names if name in factors]
 
 
-def named(
+def outputs_by_name(
     outputs: Sequence[Output] | Mapping[str, Output], room: Room | None = None
 ) -> dict[str, Output]:
     """Return outputs by name, checked: those of what a study solves, or of any."""
@@ -113,7 +113,7 @@ def named(
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    told: dict[Room, str] = {
+    choices: dict[Room, str] = {
         "contact": "attributes of Solution that hold numbers "
         f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
         f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
@@ -131,15 +131,15 @@ def named(
     kinds: list[Room] = ["indent", "contact", "bearing"] if room is None else [room]
     for name, output in items:
         if not (any(output in known[kind] for kind in kinds) or callable(output)):
-            said = ", ".join(told[kind] for kind in kinds)
-            raise ValueError(f"outputs must be {said}, or functions, got {output!r}")
+            all_choices = ", ".join(choices[kind] for kind in kinds)
+            raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
-    found = dict(items)
-    if not found or len(found) != len(items):
+    by_name = dict(items)
+    if not by_name or len(by_name) != len(items):
         names = [name for name, _ in items]
         raise ValueError(f"outputs must be at least one, under different names, got {names}")
-    return found
+    return by_name
 
 
 def plain(
@@ -149,18 +149,18 @@ def plain(
     own, words = (
         (OF_INDENT, "an indentation") if hasattr(solution, "tip") else (OF_BEARING, "a bearing")
     )
-    found: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
     for name, output in outputs.items():
         if isinstance(output, str) and output not in own:
             raise ValueError(f"the output {output} is not one of {words}")
         value = getattr(solution, output) if isinstance(output, str) else output(solution)
-        found[name] = np.asarray(value, dtype=np.float64).tolist()
+        numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     if not hasattr(solution, "tip"):
         estimates = solution.report.discretisation or {}
         for name, quantity in errors(outputs, outputs, ESTIMATED_OF_RINGS).items():
             estimate = estimates.get(quantity)
-            found[name] = np.nan if estimate is None else float(estimate)
-    return found
+            numbers[name] = np.nan if estimate is None else float(estimate)
+    return numbers
 
 
 def errors(
@@ -187,7 +187,7 @@ def evaluated(
     stresses that the cells do not resolve are added to `unresolved`.
     """
     summary = fatigue = None
-    found: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
     for name, output in outputs.items():
         if not isinstance(output, str):
             value = output(solution)
@@ -206,14 +206,14 @@ def evaluated(
                 value = min(MARGINS[output](fatigue), default=np.nan)
         else:
             value = _number(solution, output)
-        found[name] = np.asarray(value, dtype=np.float64).tolist()
+        numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     normal: Any = getattr(solution, "normal", solution)
     estimates = normal.report.discretisation or {}
     rolling = (normal is not solution and solution.report.discretisation) or {}
     for name, quantity in errors(outputs, outputs, (*ESTIMATED, *ROLLING)).items():
         estimate = estimates.get(quantity, rolling.get(ROLLING.get(quantity, "")))
-        found[name] = np.nan if estimate is None else float(estimate)
-    return found
+        numbers[name] = np.nan if estimate is None else float(estimate)
+    return numbers
 
 
 def _number(solution: Any, name: str) -> Any:

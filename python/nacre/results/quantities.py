@@ -13,7 +13,7 @@ from typing import Any
 
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
-TAKEN = object()
+REMOVED = object()
 """In place of a value that is taken out of a state."""
 CELLS, VECTOR = ("x", "y"), ("component", "x", "y")
 """Dimensions of a field, and of one with components along x and y."""
@@ -57,12 +57,12 @@ class Quantity:
         return reduce(lambda inner, place: inner[place], places, state).get(name)
 
     def put(self, state: dict[str, Any], value: Any) -> None:
-        """Put a value into the state of a result; `TAKEN` takes it out."""
+        """Put a value into the state of a result; `REMOVED` takes it out."""
         *places, name = (self.path or self.name).split(".")
         for place in places:
             state[place] = state = dict(state[place])
         state[name] = value
-        if value is TAKEN:
+        if value is REMOVED:
             del state[name]
 
     def si(self, *, line: bool = False, rolls: bool = False) -> str:
@@ -182,7 +182,7 @@ STRESS = tuple(
     }.items()
 )
 """Extremes of the stress that studies keep."""
-RATED = (
+ASSESSMENT = (
     Quantity("shakedown", "largest shear yield stress that a layer needs to shake down", "Pa"),
     Quantity("substrate_shakedown", "shear yield stress that the substrate needs", "Pa"),
     Quantity("orthogonal_shear", "largest range of the shear stress yz", "Pa"),
@@ -386,6 +386,6 @@ def units(
     *, line: bool = False, rolls: bool = False, indents: bool = False, bears: bool = False
 ) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    contact = (*FRICTION, *CONTACT, *STRESS, *RATED)
+    contact = (*FRICTION, *CONTACT, *STRESS, *ASSESSMENT)
     rows = INDENT if indents else BEARING if bears else contact
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

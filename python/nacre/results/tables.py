@@ -33,14 +33,14 @@ def numbers(result: Any) -> Iterator[tuple[Quantity, Any]]:
 
 def fields(result: Any) -> dict[Quantity, Array]:
     """Return the fields of a contact that tables and pictures show, by their rows of the table."""
-    state, found = result.to_dict(), {}
+    state, arrays = result.to_dict(), {}
     for row in result._QUANTITIES:
         if row.is_field and (row.follows or isinstance(row.within(state), np.ndarray)):
-            found[row] = row.of(result)
-    return found
+            arrays[row] = row.of(result)
+    return arrays
 
 
-def headed(row: Quantity, result: Any, axis: str = "") -> str:
+def heading(row: Quantity, result: Any, axis: str = "") -> str:
     """Return the heading of a quantity, with the unit that is set."""
     unit = symbol(result._si(row))
     name = f"{row.name} {axis}".rstrip().replace("_", " ")
@@ -49,12 +49,12 @@ def headed(row: Quantity, result: Any, axis: str = "") -> str:
 
 def columns(result: Any) -> dict[str, Array]:
     """Return a column for each field of a contact, two of a vector, by their headings."""
-    found = {}
+    arrays = {}
     for row, values in fields(result).items():
         parts = zip("xy", values, strict=True) if row.dims == VECTOR else [("", values)]
         for axis, part in parts:
-            found[headed(row, result, axis)] = part.astype(int) if part.dtype == bool else part
-    return found
+            arrays[heading(row, result, axis)] = part.astype(int) if part.dtype == bool else part
+    return arrays
 
 
 def write_rows(path: Path, rows: Iterable[Iterable[Any]], **comments: Any) -> None:
@@ -80,8 +80,12 @@ def write_cells(result: Any, path: Path) -> None:
         "source": SOURCE,
         "cells": "{} x {}, y varies fastest".format(*grid.shape),
         f"spacing [{symbol('m')}]": "{} {}".format(*grid.spacing),
-        **{headed(row, result): _plain(value) for row, value in numbers(result)},
-        **{name: said for name, said in result._attributes().items() if name != "warnings"},
+        **{heading(row, result): _plain(value) for row, value in numbers(result)},
+        **{
+            name: attribute
+            for name, attribute in result._attributes().items()
+            if name != "warnings"
+        },
         **{f"warning {k}": text for k, text in enumerate(result._warnings, start=1)},
     }
     _write(result, path, {"": (slice(None), slice(None))}, **comments)
@@ -90,8 +94,8 @@ def write_cells(result: Any, path: Path) -> None:
 def _write(result: Any, path: Path, parts: Mapping[str, Any], **comments: Any) -> None:
     """Write parts of the grid, each with its name in a column of its own if it has one."""
     x, y = np.meshgrid(result.x, result.y, indexing="ij")
-    named = {f"{name} [{symbol('m')}]": side for name, side in (("x", x), ("y", y))}
-    table = named | columns(result)
+    positions = {f"{name} [{symbol('m')}]": side for name, side in (("x", x), ("y", y))}
+    table = positions | columns(result)
 
     def rows() -> Iterator[list[Any]]:
         for name, part in parts.items():

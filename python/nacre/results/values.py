@@ -41,7 +41,7 @@ FIELDS: dict[type, tuple[str, ...]] = {
     )
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
-MADE: dict[str, Any] = {
+CONSTRUCTORS: dict[str, Any] = {
     f"{kind.__name__}.{name}": getattr(kind, name)
     for kind in (core.Tip, core.Adhesion)
     for name, member in vars(kind).items()
@@ -57,7 +57,7 @@ def _stored(make: Any) -> tuple[str, ...]:
 
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
-    **{name: (make, _stored(make)) for name, make in MADE.items()},
+    **{name: (make, _stored(make)) for name, make in CONSTRUCTORS.items()},
     "Response": (core.Response._of, ("values", "local")),
     "Grid.line": (core.Grid.line, ("cells", "width", "center")),
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
@@ -95,7 +95,7 @@ ELSEWHERE |= dict.fromkeys(("InterfaceFatigue", "ShakedownMap"), "nacre.fatigue"
 """Modules of results that are imported when they are used."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""
-BEGUN = ("traction", "displacement", "friction", "motion")
+START = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""
 
 
@@ -133,26 +133,26 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"Solution": of(value.pressure)}
         if digest and type(value) is RESULTS.get("FrictionSolution"):
             state, normal = value.to_dict(), value.normal
-            begun = {name: of(state[name]) for name in BEGUN}
-            begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
-            return {"FrictionSolution": begun}
+            start = {name: of(state[name]) for name in START}
+            start |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
+            return {"FrictionSolution": start}
         if RESULTS.get(type(value).__name__) is type(value):
             return of(value.to_dict())
         if isinstance(value, core.Response):
             return {"Response": {"values": of(value.values), "local": value.local}}
         if hasattr(value, "_arguments"):
-            return called(value, value._arguments())
+            return as_call(value, value._arguments())
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
-    def called(value: Any, arguments: dict[str, Any]) -> dict[str, Any]:
+    def as_call(value: Any, arguments: dict[str, Any]) -> dict[str, Any]:
         if "parts" in arguments:
             return {"sum": of(arguments["parts"])}
         if "." in arguments:
             return {"shifted": [of(arguments["."]), *arguments["shift"]]}
         name, make = type(value).__name__, value.__reduce__()[0]
         maker = getattr(make, "func", make).__name__
-        kept = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
-        return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": kept}
+        fields = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
+        return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": fields}
 
     return of(value)
 
@@ -179,8 +179,8 @@ def checked_state(
     check_format(state.pop("format"), writer := state.pop("nacre"), f"this {kind}")
     if not isinstance(writer, str):
         raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
-    if (found := state.pop("kind")) != kind:
-        raise ValueError(f'the key "kind" must be "{kind}", got "{found}"')
+    if (stored_kind := state.pop("kind")) != kind:
+        raise ValueError(f'the key "kind" must be "{kind}", got "{stored_kind}"')
     return named(kind, state, names, later)
 
 
@@ -198,11 +198,11 @@ def named(
     return state
 
 
-def check_format(written: object, writer: object, what: str) -> None:
+def check_format(number: object, writer: object, what: str) -> None:
     """Raise a `ValueError` if `what` has a format that this version does not know."""
-    if type(written) is not int or not 1 <= written <= FORMAT:
+    if type(number) is not int or not 1 <= number <= FORMAT:
         raise ValueError(
-            f"{what} has format {written}, written by nacre {writer}; nacre {core.__version__} "
+            f"{what} has format {number}, written by nacre {writer}; nacre {core.__version__} "
             f"reads formats from 1 to {FORMAT}: another version may read it"
         )
 
@@ -213,8 +213,8 @@ def refusing(kind: str) -> Iterator[None]:
     try:
         yield
     except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError) as error:
-        said = f"{type(error).__name__}: {error}"
-        raise ValueError(f"the data do not describe a {kind}: {said}") from error
+        reason = f"{type(error).__name__}: {error}"
+        raise ValueError(f"the data do not describe a {kind}: {reason}") from error
 
 
 def decode(data: Any) -> Any:
@@ -250,7 +250,7 @@ def _decoded(data: Any) -> Any:
             except TypeError as error:
                 raise ValueError(f"{name}: {error}") from error
         if name in CALLS:
-            return _made(name, *CALLS[name], content)
+            return _construct(name, *CALLS[name], content)
     return {key: _decoded(item) for key, item in data.items()}
 
 
@@ -263,7 +263,7 @@ def result_class(kind: object) -> Any:
     return RESULTS[kind]
 
 
-def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
+def _construct(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
     """Call `make` with named arguments, all of them and no others."""
     if not isinstance(content, dict):
         raise ValueError(f"{name} must be a dict of named fields, got {content!r}")

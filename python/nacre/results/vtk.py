@@ -84,19 +84,19 @@ def _planes(
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():
         raise ValueError(f"depths must be at least one, each above the last, got {depths.tolist()}")
-    planned = {name: value for name, value in options.items() if name in ("body", "threads")}
-    plan = solution.stress_plan(**planned)
+    plan_options = {name: value for name, value in options.items() if name in ("body", "threads")}
+    plan = solution.stress_plan(**plan_options)
     on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in plan.body.interfaces]
     above = np.any(on, axis=0) if on else np.full(depths.shape, False)
     # Only an elastic base has a side below.
     elastic = isinstance(plan.body.substrate, core.Elastic)
     below = ~on[-1] if not elastic else np.full(depths.shape, True)
-    asked = {name: value for name, value in options.items() if name not in planned}
+    stress_options = {name: value for name, value in options.items() if name not in plan_options}
     parts = []
     if above.any():
-        parts.append(plan.stress(depths[above], side="above", **asked))
+        parts.append(plan.stress(depths[above], side="above", **stress_options))
     if below.any():
-        parts.append(plan.stress(depths[below], side="below", **asked))
+        parts.append(plan.stress(depths[below], side="below", **stress_options))
     z = np.concatenate([part.z for part in parts])
     order = np.argsort(z, kind="stable")  # the side above comes first
     names = [*COMPONENTS, "von_mises", "max_shear"]

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import nacre._core as core
 from nacre._tools.extras import extra
 from nacre._tools.paths import holder, numbers
-from nacre._tools.progress import shown
+from nacre._tools.progress import case_progress
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
@@ -31,7 +31,7 @@ from nacre.results.outputs import (
     Room,
     check_direction,
     evaluated,
-    named,
+    outputs_by_name,
     plain,
     rolls,
 )
@@ -58,7 +58,7 @@ BEARING = frozenset(
 )
 """Arguments of the solve of a bearing, and the bearing."""
 
-RATED = frozenset("criteria shear_yield friction direction residual body x rule".split())
+FATIGUE_KEYWORDS = frozenset("criteria shear_yield friction direction residual body x rule".split())
 """Arguments of `nacre.fatigue.assess` that studies take."""
 
 
@@ -192,23 +192,25 @@ def sweep(
         _check_paths(case, points)
     room = _room(case, points) if outputs is None or isinstance(case, Mapping) else None
     usual = [name for name in USUAL[room or "contact"] if name not in parameters]
-    wanted = named(usual if outputs is None else outputs, room)
-    if taken := set(wanted) & set(parameters):
-        raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
-    stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
-    asked = {**(stress or {})} if stresses else {}
-    if unknown := set(asked) - {"body", "friction", "direction", "residual", "refine"}:
+    checked_outputs = outputs_by_name(usual if outputs is None else outputs, room)
+    if clashes := set(checked_outputs) & set(parameters):
+        raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
+    stresses = any(isinstance(o, str) and o in STRESSES for o in checked_outputs.values())
+    stress_options = {**(stress or {})} if stresses else {}
+    if unknown := set(stress_options) - {"body", "friction", "direction", "residual", "refine"}:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
-    rated = any(isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in wanted.values())
-    assessed = {**(fatigue or {})} if rated else {}
-    if unknown := set(assessed) - RATED:
+    needs_fatigue = any(
+        isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in checked_outputs.values()
+    )
+    fatigue_options = {**(fatigue or {})} if needs_fatigue else {}
+    if unknown := set(fatigue_options) - FATIGUE_KEYWORDS:
         raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
     if not isinstance(version, str | None):
         try:
             version = core.integer("version", version)
         except TypeError:
             raise TypeError(f"version must be a text or an integer, got {version!r}") from None
-    identity = identified(wanted, asked, assessed, version)
+    identity = identified(checked_outputs, stress_options, fatigue_options, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
         message = (
@@ -223,16 +225,16 @@ def sweep(
         tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
         failures: dict[str, Record] = {}
         for point in points:
-            arguments, failure = _describe(case, point, asked)
+            arguments, failure = _describe(case, point, stress_options)
             key = key_of(arguments if failure is None else {"failed": point}, identity)
             keys.append(key)
             known = journal.records.get(key)
             if known is not None and not (again or (retry and "error" in known)):
                 continue
             if failure is not None:
-                failures[key] = {"key": key, "parameters": _said(point), "error": failure}
+                failures[key] = {"key": key, "parameters": _readable(point), "error": failure}
             else:
-                tasks[key] = arguments, _said(point)
+                tasks[key] = arguments, _readable(point)
         for record in failures.values():
             journal.add(record)
 
@@ -240,12 +242,14 @@ def sweep(
             journal.add({"key": key, "parameters": tasks[key][1], **result})
 
         arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
-        found = len(set(keys)) - len(tasks) - len(failures)
-        with shown(progress, found + len(tasks), found) as advance:
-            for _ in _run(arguments_of, wanted, (asked, assessed), executor, keep):
+        stored = len(set(keys)) - len(tasks) - len(failures)
+        with case_progress(progress, stored + len(tasks), stored) as advance:
+            for _ in _run(
+                arguments_of, checked_outputs, (stress_options, fatigue_options), executor, keep
+            ):
                 advance()
         records = [journal.records[key] for key in keys]
-        dataset = assembled(coordinates, records, wanted)
+        dataset = assembled(coordinates, records, checked_outputs)
         if path is not None:
             from nacre._tools.disk import STUDY, replacing, write_dataset
 
@@ -306,19 +310,19 @@ def _describe(
 def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
     if not isinstance(case, Mapping):
-        made = case(**point)
-        if not isinstance(made, Mapping):
+        keywords = case(**point)
+        if not isinstance(keywords, Mapping):
             raise TypeError(
                 "case must return the arguments of a solve as a mapping, such as "
-                f"dict(shape=..., body=..., load=...), got {made!r:.80}"
+                f"dict(shape=..., body=..., load=...), got {keywords!r:.80}"
             )
-        return dict(made)
-    found, paths = _opened(case, point)
+        return dict(keywords)
+    arguments, paths = _opened(case, point)
     for path in paths:
-        found |= core.with_value(_holder(found, path), path, point[path])
-    if isinstance(fields := found.get("bearing"), dict):  # made once: its numbers go together
-        found["bearing"] = type({**case, **point}["bearing"])(**fields)
-    return found
+        arguments |= core.with_value(_holder(arguments, path), path, point[path])
+    if isinstance(fields := arguments.get("bearing"), dict):  # made once: its numbers go together
+        arguments["bearing"] = type({**case, **point}["bearing"])(**fields)
+    return arguments
 
 
 def _opened(case: Mapping[str, Any], point: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
@@ -327,20 +331,20 @@ def _opened(case: Mapping[str, Any], point: Mapping[str, Any]) -> tuple[dict[str
     A bearing that holds such numbers is a dictionary of its fields.
     """
     paths = [name for name in point if "." in name or "[" in name]
-    found = {**case, **{name: value for name, value in point.items() if name not in paths}}
+    arguments = {**case, **{name: value for name, value in point.items() if name not in paths}}
     if any(path.startswith("bearing.") for path in paths):
         with suppress(KeyError, AttributeError):  # no bearing: the path says so
-            found["bearing"] = found["bearing"]._arguments()
-    return found, paths
+            arguments["bearing"] = arguments["bearing"]._arguments()
+    return arguments, paths
 
 
-def _holder(found: Mapping[str, Any], path: str) -> dict[str, Any]:
+def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
     """Return the argument that holds the number at a path; a bearing may have None there."""
     if path.startswith("bearing."):
         with suppress(LookupError):
-            if core.at(found, path) is None:
-                return {"bearing": found["bearing"]}
-    return holder(found, path, "parameters", "the case")
+            if core.at(arguments, path) is None:
+                return {"bearing": arguments["bearing"]}
+    return holder(arguments, path, "parameters", "the case")
 
 
 def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -> None:
@@ -348,34 +352,34 @@ def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -
     for path in _opened(case, points[0])[1]:
         wrong: ValueError | None = None
         for point in points:
-            found, _ = _opened(case, point)
+            arguments, _ = _opened(case, point)
             try:
-                _holder(found, path)
+                _holder(arguments, path)
                 break
             except ValueError as error:
                 wrong = wrong or error
         else:
-            fields = found.get("bearing")
+            fields = arguments.get("bearing")
             unset = [k for k, v in fields.items() if v is None] if isinstance(fields, dict) else []
-            names = [*numbers(found), *(f"bearing.{name}" for name in unset)]
+            names = [*numbers(arguments), *(f"bearing.{name}" for name in unset)]
             known = get_close_matches(path, names, cutoff=0.0)
             raise ValueError(f"{wrong}; the nearest are {', '.join(known)}")
 
 
 def _room(case: Case, points: Sequence[Mapping[str, Any]]) -> Room:
     """Return what the cases of a study are, as the first one that is a case."""
-    found: set[str] = set()
+    names: set[str] = set()
     if isinstance(case, Mapping):
-        found = {*case}.union(*points[:1])
+        names = {*case}.union(*points[:1])
     else:
         for point in points:
             with suppress(ValueError, ArithmeticError):
-                found = {*_arguments(case, point)}
+                names = {*_arguments(case, point)}
                 break
-    return "indent" if "tip" in found else "bearing" if "bearing" in found else "contact"
+    return "indent" if "tip" in names else "bearing" if "bearing" in names else "contact"
 
 
-def _said(point: Mapping[str, Any]) -> dict[str, Any]:
+def _readable(point: Mapping[str, Any]) -> dict[str, Any]:
     """Return parameters as readable values for the journal."""
     return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
 
@@ -383,7 +387,7 @@ def _said(point: Mapping[str, Any]) -> dict[str, Any]:
 def _run(
     tasks: Mapping[str, dict[str, Any]],
     outputs: Mapping[str, Output],
-    asked: tuple[Mapping[str, Any], Mapping[str, Any]],
+    options: tuple[Mapping[str, Any], Mapping[str, Any]],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:
@@ -394,7 +398,7 @@ def _run(
     """
     pool = executor or ThreadPoolExecutor(max_workers=default_threads())
     futures: list[Future[Record]] = []
-    ended: SimpleQueue[BaseException | None] = SimpleQueue()
+    endings: SimpleQueue[BaseException | None] = SimpleQueue()
     turn, stopped = Lock(), Event()
 
     def end(key: str, future: Future[Record]) -> None:
@@ -402,20 +406,20 @@ def _run(
             with turn:
                 keep(key, future.result())
         except BaseException as error:  # from the executor or the disk: raised below
-            ended.put(error)
+            endings.put(error)
         else:
-            ended.put(None)
+            endings.put(None)
 
     def submit() -> None:
         try:
             for key, arguments in tasks.items():
                 if stopped.is_set():
                     return
-                task = arguments, dict(outputs), dict(asked[0]), dict(asked[1]), os.getpid()
+                task = arguments, dict(outputs), dict(options[0]), dict(options[1]), os.getpid()
                 futures.append(pool.submit(_solve, *task))
                 futures[-1].add_done_callback(partial(end, key))
         except BaseException as error:  # from the executor: raised below
-            ended.put(error)
+            endings.put(error)
 
     # Ctrl-C interrupts only the main thread. No case is submitted there, so that every case that
     # begins is also kept.
@@ -425,7 +429,7 @@ def _run(
         for _ in tasks:
             while True:
                 with suppress(Empty):
-                    failure = ended.get(timeout=0.5)  # Ctrl-C is seen in between
+                    failure = endings.get(timeout=0.5)  # Ctrl-C is seen in between
                     break
             if failure is not None:
                 raise failure
@@ -458,15 +462,18 @@ def _solve(
         if "tip" in arguments:
             from nacre.indent import solution as indentation
 
-            found = indentation.solve(**arguments)
-            told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
-            return {"values": plain(found, outputs), "indents": True} | told
+            contacts = indentation.solve(**arguments)
+            notes = {
+                "warnings": list(contacts.warnings),
+                "kinds": ["steep"] * len(contacts.warnings),
+            }
+            return {"values": plain(contacts, outputs), "indents": True} | notes
         if "bearing" in arguments:
-            made = {**arguments}
-            solved = made.pop("bearing").solve(**made)
-            said = list(solved.report.warnings)
-            told = {"warnings": said, "kinds": ["bearing"] * len(said)}
-            return {"values": plain(solved, outputs), "bears": True} | told
+            keywords = {**arguments}
+            solved = keywords.pop("bearing").solve(**keywords)
+            messages = list(solved.report.warnings)
+            notes = {"warnings": messages, "kinds": ["bearing"] * len(messages)}
+            return {"values": plain(solved, outputs), "bears": True} | notes
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
@@ -492,8 +499,8 @@ def _solution(arguments: dict[str, Any]) -> Solution | FrictionSolution:
     if not own:
         return solve(**arguments)
     solved = slide(**arguments) if own <= SLIDE else roll(**arguments)
-    found: FrictionSolution = solved[-1] if isinstance(solved, list) else solved
-    return found
+    last: FrictionSolution = solved[-1] if isinstance(solved, list) else solved
+    return last
 
 
 def _reason(error: Exception) -> str:

@@ -35,22 +35,23 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
     coordinates: dict[str, Any] = {}
     values: dict[str, list[Any]] = {}
     places: list[xarray.DataArray] = []
-    for name, given in parameters.items():
-        if isinstance(given, xarray.DataArray):
-            flat = xarray.DataArray(given.data.ravel(), attrs=given.attrs)
+    for name, parameter in parameters.items():
+        if isinstance(parameter, xarray.DataArray):
+            flat = xarray.DataArray(parameter.data.ravel(), attrs=parameter.attrs)
             numbers = np.asarray(core.plain(name, flat))
             values[name] = [item.item() for item in numbers]
-            dims, shape = given.dims, given.shape
-            coordinates |= {str(key): coord for key, coord in given.coords.items()}
+            dims, shape = parameter.dims, parameter.shape
+            coordinates |= {str(key): coord for key, coord in parameter.coords.items()}
             coordinates[name] = (dims, numbers.reshape(shape))
         else:
-            if isinstance(given, str) or not isinstance(given, Iterable):
-                raise TypeError(f"{name} must be a sequence of values, got {given!r}")
+            if isinstance(parameter, str) or not isinstance(parameter, Iterable):
+                raise TypeError(f"{name} must be a sequence of values, got {parameter!r}")
             labels: list[Any]
-            if isinstance(given, Mapping):
-                labels, values[name] = [str(label) for label in given], list(given.values())
+            if isinstance(parameter, Mapping):
+                labels, values[name] = [str(label) for label in parameter], list(parameter.values())
             else:
-                rows = given.to_numpy() if hasattr(given, "to_numpy") else given  # of a table
+                is_table = hasattr(parameter, "to_numpy")
+                rows = parameter.to_numpy() if is_table else parameter
                 values[name] = [v.item() if isinstance(v, np.generic) else v for v in rows]
                 labels = values[name]
                 kinds = {type(v) for v in labels}
@@ -94,9 +95,9 @@ def assembled(
     axes = RING_AXES if kinds["bears"] else AXES
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
-        found = [a.shape for a in arrays if a is not None]
-        rank = max((len(s) for s in found), default=0)
-        inner = tuple(max(s[k] if k < len(s) else 1 for s in found) for k in range(rank))
+        shapes = [a.shape for a in arrays if a is not None]
+        rank = max((len(s) for s in shapes), default=0)
+        inner = tuple(max(s[k] if k < len(s) else 1 for s in shapes) for k in range(rank))
         # Arrays that are shorter than others end in NaN, like cases that failed.
         data = np.full((len(records), *inner), np.nan)
         for row, array in enumerate(arrays):
@@ -114,13 +115,13 @@ def assembled(
             # Results of bearings are in SI, whatever the units of the case.
             own = units[output] if kinds["bears"] else symbol(units[output])
             dataset[name].attrs["units"] = own
-    taken = {*outputs, *map(str, dataset.coords)}
+    names = {*outputs, *map(str, dataset.coords)}
     estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
     if kinds["indents"]:
         estimated = ()
     elif kinds["rolls"]:
         estimated = (*ESTIMATED, *ROLLING)
-    for name, quantity in errors(outputs, taken, estimated).items():
+    for name, quantity in errors(outputs, names, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
@@ -157,7 +158,7 @@ def counted(records: Sequence[Record]) -> list[str]:
             for kind in dict.fromkeys(record["kinds"])
             if record.get("warnings")
         )
-        said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
+        kind_counts = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
         total = f"{len(texts)} of {len(records)} cases have warnings"
-        lines.append(f"{total}: {said}; see warnings in the Dataset")
+        lines.append(f"{total}: {kind_counts}; see warnings in the Dataset")
     return lines

@@ -38,11 +38,11 @@ def identified(
 ) -> Identity:
     """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
     unknown: list[str] = []
-    kept = {
+    outputs_data = {
         name: output if isinstance(output, str) else _part(output, name, unknown)
         for name, output in outputs.items()
     }
-    data: dict[str, Any] = {"outputs": kept}
+    data: dict[str, Any] = {"outputs": outputs_data}
     if stress:
         data["stress"] = _part(dict(stress), "stress", unknown)
     if fatigue:
@@ -55,8 +55,8 @@ def identified(
 def key_of(arguments: Mapping[str, Any], identity: Identity) -> str:
     """Return a key that differs between cases, and between the outputs that are kept."""
     # Threads change no bit of a solution.
-    asked = {name: value for name, value in arguments.items() if name != "threads"}
-    what = {"nacre": __version__, "solve": encode(asked, digest=True), **identity.data}
+    physical = {name: value for name, value in arguments.items() if name != "threads"}
+    what = {"nacre": __version__, "solve": encode(physical, digest=True), **identity.data}
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
@@ -80,13 +80,13 @@ def _part(value: Any, place: str, unknown: list[str], inside: tuple[Any, ...] = 
         return [of(value.__func__), of(value.__self__)]
     if isinstance(value, types.FunctionType):
         closure = zip(value.__code__.co_freevars, value.__closure__ or (), strict=True)
-        kept = [
+        cells = [
             of(cell.cell_contents, f".{name}")
             for name, cell in closure
             if cell != types.CellType()  # empty
         ]
         source = _source(value.__code__, place, unknown)
-        return [source, of(value.__defaults__), of(value.__kwdefaults__), kept]
+        return [source, of(value.__defaults__), of(value.__kwdefaults__), cells]
     if hasattr(value, "__wrapped__"):  # by `functools.cache` and others
         return of(value.__wrapped__)
     if not isinstance(value, np.ndarray):

@@ -93,10 +93,10 @@ class Journal:
 
 
 def _check_head(line: bytes) -> None:
-    found = re.fullmatch(r"nacre (\S+), journal of format (\d+)\n", line.decode("latin-1"))
-    if found is None:
+    match = re.fullmatch(r"nacre (\S+), journal of format (\d+)\n", line.decode("latin-1"))
+    if match is None:
         raise ValueError("it is not the first line that nacre writes")
-    check_format(int(found[2]), found[1], "it")
+    check_format(int(match[2]), match[1], "it")
 
 
 def _record(line: bytes) -> Record:

@@ -255,14 +255,14 @@ def test_units_that_are_not_consistent_are_refused(name: str) -> None:
 
 
 def test_units_of_a_dataset_are_its_own() -> None:
-    assert Scale.given(2000.0, "MPa") == Scale(1e-3, "GPa")
-    assert Scale.given(2.0, "mm²").unit == "mm²"
-    assert Scale.given(0.002, "rad") == Scale(1e3, "mrad")
-    assert Scale.given(2e3, "parsec") == Scale(1.0, "parsec")
+    assert Scale.in_unit(2000.0, "MPa") == Scale(1e-3, "GPa")
+    assert Scale.in_unit(2.0, "mm²").unit == "mm²"
+    assert Scale.in_unit(0.002, "rad") == Scale(1e3, "mrad")
+    assert Scale.in_unit(2e3, "parsec") == Scale(1.0, "parsec")
     with nacre.display_units("N-mm-MPa"):
-        assert Scale.given(2e9, "Pa") == Scale(1e-6, "MPa")
-        assert Scale.given(0.5, "mm") == Scale(1.0, "mm")
-        assert Scale.given(3.0, "N/mm") == Scale(1.0, "N/mm")
+        assert Scale.in_unit(2e9, "Pa") == Scale(1e-6, "MPa")
+        assert Scale.in_unit(0.5, "mm") == Scale(1.0, "mm")
+        assert Scale.in_unit(3.0, "N/mm") == Scale(1.0, "N/mm")
     assert size_of("kN mm") == ("N m", 1.0)
     assert size_of("1/m") is None
 

@@ -82,7 +82,7 @@ def test_every_unit_is_read_back_to_the_digits_that_are_printed(unit: str, name:
         for number in (value, -value):
             with nacre.display_units(name):
                 text, scale = written(number, unit), Scale.of(number, unit)
-                data = Scale.given(number, symbol(unit))
+                data = Scale.in_unit(number, symbol(unit))
             digits, printed = text.split(" ", 1)
             size, counts = read(printed)
             assert counts == dimensions, text
