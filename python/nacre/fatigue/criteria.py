@@ -68,9 +68,9 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
     if not among(rule, get_args(Rule)):
         raise ValueError(f'rule must be "von_mises" or "in_plane_tresca", got {rule!r}')
     states, axes = _states(history)
-    found, _ = core.shakedown(states, rule)
-    residual = found[:, 1:3].reshape(*axes, 2)
-    return Shakedown(found[:, 0].reshape(axes), residual, found[:, 3].reshape(axes))
+    stresses, _ = core.shakedown(states, rule)
+    residual = stresses[:, 1:3].reshape(*axes, 2)
+    return Shakedown(stresses[:, 0].reshape(axes), residual, stresses[:, 3].reshape(axes))
 
 
 def _states(history: Any) -> tuple[Array, tuple[int, ...]]:
@@ -100,21 +100,21 @@ class Criterion:
             if (value := getattr(self, name)) is None:
                 raise ValueError(f"{name} must be given: a criterion needs both fatigue limits")
             object.__setattr__(self, name, core.real(name, value))
-        self._told()
+        self._factor_and_limit()
 
-    def _told(self) -> tuple[float, float]:
+    def _factor_and_limit(self) -> tuple[float, float]:
         """Return the factor and the limit."""
         return core.fatigue_constants(self._KIND, self.bending, self.torsion)
 
     @property
     def constants(self) -> tuple[float, float]:
         """Factor of the hydrostatic or normal stress, and limit [Pa]: (a, b) or (k, f)."""
-        return self._told()
+        return self._factor_and_limit()
 
     @property
     def limit(self) -> float:
         """Limit with which `stress` is compared [Pa]."""
-        return self._told()[1]
+        return self._factor_and_limit()[1]
 
     def stress(self, history: Real) -> Array:
         """Equivalent stress of a history, which is safe up to `limit`.

@@ -141,7 +141,7 @@ class Rolling:
         merged = [np.pad(load, sides) for load in merged]
         covered = np.array([-0.5, 0.5]) * self.grid.size[1] + self.grid.center[1]
         across = 1
-        found: list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]] = []
+        levels: list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]] = []
         for level in range(1 + FAR):
             if level:
                 step *= COARSER
@@ -164,9 +164,9 @@ class Rolling:
                 self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
             )
             used &= np.arange(count) % max(1, int(floor(DENSE * inner / step))) == 0
-            found.append((grid, merged, np.flatnonzero(used)))
+            levels.append((grid, merged, np.flatnonzero(used)))
             covered = middle + np.array([-0.5, 0.5]) * count * step
-        return found
+        return levels
 
     def stress(self, depths: Sequence[float], side: Side, friction: bool) -> tuple[States, Array]:
         """Return the history along y at some depths, and the uncertainty of the stress at each.
@@ -187,9 +187,11 @@ class Rolling:
                 )
         y = np.concatenate(ys)
         order = np.argsort(y, kind="stable")
-        found = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
-        added = found[1] - found[0] if len(found) == 2 else np.zeros((len(depths), y.size, 6))
-        states = States(y[order], found[0], added)
+        stresses = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
+        added = (
+            stresses[1] - stresses[0] if len(stresses) == 2 else np.zeros((len(depths), y.size, 6))
+        )
+        states = States(y[order], stresses[0], added)
         errors = own[0].uncertainty
         none = np.zeros(len(depths))
         uncertain = none if errors is None else np.nan_to_num(errors)
@@ -257,8 +259,8 @@ class Rolling:
         ends = points[[points[:, 1].argmin(), points[:, 1].argmax()]]
         # Beside the edge tractions are means over cells, and the other stresses those of points.
         apart = np.abs(states.y[:, None] - ends[:, 1]).min(axis=1)
-        kept = apart >= self.grid.spacing[1]
-        states = States(states.y[kept], states.normal[:, kept], states.tangential[:, kept])
+        inside = apart >= self.grid.spacing[1]
+        states = States(states.y[inside], states.normal[:, inside], states.tangential[:, inside])
         for x, y in ends.tolist():
             own, *slid = (self._array(self._own([0.0], "below", one, x, y)) for one in slides)
             at = int(np.searchsorted(states.y, y))
@@ -299,24 +301,24 @@ def _lagrange(nodes: Array, at: Any) -> Array:
     return np.stack(weights, axis=-1)
 
 
-def refined(found: States, states: Array) -> tuple[Array, Array]:
+def refined(history: States, states: Array) -> tuple[Array, Array]:
     """Return places and states with those between them, on cubic curves through four neighbours.
 
     Curves do not go past the edges of the contact. The last state is kept as it is.
     """
-    y, inner = found.y[:-1], states[:, :-1]
-    cuts = [0, *sorted(int(np.searchsorted(y, edge)) for edge in found.edges), y.size - 1]
+    y, inner = history.y[:-1], states[:, :-1]
+    cuts = [0, *sorted(int(np.searchsorted(y, edge)) for edge in history.edges), y.size - 1]
     places, pieces = [y], [inner]
     for first, last in pairwise(cuts):
         count = last - first + 1
         if count < 4:
             continue
         starts = first + np.clip(np.arange(count - 1) - 1, 0, count - 4)
-        taken = starts[:, None] + np.arange(4)
+        neighbours = starts[:, None] + np.arange(4)
         at = y[first:last, None] + np.diff(y[first : last + 1])[:, None] * PARTS
-        weights = _lagrange(y[taken][:, None, :], at)
-        between = np.einsum("ipk,dikc->dipc", weights, inner[:, taken])
+        weights = _lagrange(y[neighbours][:, None, :], at)
+        between = np.einsum("ipk,dikc->dipc", weights, inner[:, neighbours])
         places.append(at.ravel())
         pieces.append(between.reshape(len(states), -1, 6))
-    y = np.concatenate([*places, found.y[-1:]])
+    y = np.concatenate([*places, history.y[-1:]])
     return y, np.concatenate([*pieces, states[:, -1:]], axis=1)

@@ -151,8 +151,8 @@ class ShakedownMap(Tabular, Warned):
             Limits, first yield and depths; ``to_dataframe()`` is the table for pandas.
         """
         table = [(row, row.unit) for row in SHAKEDOWN]
-        named = ("limits", "first_yield", "depths")
-        variables = {name: (("layer", "friction"), getattr(self, name)) for name in named}
+        fields = ("limits", "first_yield", "depths")
+        variables = {name: (("layer", "friction"), getattr(self, name)) for name in fields}
         places = {"layer": list(self.names), "friction": self.friction}
         return files.dataset("shakedown map", table, variables, places, self.to_dict())
 
@@ -160,8 +160,8 @@ class ShakedownMap(Tabular, Warned):
         yield [row.name for row in SHAKEDOWN]
         for layer, name in enumerate(self.names):
             parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
-            for friction, *found in zip(*(part.tolist() for part in parts), strict=True):
-                yield [name, friction, *found]
+            for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
+                yield [name, friction, *columns]
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""
@@ -253,10 +253,12 @@ def shakedown_map(
         raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
     if not np.isfinite(coefficients).all() or coefficients.min() < 0:
         raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
-    asked = prepared(solution, (), rule, residual, body, direction, x, threads)
-    given = checked_depths(depths, asked.rolling.body)
+    assessment = prepared(solution, (), rule, residual, body, direction, x, threads)
+    ordered_depths = checked_depths(depths, assessment.rolling.body)
     regions = [
-        region for region in asked.regions() if given is None or in_region(region, given).size
+        region
+        for region in assessment.regions()
+        if ordered_depths is None or in_region(region, ordered_depths).size
     ]
     names = tuple(
         "the substrate"
@@ -264,16 +266,18 @@ def shakedown_map(
         else display.layer_name(region.layer, region.name)
         for region in regions
     )
-    said: list[str] = []
+    warning_texts: list[str] = []
     shape = (len(regions), coefficients.size)
     limits, first, deciding = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    peak = asked.rolling.peak_pressure
+    peak = assessment.rolling.peak_pressure
     with lasting("shakedown", progress) as tell:
         for i, region in enumerate(regions):
             if tell is not None:
                 tell(i / len(regions))
             doubts: dict[str, None] = {}
-            for k, rows in enumerate(asked.evaluated(region, given, coefficients.tolist())):
+            for k, rows in enumerate(
+                assessment.evaluated(region, ordered_depths, coefficients.tolist())
+            ):
                 best = {
                     name: max(rows, key=lambda row, name=name: row.values[name])  # type: ignore[misc]
                     for name in ("shakedown", "first_yield")
@@ -282,12 +286,12 @@ def shakedown_map(
                 first[i, k] = peak / best["first_yield"].values["first_yield"]
                 deciding[i, k] = best["shakedown"].z
                 doubts |= dict.fromkeys(unresolved(names[i], best))
-            said += doubts
+            warning_texts += doubts
         if tell is not None:
             tell(1.0)
-    for text in said:
+    for text in warning_texts:
         warnings.warn(text, core.NacreWarning, stacklevel=2)
-    is_estimate = asked.rolling.x is not None
+    is_estimate = assessment.rolling.x is not None
     return ShakedownMap(
-        coefficients, limits, first, deciding, names, rule, peak, is_estimate, tuple(said)
+        coefficients, limits, first, deciding, names, rule, peak, is_estimate, tuple(warning_texts)
     )

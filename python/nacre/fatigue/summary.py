@@ -122,16 +122,16 @@ class LayerFatigue(Result):
                 first_yield=_peak,
                 orthogonal_shear=_peak,
                 criteria=lambda peaks: {name: _peak(peak) for name, peak in peaks.items()},
-                safety_factors=lambda found: {name: float(one) for name, one in found.items()},
+                safety_factors=lambda factors: {name: float(one) for name, one in factors.items()},
             )
         )
 
     def __repr__(self) -> str:
         """Return the shakedown in a line."""
         k, factor = self.shakedown[0], self.safety_factors.get("shakedown")
-        said = "" if factor is None else f", safety factor {factor:.3g}"
+        safety = "" if factor is None else f", safety factor {factor:.3g}"
         return printable(
-            f"<LayerFatigue of {display.part(self)}: shakedown with k = {written(k, 'Pa')}{said}>"
+            f"<LayerFatigue of {display.part(self)}: shakedown with k = {written(k, 'Pa')}{safety}>"
         )
 
 
@@ -216,7 +216,7 @@ class FatigueSummary(Tabular, Warned):
     def _state(self) -> dict[str, Any]:
         state = super()._state()
         state["depths"] = self.depths.tolist()
-        state["profiles"] = {name: found.tolist() for name, found in self.profiles.items()}
+        state["profiles"] = {name: column.tolist() for name, column in self.profiles.items()}
         return state
 
     @classmethod
@@ -227,11 +227,11 @@ class FatigueSummary(Tabular, Warned):
                 state,
                 layers=lambda parts: [LayerFatigue._restored(one) for one in parts],
                 interfaces=lambda parts: [InterfaceFatigue._restored(one) for one in parts],
-                criteria=lambda given: checked_criteria(map(values.decode, given)),
+                criteria=lambda entries: checked_criteria(map(values.decode, entries)),
                 rule=rule_of,
                 peak_pressure=float,
                 depths=numbers,
-                profiles=lambda found: {name: numbers(one) for name, one in found.items()},
+                profiles=lambda columns: {name: numbers(one) for name, one in columns.items()},
                 is_estimate=flag,
                 warnings=lambda texts: [word(text) for text in texts],
             )
@@ -285,16 +285,21 @@ class FatigueSummary(Tabular, Warned):
         heads, *rows = self._file_rows()
         variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
         table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
-        profiles = {name: ("depth", found) for name, found in self.profiles.items()}
+        profiles = {name: ("depth", column) for name, column in self.profiles.items()}
         depths = {"depth": self.depths}
-        said = {name: str(value) for name, value in self._comments().items()}
+        attributes = {name: str(value) for name, value in self._comments().items()}
         title = "shakedown and fatigue"
-        return files.dataset(title, table, variables | profiles, depths, self.to_dict(), **said)
+        return files.dataset(
+            title, table, variables | profiles, depths, self.to_dict(), **attributes
+        )
 
     def _comments(self) -> dict[str, Any]:
         """Return what stands beside the table."""
-        told = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
-        return {**told, **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}}
+        settings = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
+        return {
+            **settings,
+            **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)},
+        }
 
     def _file_rows(self) -> list[tuple[Any, ...]]:
         """Return the rows of the table, the heading first."""
@@ -318,17 +323,17 @@ class FatigueSummary(Tabular, Warned):
             head = display.part(layer) + ("" if layer.is_substrate else f", {top} to {bottom}")
             for name, (value, (_, y, z)) in layer._peaks().items():
                 factor = layer.safety_factors.get(name)
-                said = "" if factor is None else f"{factor:.3g}"
+                factor_text = "" if factor is None else f"{factor:.3g}"
                 places = [written(z, "m", 3), UNLOADED if np.isinf(y) else written(y, "m", 3)]
-                told = words.get(name, name)
-                rows.append([head, told, written(value, "Pa"), *places, said])
+                label = words.get(name, name)
+                rows.append([head, label, written(value, "Pa"), *places, factor_text])
                 head = ""
         for face in self.interfaces:
             head = f"interfaces[{face.interface}] at {written(face.depth, 'm')}"
-            for told, value in (("shear range", face.shear_range), ("tension", face.tension)):
+            for label, value in (("shear range", face.shear_range), ("tension", face.tension)):
                 # Far from the contact, loads are merged to wide cells.
-                shown = value if value > NOISE * self.peak_pressure else 0.0
-                rows.append([head, told, written(shown, "Pa"), "", "", ""])
+                stress = value if value > NOISE * self.peak_pressure else 0.0
+                rows.append([head, label, written(stress, "Pa"), "", "", ""])
                 head = ""
         plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
         notes = [PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]
@@ -355,55 +360,55 @@ class FatigueSummary(Tabular, Warned):
 
 def fitted(kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]) -> dict[str, Any]:
     """Return the fields of a kind of result from plain data; wrong ones are a `ValueError`."""
-    found = {}
+    fields = {}
     for key, read in readers.items():
         try:
-            found[key] = read(state[key])
+            fields[key] = read(state[key])
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-            said = f'{kind}: the value of the key "{key}" does not fit: {state.get(key)!r:.100}'
-            raise ValueError(said) from error
-    return found
+            message = f'{kind}: the value of the key "{key}" does not fit: {state.get(key)!r:.100}'
+            raise ValueError(message) from error
+    return fields
 
 
-def word(given: object) -> str:
+def word(text: object) -> str:
     """Return a text, or raise."""
-    if not isinstance(given, str):
-        raise TypeError(f"{given!r} is no text")
-    return given
+    if not isinstance(text, str):
+        raise TypeError(f"{text!r} is no text")
+    return text
 
 
-def flag(given: object) -> bool:
+def flag(truth: object) -> bool:
     """Return a truth value, or raise."""
-    if not isinstance(given, bool):
-        raise TypeError(f"{given!r} is no bool")
-    return given
+    if not isinstance(truth, bool):
+        raise TypeError(f"{truth!r} is no bool")
+    return truth
 
 
-def rule_of(given: Any) -> Rule:
+def rule_of(name: Any) -> Rule:
     """Return a condition of yield, or raise."""
-    if not among(given, get_args(Rule)):
-        raise ValueError(f"{given!r} is no condition of yield")
-    found: Rule = given
-    return found
+    if not among(name, get_args(Rule)):
+        raise ValueError(f"{name!r} is no condition of yield")
+    rule: Rule = name
+    return rule
 
 
-def numbers(given: Any) -> Array:
+def numbers(sequence: Any) -> Array:
     """Return an array of numbers, or raise."""
-    return np.array([float(one) for one in given])
+    return np.array([float(one) for one in sequence])
 
 
-def _balanced(given: Any) -> Balanced:
-    value, place, (x, y) = given
+def _balanced(entry: Any) -> Balanced:
+    value, place, (x, y) = entry
     return float(value), _place(place), (float(x), float(y))
 
 
-def _place(given: Any) -> Place:
-    x, y, z = (float(value) for value in given)
+def _place(coordinates: Any) -> Place:
+    x, y, z = (float(value) for value in coordinates)
     return x, y, z
 
 
-def _peak(given: Any) -> Peak:
-    value, place = given
+def _peak(entry: Any) -> Peak:
+    value, place = entry
     return float(value), _place(place)
 
 
@@ -446,8 +451,8 @@ class Assessment:
         body = self.rolling.body
         faces = [0.0, *body.interfaces, np.inf]
         names = [*(layer.name for layer in body.layers), None]
-        found = [Region(k, names[k], *ends) for k, ends in enumerate(pairwise(faces))]
-        return found if isinstance(body.substrate, core.Elastic) else found[:-1]
+        parts = [Region(k, names[k], *ends) for k, ends in enumerate(pairwise(faces))]
+        return parts if isinstance(body.substrate, core.Elastic) else parts[:-1]
 
     def depths(self, region: Region) -> Array:
         """Return depths in a layer, its faces included."""
@@ -461,9 +466,9 @@ class Assessment:
         chosen = np.sort(chosen[(chosen > region.top) & (chosen < region.bottom)])
         # Those that are close to the one before tell nothing new.
         gap = min(0.02 * width, 0.3 * (last - region.top) / INSIDE)
-        kept: Array = chosen[np.diff(chosen, prepend=region.top) > gap]
+        distinct: Array = chosen[np.diff(chosen, prepend=region.top) > gap]
         bottom = [region.bottom] if region.bottom < np.inf else []
-        return np.concatenate([[region.top], kept, bottom])
+        return np.concatenate([[region.top], distinct, bottom])
 
     def rows(
         self, region: Region, depths: Sequence[Array], frictions: Sequence[float]
@@ -482,32 +487,37 @@ class Assessment:
         for chosen, side in parts:
             if not chosen:
                 continue
-            found, uncertain = self.rolling.stress(chosen, side, any(frictions))
+            history, uncertain = self.rolling.stress(chosen, side, any(frictions))
             for k, friction in enumerate(frictions):
                 if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
                     own = [chosen[n] for n in at]
-                    states = found.only(at)
+                    states = history.only(at)
                     rows[k] += self._evaluated(region, own, states, uncertain[at], friction)
         return rows
 
     def _evaluated(
-        self, region: Region, depths: list[float], found: States, uncertain: Array, friction: float
+        self,
+        region: Region,
+        depths: list[float],
+        history: States,
+        uncertain: Array,
+        friction: float,
     ) -> list[Row]:
-        states = found.at(friction).copy()
+        states = history.at(friction).copy()
         states[..., :2] += self.residual[region.layer]
-        y, dense = refined(found, states)
+        y, dense = refined(history, states)
         shaken, at = core.shakedown(dense, self.rule)
-        told: dict[str, tuple[Array, Array]] = {
+        stresses: dict[str, tuple[Array, Array]] = {
             "shakedown": (shaken[:, 0], y[at[:, 0]]),
             "first_yield": (shaken[:, 3], y[at[:, 1]]),
         }
         shear = dense[..., 4]
-        told["orthogonal_shear"] = np.ptp(shear, axis=1), y[shear.argmax(axis=1)]
+        stresses["orthogonal_shear"] = np.ptp(shear, axis=1), y[shear.argmax(axis=1)]
         gaps = np.full(len(depths), np.nan)
         for criterion in self.criteria:
             planes = criterion._KIND in ("findley", "matake")
             stress, which, gap = criterion._evaluated(states if planes else dense)
-            told[type(criterion).__name__] = stress, (found.y if planes else y)[which]
+            stresses[type(criterion).__name__] = stress, (history.y if planes else y)[which]
             if criterion._KIND == "matake":
                 gaps = gap
         rows = []
@@ -515,8 +525,8 @@ class Assessment:
             rows.append(
                 Row(
                     z=float(z),
-                    values={name: float(value[k]) for name, (value, _) in told.items()},
-                    at={name: float(place[k]) for name, (_, place) in told.items()},
+                    values={name: float(value[k]) for name, (value, _) in stresses.items()},
+                    at={name: float(place[k]) for name, (_, place) in stresses.items()},
                     residual=(float(shaken[k, 1]), float(shaken[k, 2])),
                     gap=float(gaps[k]),
                     uncertainty=float(uncertain[k]),
@@ -537,10 +547,10 @@ class Assessment:
             return [[] for _ in frictions]
         rows = self.rows(region, [chosen] * len(frictions), frictions)
         for _ in range(ROUNDS if depths is None else 0):
-            wanted = [self._vertices(one) for one in rows]
-            if not any(map(len, wanted)):
+            new_depths = [self._vertices(one) for one in rows]
+            if not any(map(len, new_depths)):
                 break
-            new = self.rows(region, wanted, frictions)
+            new = self.rows(region, new_depths, frictions)
             rows = [one + added for one, added in zip(rows, new, strict=True)]
         return [sorted(one, key=lambda row: row.z) for one in rows]
 
@@ -548,14 +558,14 @@ class Assessment:
         """Return the depths at the maxima of parabolas through three depths, where they are new."""
         rows = sorted(rows, key=lambda row: row.z)
         depths = np.array([row.z for row in rows])
-        wanted: list[float] = []
+        vertices: list[float] = []
         for name in rows[0].values:
             vertex = _vertex(depths, np.array([row.values[name] for row in rows]))
-            near = np.r_[depths, wanted]
+            near = np.r_[depths, vertices]
             least = CLOSEST * self.rolling.half_width
             if vertex is not None and np.abs(near - vertex).min() > least:
-                wanted.append(vertex)
-        return np.sort(wanted)
+                vertices.append(vertex)
+        return np.sort(vertices)
 
 
 def _range(traction: Array) -> float:
@@ -565,12 +575,12 @@ def _range(traction: Array) -> float:
     return float(max(np.hypot(*(traction - one).T).max() for one in traction))
 
 
-def _vertex(depths: Array, found: Array) -> float | None:
+def _vertex(depths: Array, stresses: Array) -> float | None:
     """Return the depth of the maximum of a parabola, or None where it is at an end."""
-    k = int(found.argmax())
-    if k in (0, len(found) - 1):
+    k = int(stresses.argmax())
+    if k in (0, len(stresses) - 1):
         return None
-    (a, b, c), (f, g, h) = depths[k - 1 : k + 2], found[k - 1 : k + 2]
+    (a, b, c), (f, g, h) = depths[k - 1 : k + 2], stresses[k - 1 : k + 2]
     one, other = (b - a) * (g - h), (b - c) * (g - f)
     if one == other:
         return None
@@ -586,38 +596,39 @@ def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
     """Return criteria, each of another kind."""
     if isinstance(criteria, Criterion) or not isinstance(criteria, Iterable):
         raise TypeError(f"criteria must be a sequence of criteria, got {criteria!r}")
-    found = tuple(criteria)
-    for one in found:
+    all_criteria = tuple(criteria)
+    for one in all_criteria:
         if not isinstance(one, Criterion):
             kinds = ", ".join(kind.__name__ for kind in CRITERIA.values())
             raise TypeError(f"criteria must hold {kinds}, got {one!r}")
-    names = [type(one).__name__ for one in found]
+    names = [type(one).__name__ for one in all_criteria]
     if len(set(names)) < len(names):
         raise ValueError(f"criteria must be of different kinds, got {', '.join(names)}")
-    return found
+    return all_criteria
 
 
-def layer_values(name: str, given: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
+def layer_values(name: str, stress: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
     """Return a value for each layer and the substrate, None where it is not known."""
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
-    if np.ndim(given) == 0 and not isinstance(given, Mapping | None):  # type: ignore[arg-type]
-        return [core.real(name, given)] * count
-    found: list[Any] = core.layer_values(body, name, {name: given})
-    return found + [None] * (count - len(found))
+    if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
+        return [core.real(name, stress)] * count
+    per_layer: list[Any] = core.layer_values(body, name, {name: stress})
+    return per_layer + [None] * (count - len(per_layer))
 
 
 def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
     """Return depths in their order, checked, or None where they are to be chosen."""
     if depths is None:
         return None
-    found = np.sort(core.real_array("depths", depths).ravel())
-    if not found.size or not np.isfinite(found).all() or found[0] < 0:
+    ordered = np.sort(core.real_array("depths", depths).ravel())
+    if not ordered.size or not np.isfinite(ordered).all() or ordered[0] < 0:
         raise ValueError(f"depths must be finite and at least 0, one or more, got {depths!r}")
-    if not isinstance(body.substrate, core.Elastic) and found[-1] > body.interfaces[-1]:
+    if not isinstance(body.substrate, core.Elastic) and ordered[-1] > body.interfaces[-1]:
         raise ValueError(
-            f"depths must not be below the rigid base at {body.interfaces[-1]:g}, got {found[-1]:g}"
+            f"depths must not be below the rigid base at {body.interfaces[-1]:g}, "
+            f"got {ordered[-1]:g}"
         )
-    return found
+    return ordered
 
 
 def prepared(
@@ -636,12 +647,12 @@ def prepared(
     check_unyielded(solution.normal if isinstance(solution, FrictionSolution) else solution)
     if not among(rule, get_args(Rule)):
         raise ValueError(f"rule must be 'von_mises' or 'in_plane_tresca', got {rule!r}")
-    asked = checked_criteria(criteria)
+    all_criteria = checked_criteria(criteria)
     rolling = Rolling(solution, body, direction, x, threads)
     stresses = [value or 0.0 for value in layer_values("residual", residual, rolling.body)]
     if not np.isfinite(stresses).all():
         raise ValueError(f"residual must be finite, got {residual!r}")
-    return Assessment(rolling, asked, rule, stresses)
+    return Assessment(rolling, all_criteria, rule, stresses)
 
 
 def in_region(region: Region, depths: Array) -> Array:
@@ -738,65 +749,70 @@ def assess(
     >>> sorted(substrate.safety_factors)
     ['DangVan', 'first_yield', 'shakedown']
     """
-    asked = prepared(solution, criteria, rule, residual, body, direction, x, threads)
-    limits = layer_values("shear_yield", shear_yield, asked.rolling.body)
+    assessment = prepared(solution, criteria, rule, residual, body, direction, x, threads)
+    limits = layer_values("shear_yield", shear_yield, assessment.rolling.body)
     for limit in limits:
         if limit is not None and not 0.0 < limit < np.inf:
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
-    check_limits("shear_yield", limits, asked.rolling.body)
-    layers = [None] * len(asked.rolling.body.layers)  # whose limits are not those of criteria
-    for one in asked.criteria:
+    check_limits("shear_yield", limits, assessment.rolling.body)
+    layers = [None] * len(assessment.rolling.body.layers)  # whose limits are not those of criteria
+    for one in assessment.criteria:
         for name in ("bending", "torsion"):
-            check_limits(name, [*layers, getattr(one, name)], asked.rolling.body)
+            check_limits(name, [*layers, getattr(one, name)], assessment.rolling.body)
     friction = core.real("friction", friction)
     if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
-    if asked.rolling.known and friction:
+    if assessment.rolling.known and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")
-    given = checked_depths(depths, asked.rolling.body)
-    regions, found = asked.regions(), []
+    ordered_depths = checked_depths(depths, assessment.rolling.body)
+    regions, rows_by_region = assessment.regions(), []
     with lasting("fatigue", progress) as tell:
         for done, region in enumerate(regions):
             if tell is not None:
                 tell(done / len(regions))
-            found += asked.evaluated(region, given, [float(friction)])
+            rows_by_region += assessment.evaluated(region, ordered_depths, [float(friction)])
         if tell is not None:
             tell(1.0)
-    return _summed(asked, regions, found, limits)
+    return _summed(assessment, regions, rows_by_region, limits)
 
 
 def _summed(
-    asked: Assessment, regions: list[Region], found: list[list[Row]], limits: list[float | None]
+    assessment: Assessment,
+    regions: list[Region],
+    rows_by_region: list[list[Row]],
+    limits: list[float | None],
 ) -> FatigueSummary:
     """Return the summary of the rows of all layers, and issue its warnings."""
-    layers, said = [], []
-    for region, rows in zip(regions, found, strict=True):
+    layers, warning_texts = [], []
+    for region, rows in zip(regions, rows_by_region, strict=True):
         if rows:
-            layer, warned = _layer(asked, region, rows, limits[region.layer])
+            layer, layer_warnings = _layer(assessment, region, rows, limits[region.layer])
             layers.append(layer)
-            said += warned
+            warning_texts += layer_warnings
     interfaces = []
-    for number, depth in enumerate(asked.rolling.body.interfaces):
-        sides = [row for rows in found[number : number + 2] for row in rows if row.z == depth]
+    for number, depth in enumerate(assessment.rolling.body.interfaces):
+        sides = [
+            row for rows in rows_by_region[number : number + 2] for row in rows if row.z == depth
+        ]
         if sides:
             # Tractions are continuous.
             interfaces.append(
                 InterfaceFatigue(number, depth, sides[0].shear_range, sides[0].tension)
             )
-    all_rows = [row for rows in found for row in rows]
+    all_rows = [row for rows in rows_by_region for row in rows]
     names = all_rows[0].values
     summary = FatigueSummary(
         layers,
         interfaces,
-        asked.criteria,
-        asked.rule,
-        asked.rolling.peak_pressure,
+        assessment.criteria,
+        assessment.rule,
+        assessment.rolling.peak_pressure,
         np.array([row.z for row in all_rows]),
         {name: np.array([row.values[name] for row in all_rows]) for name in names},
-        asked.rolling.x is not None,
-        said,
+        assessment.rolling.x is not None,
+        warning_texts,
     )
-    for text in said:
+    for text in warning_texts:
         warnings.warn(text, core.NacreWarning, stacklevel=3)
     return summary
 
@@ -815,16 +831,16 @@ def _at(y: float, rolling: Rolling) -> float:
 
 
 def _layer(
-    asked: Assessment, region: Region, rows: list[Row], limit: float | None
+    assessment: Assessment, region: Region, rows: list[Row], limit: float | None
 ) -> tuple[LayerFatigue, list[str]]:
     """Return what a layer needs, and warnings."""
     best = {name: max(rows, key=lambda row: row.values[name]) for name in rows[0].values}
-    x = asked.rolling.x or 0.0
+    x = assessment.rolling.x or 0.0
     peaks: dict[str, Peak] = {
-        name: (row.values[name], (x, _at(row.at[name], asked.rolling), row.z))
+        name: (row.values[name], (x, _at(row.at[name], assessment.rolling), row.z))
         for name, row in best.items()
     }
-    criteria = {type(one).__name__: one for one in asked.criteria}
+    criteria = {type(one).__name__: one for one in assessment.criteria}
     factors: dict[str, float] = {}
     for name in ("shakedown", "first_yield"):
         if limit is not None and peaks[name][0] > 0:
@@ -844,10 +860,10 @@ def _layer(
         factors,
     )
     place = display.part(layer)
-    said = unresolved(place, best)
+    warning_texts = unresolved(place, best)
     if "Matake" in best and best["Matake"].gap < JUMP:
-        said.append(
+        warning_texts.append(
             f"in {place}, another plane has a shear amplitude within 1 % of that of Matake's "
             "plane: the choice may jump from one to the other, and its value with it"
         )
-    return layer, said
+    return layer, warning_texts
