@@ -49,7 +49,7 @@ FEW = 20
 def quantities(
     where: str,
     table: Table,
-    asked: Mapping[str, str | int | None],
+    choices: Mapping[str, str | int | None],
     units: Mapping[str, str],
     spring_constant: float | None,
 ) -> tuple[Array, Array, Array | None]:
@@ -58,22 +58,24 @@ def quantities(
     `where` names the file in messages; the others are keywords of `read`. With a spring constant,
     the column of the depth is the height of a cantilever's base.
     """
-    if spring_constant is not None and asked["depth"] is None:
-        asked = {**asked, "depth": _height(where, table)}
-    chosen = {quantity: _chosen(where, table, quantity, one) for quantity, one in asked.items()}
+    if spring_constant is not None and choices["depth"] is None:
+        choices = {**choices, "depth": _height(where, table)}
+    chosen = {
+        quantity: _signed_column(where, table, quantity, one) for quantity, one in choices.items()
+    }
     rows = _filled(table, [index for _, index in chosen.values() if index is not None])
-    found: dict[str, Array | None] = {}
+    by_quantity: dict[str, Array | None] = {}
     for quantity, (sign, index) in chosen.items():
-        found[quantity] = None
+        by_quantity[quantity] = None
         if index is not None:
             size = sign * _unit(where, table, quantity, index, units)
-            found[quantity] = size * _values(where, table, quantity, index, rows)
-    depth, force, time = (found[quantity] for quantity in DIMENSIONS)
+            by_quantity[quantity] = size * _values(where, table, quantity, index, rows)
+    depth, force, time = (by_quantity[quantity] for quantity in DIMENSIONS)
     assert depth is not None
     assert force is not None
     if spring_constant is not None:
         depth = -(depth + force / spring_constant)
-    if time is not None and asked["time"] is None and (np.diff(time) < 0).any():
+    if time is not None and choices["time"] is None and (np.diff(time) < 0).any():
         warnings.warn(
             f"the time of {where} was left out, since it falls; time= can choose another column",
             core.NacreWarning,
@@ -91,12 +93,12 @@ def _filled(table: Table, columns: Sequence[int]) -> int:
     return rows
 
 
-def has_curve(table: Table, asked: Mapping[str, str | int | None], is_spring: bool) -> bool:
+def has_curve(table: Table, choices: Mapping[str, str | int | None], is_spring: bool) -> bool:
     """Return whether a table has a depth and a force."""
     try:
-        if not (is_spring and asked["depth"] is None and _height("", table) is not None):
-            _chosen("", table, "depth", asked["depth"])
-        _chosen("", table, "force", asked["force"])
+        if not (is_spring and choices["depth"] is None and _height("", table) is not None):
+            _signed_column("", table, "depth", choices["depth"])
+        _signed_column("", table, "force", choices["force"])
     except ValueError:
         return False
     return True
@@ -109,27 +111,28 @@ def _height(where: str, table: Table) -> int:
     hits = [k for k in hits if "measured" in words[k]] or hits
     if len(hits) == 1:
         return hits[0]
-    raise ValueError(
-        f"depth must be given, as the column of the height: {_listed(where, table, 'depth')}"
-    )
+    listing = _column_listing(where, table, "depth")
+    raise ValueError(f"depth must be given, as the column of the height: {listing}")
 
 
-def _chosen(
-    where: str, table: Table, quantity: str, asked: str | int | None
+def _signed_column(
+    where: str, table: Table, quantity: str, choice: str | int | None
 ) -> tuple[float, int | None]:
     """Return the sign and the number of a quantity's column; none only for a time."""
-    if asked is None:
+    if choice is None:
         index = _known(where, table, quantity)
         if index is None and quantity != "time":
             first = [column.name.lower().split()[:1] for column in table.columns]
             hint = ""
             if quantity == "depth" and any(HEIGHT & set(words) for words in first):
                 hint = "; spring_constant= in N/m makes it of a height and the force"
-            raise ValueError(f"{quantity} must be given: {_listed(where, table, quantity)}{hint}")
+            raise ValueError(
+                f"{quantity} must be given: {_column_listing(where, table, quantity)}{hint}"
+            )
         return 1.0, index
-    if isinstance(asked, str) and asked.startswith("-"):
-        return -1.0, _asked(where, table, quantity, asked[1:].strip())
-    return 1.0, _asked(where, table, quantity, asked)
+    if isinstance(choice, str) and choice.startswith("-"):
+        return -1.0, _column_index(where, table, quantity, choice[1:].strip())
+    return 1.0, _column_index(where, table, quantity, choice)
 
 
 def _plain(name: str) -> str:
@@ -148,7 +151,7 @@ def _known(where: str, table: Table, quantity: str) -> int | None:
         if len(hits) > 1:
             raise ValueError(
                 f"{quantity} must be given: {len(hits)} columns have the name "
-                f"{table.columns[hits[0]].name!r}; {_listed(where, table, quantity)}"
+                f"{table.columns[hits[0]].name!r}; {_column_listing(where, table, quantity)}"
             )
         if hits:
             return hits[0]
@@ -161,45 +164,44 @@ def _known(where: str, table: Table, quantity: str) -> int | None:
     return hits[0] if len(hits) == 1 else None
 
 
-def _asked(where: str, table: Table, quantity: str, asked: str | int) -> int:
-    asked = name_or_number(quantity, asked)
-    if isinstance(asked, int):
-        if 0 <= asked < table.width:
-            return asked
+def _column_index(where: str, table: Table, quantity: str, choice: str | int) -> int:
+    choice = name_or_number(quantity, choice)
+    if isinstance(choice, int):
+        if 0 <= choice < table.width:
+            return choice
     else:
-        written = [(column.heading, column.name) for column in table.columns]
-        plain = [tuple(map(_plain, names)) for names in written]
-        for wanted, columns in ((asked, written), (_plain(asked), plain)):
-            hits = [i for i, names in enumerate(columns) if wanted and wanted in names]
+        spellings = [(column.heading, column.name) for column in table.columns]
+        plain = [tuple(map(_plain, names)) for names in spellings]
+        for name, columns in ((choice, spellings), (_plain(choice), plain)):
+            hits = [i for i, names in enumerate(columns) if name and name in names]
             if len(hits) == 1:
                 return hits[0]
-        if asked.isdecimal() and int(asked) < table.width:  # "-3" has the sign of its own
-            return int(asked)
-    raise ValueError(
-        f"{quantity} must name one column, got {asked!r}: {_listed(where, table, quantity)}"
-    )
+        if choice.isdecimal() and int(choice) < table.width:  # "-3" has the sign of its own
+            return int(choice)
+    listing = _column_listing(where, table, quantity)
+    raise ValueError(f"{quantity} must name one column, got {choice!r}: {listing}")
 
 
 def _unit(where: str, table: Table, quantity: str, index: int, units: Mapping[str, str]) -> float:
     """Return the unit of a column in SI."""
     column = table.columns[index]
-    wanted = UNIT_NAMES[DIMENSIONS[quantity]]
-    given = units.get(quantity, column.unit or ("s" if quantity == "time" else None))
-    named = repr(column.heading[:60]) if column.heading else f"column {index}"
-    if given is None:
+    kind = UNIT_NAMES[DIMENSIONS[quantity]]
+    unit_name = units.get(quantity, column.unit or ("s" if quantity == "time" else None))
+    label = repr(column.heading[:60]) if column.heading else f"column {index}"
+    if unit_name is None:
         raise ValueError(
-            f"units must be given: {where} names no unit of {wanted} for {named}, such as "
+            f"units must be given: {where} names no unit of {kind} for {label}, such as "
             f"units={{'depth': 'nm', 'force': 'mN'}}"
         )
-    unit = unit_of(given)
+    unit = unit_of(unit_name)
     if unit is None or unit[0] != DIMENSIONS[quantity]:
         raise ValueError(
-            f"{quantity} must have a unit of {wanted}, got {given!r} for {named} of {where}"
+            f"{quantity} must have a unit of {kind}, got {unit_name!r} for {label} of {where}"
         )
     return unit[1]
 
 
-def _listed(where: str, table: Table, quantity: str) -> str:
+def _column_listing(where: str, table: Table, quantity: str) -> str:
     """Return a sentence that lists the columns, and how to choose one."""
     if not any(column.heading for column in table.columns):
         first = ", ".join(table.rows[0])[:200]
@@ -209,13 +211,13 @@ def _listed(where: str, table: Table, quantity: str) -> str:
             f"(line {table.lines[0]}{above}). Give depth=, force= and, for a time, time= as "
             f"numbers from 0, and units={{'depth': 'nm', 'force': 'mN'}}"
         )
-    listed = list(enumerate(table.columns))
+    columns = list(enumerate(table.columns))
     which = "the columns"
     if table.width > FEW:
-        likely = [(i, column) for i, column in listed if _is_likely(column, quantity)][:FEW]
-        listed = likely or listed[:FEW]
+        likely = [(i, column) for i, column in columns if _is_likely(column, quantity)][:FEW]
+        columns = likely or columns[:FEW]
         which = f"{table.width} columns, {'likely ' if likely else ''}among them"
-    names = ", ".join(f"{i} {c.heading[:60]!r}" for i, c in listed)[:1000]
+    names = ", ".join(f"{i} {c.heading[:60]!r}" for i, c in columns)[:1000]
     return f"{where} has {which} {names}; give {quantity}= a name or a number"
 
 
@@ -260,7 +262,7 @@ def checked_units(units: Mapping[str, str] | None) -> Mapping[str, str]:
 
 def chosen_tables(
     where: str,
-    found: Sequence[Table],
+    tables: Sequence[Table],
     segment: int | str | None,
     has_curve: Callable[[Table], bool],
 ) -> Mapping[int, Table]:
@@ -273,29 +275,29 @@ def chosen_tables(
             segment = core.integer("segment", segment)
         except TypeError:
             raise TypeError(f"segment must be a number or 'all', got {segment!r}") from None
-    if len(found) == 1 and segment in (None, "all"):
-        parts = _parts(found[0]) if segment else []
-        return dict(enumerate(parts or found))
-    if len(found) == 1 and (parts := _parts(found[0])):
-        found = parts
+    if len(tables) == 1 and segment in (None, "all"):
+        parts = _parts(tables[0]) if segment else []
+        return dict(enumerate(parts or tables))
+    if len(tables) == 1 and (parts := _parts(tables[0])):
+        tables = parts
     if isinstance(segment, int):
-        if 0 <= segment < len(found):
-            return {segment: found[segment]}
+        if 0 <= segment < len(tables):
+            return {segment: tables[segment]}
     else:
-        curves = {number: table for number, table in enumerate(found) if has_curve(table)}
+        curves = {number: table for number, table in enumerate(tables) if has_curve(table)}
         if segment == "all":
-            return curves or dict(enumerate(found))
+            return curves or dict(enumerate(tables))
         if len(curves) == 1:
             return curves
-    listed = ", ".join(
+    listing = ", ".join(
         f"{number} {f'{table.title[:60]!r} ' if table.title else ''}({len(table.rows)} rows from "
         f"line {table.lines[0]})"
-        for number, table in enumerate(found)
+        for number, table in enumerate(tables)
     )
     requirement = "given" if segment is None else f"one of the file's, got {segment}"
     raise ValueError(
-        f"segment must be {requirement}: {where} has {len(found)} tables, {listed}; 'all' gives a "
-        "list"
+        f"segment must be {requirement}: {where} has {len(tables)} tables, {listing}; 'all' gives "
+        "a list"
     )
 
 
@@ -311,8 +313,8 @@ def _parts(table: Table) -> list[Table]:
             continue
         parts = []
         for label in kinds:
-            kept = [k for k, one in enumerate(labels) if one == label]
-            rows, lines = [table.rows[k] for k in kept], [table.lines[k] for k in kept]
+            indices = [k for k, one in enumerate(labels) if one == label]
+            rows, lines = [table.rows[k] for k in indices], [table.lines[k] for k in indices]
             parts.append(replace(table, rows=rows, lines=lines, title=label))
         return parts
     return []

@@ -32,14 +32,14 @@ def unit_of(name: str) -> str:
 def indentation(solution: IndentSolution) -> xarray.Dataset:
     """Return the contacts with units and all that they depend on."""
     arrays = {row.name: np.asarray(row.of(solution)) for row in CONTACTS}
-    given, rank = solution.given, arrays[solution.given].ndim
-    dims = (given,) if rank == 1 else tuple(f"{given}_{k}" for k in range(rank))
+    variable, rank = solution.given, arrays[solution.given].ndim
+    dims = (variable,) if rank == 1 else tuple(f"{variable}_{k}" for k in range(rank))
     variables = {name: (dims, values) for name, values in arrays.items()}
     return dataset(
         "indentation of a coated body",
         ((row, row.unit) for row in INDENT),
         variables,
-        {given: variables.pop(given)},
+        {variable: variables.pop(variable)},
         solution.to_dict(),
         **_arguments(solution),
         **{name: getattr(solution, name) for name in ("given", "branch", "control")},
@@ -71,7 +71,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     numbers = np.repeat(np.arange(len(fit.curves)), [len(curve) for curve in fit.curves])
     coords = {"parameter": names, "other_parameter": names, "curve": ("point", numbers)}
     noise = {"residual": "N" if fit.noise == "absolute" else ""}
-    found = dataset(
+    fields = dataset(
         "fit of indentation curves",
         ((row, noise.get(row.name, row.unit)) for row in FIT),
         columns,
@@ -82,13 +82,13 @@ def estimates(fit: Fit) -> xarray.Dataset:
         warnings="\n".join(fit.warnings),
         reasons="\n".join(f"{name}: {text}" for name, text in fit.reasons.items()),
     )
-    found["low"].attrs["long_name"] = "lower end of the interval of 95 %"
-    found["high"].attrs["long_name"] = "upper end of the interval of 95 %"
-    return found
+    fields["low"].attrs["long_name"] = "lower end of the interval of 95 %"
+    fields["high"].attrs["long_name"] = "upper end of the interval of 95 %"
+    return fields
 
 
-def _arguments(found: IndentSolution | Fit) -> dict[str, str]:
-    return {name: json.dumps(encode(getattr(found, name))) for name in ARGUMENTS}
+def _arguments(source: IndentSolution | Fit) -> dict[str, str]:
+    return {name: json.dumps(encode(getattr(source, name))) for name in ARGUMENTS}
 
 
 def _units(fit: Fit) -> list[str]:

@@ -146,7 +146,7 @@ class Model:
         self.prior = [(self.names.index(name), *pair) for name, pair in prior.items()]
         self.trust = 1.0
         """Standard deviation of the residuals, by which those of the prior are multiplied."""
-        self._given = prior
+        self._prior = prior
         self.low, self.high = (
             np.array([unknown.bounds[side] for unknown in self.unknowns]) for side in (0, 1)
         )
@@ -278,7 +278,7 @@ class Model:
             noise=self.noise,
             floor=self.floor,
             sigma=self.sigma,
-            prior=self._given,
+            prior=self._prior,
             bounds={},
         )
         model.trust, model.pull = self.trust, self.loads(x)[0]
@@ -317,15 +317,15 @@ def _unknowns(
     for names, allowed, what in ((free, known, "free"), (nuisance, NUISANCES, "nuisance")):
         for name in names:
             if name not in allowed:
-                listed = ", ".join(allowed)
-                raise ValueError(f"{what} must name parameters among {listed}, got {name!r}")
+                choices = ", ".join(allowed)
+                raise ValueError(f"{what} must name parameters among {choices}, got {name!r}")
         if len(set(names)) < len(names):
             raise ValueError(f"{what} must name each parameter once, got {list(names)}")
     if not free:
         raise ValueError("free must name a parameter, got none")
     if "tip.area" in free and any(name.startswith("tip.") for name in free if name != "tip.area"):
         raise ValueError("free must not hold tip.area together with another number of the tip")
-    found = []
+    unknowns = []
     for path in free:
         value = known[path]
         is_plain = path.endswith(".poisson")
@@ -339,7 +339,7 @@ def _unknowns(
             raise ValueError(
                 f"bounds of {path} must include its start, {value:.6g}, got {low:.6g}, {high:.6g}"
             )
-        found.append(Unknown(path, value, 1.0 if is_plain else 0.0, low, high))
+        unknowns.append(Unknown(path, value, 1.0 if is_plain else 0.0, low, high))
     for number, curve in enumerate(curves):
         reach, most = float(np.ptp(curve.depth)), float(curve.force.max())
         for kind in nuisance:
@@ -356,14 +356,14 @@ def _unknowns(
             low, high = bounds.get(name, bounds.get(kind, (-FARTHEST * scale, FARTHEST * scale)))
             if not low < 0 < high:
                 raise ValueError(f"bounds of {name} must lie about 0, got {low:.6g}, {high:.6g}")
-            found.append(Unknown(name, 0.0, scale, low, high, number, kind))
-    names = [unknown.name for unknown in found]
+            unknowns.append(Unknown(name, 0.0, scale, low, high, number, kind))
+    names = [unknown.name for unknown in unknowns]
     _check_names(bounds, [*names, *nuisance], "bounds")
-    return found
+    return unknowns
 
 
-def _check_names(given: Iterable[str], known: Sequence[str], what: str) -> None:
-    for name in given:
+def _check_names(names: Iterable[str], known: Sequence[str], what: str) -> None:
+    for name in names:
         if name not in known:
             raise ValueError(f"{what} must name parameters of the fit, {known}, got {name!r}")
 

@@ -78,29 +78,29 @@ def estimated(model: Model, x: Array) -> Estimate:
     count = x.size
     covariance = np.zeros((count, count))
     correlation = np.eye(count)
-    seen = lengths > 1e-9 * max(float(lengths.max()), 1e-300)
+    sensitive = lengths > 1e-9 * max(float(lengths.max()), 1e-300)
     condition = math.inf
-    if seen.any():
-        scaled = jacobian[:, seen] / lengths[seen]
+    if sensitive.any():
+        scaled = jacobian[:, sensitive] / lengths[sensitive]
         _, sizes, rows = np.linalg.svd(scaled, full_matrices=False)
         sizes = np.maximum(sizes, 1e-13 * sizes[0])
         inverse = (rows.T / sizes**2) @ rows
         widths = np.sqrt(np.diag(inverse))
-        correlation[np.ix_(seen, seen)] = inverse / np.outer(widths, widths)
-        scale = np.sqrt(variance) / lengths[seen]
-        covariance[np.ix_(seen, seen)] = inverse * np.outer(scale, scale)
-        if seen.all():
+        correlation[np.ix_(sensitive, sensitive)] = inverse / np.outer(widths, widths)
+        scale = np.sqrt(variance) / lengths[sensitive]
+        covariance[np.ix_(sensitive, sensitive)] = inverse * np.outer(scale, scale)
+        if sensitive.all():
             condition = float(sizes[0] / sizes[-1])
-    covariance[~seen, ~seen] = math.inf
+    covariance[~sensitive, ~sensitive] = math.inf
     return Estimate(x, chi2, variance, quantile, covariance, correlation, condition, alone)
 
 
-def minimum(model: Model, x: Array, *, rough: bool = False, held: int | None = None) -> Array:
-    """Return the place of the least sum of squares that is found from x; x[held] is kept."""
+def minimum(model: Model, x: Array, *, rough: bool = False, fixed: int | None = None) -> Array:
+    """Return the place of the least sum of squares that is found from x; x[fixed] is kept."""
     with extra("fit"):
         from scipy.optimize import least_squares
 
-    varied = np.arange(x.size) != held
+    varied = np.arange(x.size) != fixed
     inside = 1e-9 * (model.high - model.low)
     x = np.clip(x, model.low + inside, model.high - inside)
     if not varied.any():
@@ -111,7 +111,7 @@ def minimum(model: Model, x: Array, *, rough: bool = False, held: int | None = N
         place[varied] = part
         return place
 
-    found = least_squares(
+    optimum = least_squares(
         lambda part: model.at(whole(part))[0],
         x[varied],
         jac=lambda part: model.at(whole(part))[1][:, varied],
@@ -122,7 +122,7 @@ def minimum(model: Model, x: Array, *, rough: bool = False, held: int | None = N
         gtol=1e-10,
         max_nfev=15 if rough else 60,
     )
-    return whole(np.asarray(found.x, dtype=np.float64))
+    return whole(np.asarray(optimum.x, dtype=np.float64))
 
 
 def interval(model: Model, best: Estimate, k: int) -> tuple[float, float]:
@@ -207,7 +207,7 @@ def _bracketed(model: Model, best: Estimate, k: int, side: float, level: float) 
 
 def _least(model: Model, x: Array, k: int) -> float:
     """Return the least sum of squares with x[k] as it is."""
-    return model.chi2(minimum(model, x, rough=True, held=k))
+    return model.chi2(minimum(model, x, rough=True, fixed=k))
 
 
 def others(model: Model, start: Array) -> list[Array]:
@@ -233,14 +233,14 @@ def reasons(
     minima: list[tuple[Array, float]],
 ) -> dict[str, str]:
     """Return why parameters of the system are not identifiable, for those that are not."""
-    found: dict[str, str] = {}
+    by_name: dict[str, str] = {}
     for k, unknown in enumerate(model.unknowns):
         if not unknown.kind:
             pair = intervals.get(unknown.name)
             reason = _reason(model, best, k, pair, minima)
             if reason is not None:
-                found[unknown.name] = reason
-    return found
+                by_name[unknown.name] = reason
+    return by_name
 
 
 def _reason(

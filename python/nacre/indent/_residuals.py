@@ -76,7 +76,7 @@ def likeliest(model: Model, x: Array) -> tuple[Noise, float]:
 
 
 @dataclass(frozen=True)
-class Held:
+class FixedParameters:
     """Numbers that a fit holds: the columns that they would add to its Jacobian."""
 
     names: list[str]
@@ -84,7 +84,7 @@ class Held:
     """Derivatives of the residuals with respect to x of each, as of free parameters."""
 
     @classmethod
-    def of(cls, model: Model, x: Array) -> Held:
+    def of(cls, model: Model, x: Array) -> FixedParameters:
         """Return what a fit holds, but for what cannot be free there."""
         free = [
             name
@@ -105,12 +105,12 @@ class Held:
             return cls([], np.zeros((model.at(x)[0].size, 0)))
         more = [k for k, name in enumerate(wider.names) if name not in model.names]
         columns = jacobian[:, more]
-        seen = np.flatnonzero(np.isfinite(columns).all(axis=0)).tolist()
-        return cls([wider.names[more[k]] for k in seen], columns[:, seen])
+        finite = np.flatnonzero(np.isfinite(columns).all(axis=0)).tolist()
+        return cls([wider.names[more[k]] for k in finite], columns[:, finite])
 
 
 @dataclass(frozen=True)
-class Examined:
+class Examination:
     """What the residuals of a fit say."""
 
     estimate: Estimate
@@ -121,16 +121,16 @@ class Examined:
     """Change of x of each free parameter over that of x of each number that is held."""
 
 
-def examined(model: Model, best: Estimate) -> Examined:
+def examine(model: Model, best: Estimate) -> Examination:
     """Return whether the residuals at a minimum are noise, and how it depends on what is held."""
     with extra("fit"):
         from scipy.special import chdtrc, ndtr, stdtr
 
     residuals, jacobian = model.at(best.x)
-    held = Held.of(model, best.x)
-    moves = -np.linalg.lstsq(jacobian, held.columns)[0]
+    fixed = FixedParameters.of(model, best.x)
+    moves = -np.linalg.lstsq(jacobian, fixed.columns)[0]
     sensitivity = {
-        name: dict(zip(held.names, moves[k].tolist(), strict=True))
+        name: dict(zip(fixed.names, moves[k].tolist(), strict=True))
         for k, name in enumerate(model.names)
         if name in model.free
     }
@@ -139,13 +139,13 @@ def examined(model: Model, best: Estimate) -> Examined:
     chi2, dof, count = float(rest @ rest), model.dof, model.depth.size
     size = math.sqrt(chi2 / dof)
     if dof < 3 or size < ROUNDING:
-        return Examined(best, [], sensitivity)
+        return Examination(best, [], sensitivity)
 
-    own = held.columns - basis @ (basis.T @ held.columns)
+    own = fixed.columns - basis @ (basis.T @ fixed.columns)
     lengths = np.linalg.norm(own, axis=0)
-    seen = lengths > 1e-6 * np.linalg.norm(held.columns, axis=0)
-    share = np.zeros(len(held.names))
-    share[seen] = own[:, seen].T @ rest / lengths[seen]
+    independent = lengths > 1e-6 * np.linalg.norm(fixed.columns, axis=0)
+    share = np.zeros(len(fixed.names))
+    share[independent] = own[:, independent].T @ rest / lengths[independent]
     if model.is_known:
         chances = 2 * ndtr(-np.abs(share))
     else:
@@ -154,20 +154,20 @@ def examined(model: Model, best: Estimate) -> Examined:
     ratio, due, chance = durbin_watson(rest[:count], basis[:count], model.parts)
     is_structured = chance < LEVEL and not (model.is_known and chi2 < 0.5 * dof)
     is_large = model.is_known and float(chdtrc(dof, chi2)) < LEVEL
-    is_explained = bool((chances[seen] < LEVEL / max(seen.sum(), 1)).any())
+    is_explained = bool((chances[independent] < LEVEL / max(independent.sum(), 1)).any())
     if not (is_structured or is_large or is_explained):
-        return Examined(best, [], sensitivity)
+        return Examination(best, [], sensitivity)
 
-    change = np.zeros(len(held.names))
-    change[seen] = -share[seen] / lengths[seen]
+    change = np.zeros(len(fixed.names))
+    change[independent] = -share[independent] / lengths[independent]
     left = chi2 - share**2
-    remedies = _remedies(held.names, chances, np.abs(change), left)
+    remedies = _remedies(fixed.names, chances, np.abs(change), left)
     text, shift = _sentence(model, rest[:count], size, ratio), np.zeros_like(best.x)
     if remedies:
-        listed = ", ".join(
-            f"{held.names[k]} (leaves {_share(model, math.sqrt(left[k] / dof))})" for k in remedies
+        listing = ", ".join(
+            f"{fixed.names[k]} (leaves {_share(model, math.sqrt(left[k] / dof))})" for k in remedies
         )
-        text += f"; free, where it is not sure, {listed}"
+        text += f"; free, where it is not sure, {listing}"
         first = min(remedies, key=lambda k: float(left[k]))
         shift = moves[:, first] * change[first]
         after = rest - own[:, first] * share[first] / lengths[first]
@@ -179,7 +179,7 @@ def examined(model: Model, best: Estimate) -> Examined:
     # Suppl. J. R. Stat. Soc. 8 (1946) 184-197, doi:10.2307/2983560.
     fewer = max(due / ratio * 2 - 1, 1.0) * (max(1.0, chi2 / dof) if model.is_known else 1.0)
     covariance = fewer * best.covariance + np.outer(shift, shift)
-    return Examined(replace(best, covariance=covariance), [text], sensitivity)
+    return Examination(replace(best, covariance=covariance), [text], sensitivity)
 
 
 def durbin_watson(rest: Array, basis: Array, parts: Sequence[slice]) -> tuple[float, float, float]:
@@ -193,12 +193,12 @@ def durbin_watson(rest: Array, basis: Array, parts: Sequence[slice]) -> tuple[fl
 
     def differences(values: Array) -> Array:
         """Return A·values, where rᵀAr is the sum of squared differences of neighbours."""
-        found = np.zeros_like(values)
+        product = np.zeros_like(values)
         for part in parts:
             step = np.diff(values[part], axis=0)
-            found[part][:-1] -= step
-            found[part][1:] += step
-        return found
+            product[part][:-1] -= step
+            product[part][1:] += step
+        return product
 
     dof = rest.size - basis.shape[1]
     mapped = differences(basis)
@@ -220,12 +220,12 @@ def durbin_watson(rest: Array, basis: Array, parts: Sequence[slice]) -> tuple[fl
 def _remedies(names: Sequence[str], chances: Array, change: Array, left: Array) -> list[int]:
     """Return which numbers would remove most of the structure if free, nuisances first."""
     kinds = [name.rpartition(".")[2] for name in names]
-    found = [
+    candidates = [
         k
         for k in np.argsort(left).tolist()
         if chances[k] < LEVEL and change[k] < PLAUSIBLE.get(kinds[k], PLAUSIBLE[""])
     ]
-    close = [k for k in found if left[k] < CLOSE * left[found[0]]]
+    close = [k for k in candidates if left[k] < CLOSE * left[candidates[0]]]
     return sorted(close, key=lambda k: kinds[k] not in NUISANCES)[:NAMED]
 
 

@@ -33,7 +33,7 @@ Array = npt.NDArray[np.float64]
 UNFIT = "the model does not fit the data"
 """Reason why no parameter is identifiable where the residuals are no noise."""
 
-GIVEN = 6
+MOST_RATES = 6
 """Most numbers on which a table says that an estimate depends."""
 
 
@@ -152,9 +152,9 @@ class Fit(Tabular):
 
     def __repr__(self) -> str:
         """Return a line with the estimates."""
-        said = ", ".join(f"{name} {self._value(name)}" for name in self.free)
+        estimates_text = ", ".join(f"{name} {self._value(name)}" for name in self.free)
         verdict = "identifiable" if self.is_identifiable else "not identifiable"
-        return f"<Fit of {said}: {verdict}>"
+        return f"<Fit of {estimates_text}: {verdict}>"
 
     def __str__(self) -> str:
         """Return the table."""
@@ -169,8 +169,8 @@ class Fit(Tabular):
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
         rows = []
         for name in self.estimates:
-            low, high = (self._written(name, end) for end in self.intervals[name])
-            error = self._written(name, self.standard_errors[name], 2)
+            low, high = (self._with_unit(name, end) for end in self.intervals[name])
+            error = self._with_unit(name, self.standard_errors[name], 2)
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
             rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
         lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
@@ -187,7 +187,7 @@ class Fit(Tabular):
             f"freedom, {points} points, condition {self.condition:.3g}"
         )
         lines += [f"warning: {text}" for text in self.warnings]
-        lines += self._given()
+        lines += self._sensitivities()
         if self.sigma < ROUNDING * (1 if self.noise != "absolute" else self.curves[0].force.max()):
             lines.append("residuals are rounding: the intervals say nothing of a measurement")
         if UNFIT in self.reasons.values():
@@ -196,26 +196,27 @@ class Fit(Tabular):
             lines.append("intervals are linear, and no other start was tried: profile=False")
         return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
 
-    def _given(self) -> list[str]:
+    def _sensitivities(self) -> list[str]:
         """Return lines on numbers of which 1 % matters beside the intervals, most first."""
         lines = []
         for name, rates in self.sensitivity.items():
             low, high = self.intervals[name]
             relative = 1.0 if name.endswith(".poisson") else self.estimates[name] or 1.0
             half = (high - low) / 2 / relative
-            most = sorted(rates, key=lambda held: -abs(rates[held]))
-            told = [f"{rates[held]:+.2g} % for {_step(held)}" for held in most]
-            told = told[: sum(0.01 * abs(rate) > 0.5 * half for rate in rates.values())]
-            if told:
+            most = sorted(rates, key=lambda fixed: -abs(rates[fixed]))
+            effects = [f"{rates[fixed]:+.2g} % for {_step(fixed)}" for fixed in most]
+            effects = effects[: sum(0.01 * abs(rate) > 0.5 * half for rate in rates.values())]
+            if effects:
                 lines.append(
-                    f"{name} holds for what is given: it changes by {', '.join(told[:GIVEN])}"
+                    f"{name} holds for what is given: it changes by "
+                    f"{', '.join(effects[:MOST_RATES])}"
                 )
         return lines
 
     def _value(self, name: str) -> str:
-        return self._written(name, self.estimates[name])
+        return self._with_unit(name, self.estimates[name])
 
-    def _written(self, name: str, value: float, digits: int = 4) -> str:
+    def _with_unit(self, name: str, value: float, digits: int = 4) -> str:
         if not math.isfinite(value):
             return f"{value}"
         return written(value, unit_of(name), digits)
@@ -249,7 +250,7 @@ class Fit(Tabular):
             for name in ("chi2", "sigma", "floor", "condition"):
                 state[name] = float(state[name])
             state["sensitivity"] = {
-                name: {held: float(rate) for held, rate in rates.items()}
+                name: {fixed: float(rate) for fixed, rate in rates.items()}
                 for name, rates in state["sensitivity"].items()
             }
             for name in ("dof", "evaluations"):
@@ -267,10 +268,10 @@ class Fit(Tabular):
             }
             for name in ("free", "warnings"):
                 state[name] = tuple(state[name])
-            found = cls(**state)
-            if not found._fits_together():
+            fit = cls(**state)
+            if not fit._fits_together():
                 raise TypeError("its parts do not fit together")
-        return found
+        return fit
 
     def _fits_together(self) -> bool:
         """Return whether the parts have the same parameters and points, and the right kinds."""
@@ -293,12 +294,12 @@ class Fit(Tabular):
         )
 
 
-def _step(held: str) -> str:
+def _step(parameter: str) -> str:
     """Return in words what a hundredth of the unit of a sensitivity is."""
-    if held.endswith(".poisson"):
-        return f"0.01 of {held}"
-    if held.rpartition(".")[2] in OF_FORCE:
-        return f"{held} of 1 % of the force"
-    if held.rpartition(".")[2] in NUISANCES:
-        return f"{held} of 1 % of the depth"
-    return f"1 % of {held}"
+    if parameter.endswith(".poisson"):
+        return f"0.01 of {parameter}"
+    if parameter.rpartition(".")[2] in OF_FORCE:
+        return f"{parameter} of 1 % of the force"
+    if parameter.rpartition(".")[2] in NUISANCES:
+        return f"{parameter} of 1 % of the depth"
+    return f"1 % of {parameter}"

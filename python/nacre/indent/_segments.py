@@ -83,7 +83,7 @@ def departure(depth: Array, force: Array) -> int:
     return last
 
 
-def held(force: Array) -> slice | None:
+def find_hold(force: Array) -> slice | None:
     """Return the longest part of an unloading in which the force is held, or None.
 
     It has more points within `LEVEL` than an even ramp would have, and is no baseline of a tip

@@ -39,17 +39,17 @@ class System:
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""
-        found = numbers(vars(self)) | {"tip.area": 1.0}
-        planned = core.Indentation(self.body, self.tip, self.counterbody, self.adhesion)
-        return {k: found[k] for k in planned.parameters() if k != "adhesion.strength"}
+        parameters = numbers(vars(self)) | {"tip.area": 1.0}
+        indentation = core.Indentation(self.body, self.tip, self.counterbody, self.adhesion)
+        return {k: parameters[k] for k in indentation.parameters() if k != "adhesion.strength"}
 
     def changed(self, values: Mapping[str, float]) -> System:
         """Return the system with other values of some parameters, but for the area of the tip."""
-        made = vars(self)
+        fields = vars(self)
         for path, value in values.items():
             if path != "tip.area":
-                made = core.with_value(made, path, value)
-        return System(**made)
+                fields = core.with_value(fields, path, value)
+        return System(**fields)
 
     def narrowed(self, factor: float) -> System:
         """Return the system with lateral lengths divided by a factor, but for those of the tip."""
@@ -60,7 +60,7 @@ class System:
 
     def curve(self, approach: Array, wrt: Sequence[str] = ()) -> IndentCurve:
         """Return the loads at these approaches, without issuing the warnings that they hold."""
-        made = Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
+        indentation = Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)  # of places on the way to a fit
-            return made.curve(approach=approach, wrt=wrt)
+            return indentation.curve(approach=approach, wrt=wrt)

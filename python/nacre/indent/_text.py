@@ -86,19 +86,19 @@ def tables(
     lines = decoded(path, encoding).replace("\u2212", "-").splitlines()
     if delimiter is None:
         delimiter = _delimiter(lines, decimal)
-    found = list(_runs(path, lines, delimiter))
-    if not found:
+    runs = list(_runs(path, lines, delimiter))
+    if not runs:
         raise ValueError(
             f"{str(path)!r} must hold a table of {LEAST_ROWS} rows of two or more numbers, found "
             f"none with {delimiter!r} between the fields; delimiter and encoding can be given"
         )
-    for table, above in found:
+    for table, above in runs:
         table.decimal = decimal or _decimal(path, table)
         table.above = above[0] if above else ""
         table.columns, used = _columns(table, above, delimiter)
         table.title = above[used] if 0 < used < len(above) else ""
         table.head = "\n".join(reversed(above))
-    return [table for table, _ in found]
+    return [table for table, _ in runs]
 
 
 def _is_number(text: str, decimals: Sequence[str] = (".", ",")) -> bool:
@@ -159,9 +159,10 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
         if run is not None and len(run.rows) >= LEAST_ROWS and len(fields) == run.width:
             wrong = [text for text in fields if not _is_number(text)]
             if sum(map(bool, wrong)) < sum(map(bool, fields)):
-                shown = max(wrong, key=bool)  # a text rather than a field that is empty
+                example = max(wrong, key=bool)  # a text rather than a field that is empty
                 raise ValueError(
-                    f"{str(path)!r} must hold numbers in each row, line {number} has {shown[:60]!r}"
+                    f"{str(path)!r} must hold numbers in each row, line {number} has "
+                    f"{example[:60]!r}"
                 )
         run = None
         above.append(line.lstrip("#% ") if line.startswith(("#", "%")) else line)
@@ -196,12 +197,12 @@ def _decimal(path: Path, table: Table) -> str:
 def _columns(table: Table, above: Sequence[str], delimiter: str) -> tuple[list[Column], int]:
     """Return the columns of a table, and how many of the lines above, the nearest first, say it."""
     empty = [Column("", "", None)] * table.width
-    said = [
+    candidates = [
         line
         for line in above[: 2 * HEAD]
         if len(line) <= LONGEST_LINE and re.search(r"[^\W_]", line)
     ][:HEAD]
-    for line, after in zip(said, ["", *said], strict=False):
+    for line, after in zip(candidates, ["", *candidates], strict=False):
         headings = _headings(line, delimiter, table.width)
         if headings is None or _are_units(headings):
             continue

@@ -178,8 +178,8 @@ def information(
     points = core.integer("points", points)
     for largest in np.atleast_1d(core.real_array("reach", reach)).tolist():
         depth = float(test.at(radius=largest).approach)
-        made = test.curve(approach=np.linspace(0.05, 1.0, points) * depth, wrt=list(values))
-        slopes = np.asarray(made.derivatives).T
-        slopes = slopes * np.array(list(values.values()))[:, None] / made.load
+        curve = test.curve(approach=np.linspace(0.05, 1.0, points) * depth, wrt=list(values))
+        slopes = np.asarray(curve.derivatives).T
+        slopes = slopes * np.array(list(values.values()))[:, None] / curve.load
         rows.append(noise * np.sqrt(np.diag(np.linalg.inv(slopes @ slopes.T)))[:2])
     return dict(zip(("young", "thickness"), np.array(rows).reshape(-1, 2).T, strict=True))

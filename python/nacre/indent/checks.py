@@ -211,10 +211,10 @@ def suspicious_units(curve: Curve, *, tip_size: float, modulus: float | None = N
     for name, value in (("tip_size", tip_size), ("modulus", modulus)):
         if value is not None and not 0 < value < math.inf:
             raise ValueError(f"{name} must be positive and finite, got {value}")
-    found = _depth_in_contact(curve)
-    if found is None:
+    point = _depth_in_contact(curve)
+    if point is None:
         return None
-    depth, force = found
+    depth, force = point
     low, high = YOUNG if modulus is None else (modulus / ROOM, modulus * ROOM)
 
     def hertz(depth: float, force: float) -> float:

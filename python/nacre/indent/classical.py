@@ -166,9 +166,9 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
         (f"{law}, largest depth", float(force[-1] / bare[-1]), "Hertz 1882, Sneddon 1965"),
         (f"{law}, least squares", float(force @ bare / (bare @ bare)), "Hertz 1882, Sneddon 1965"),
     ]
-    found = _apparent(depth, force, tip)
-    if found is not None:
-        apparent, radius = found
+    estimate = _apparent(depth, force, tip)
+    if estimate is not None:
+        apparent, radius = estimate
         rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
         rows += _corrected(body, top, apparent, radius)
     if series := _dimitriadis(body, top, depth, force, tip):

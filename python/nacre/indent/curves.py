@@ -17,7 +17,7 @@ import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import written
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
-from nacre.indent._segments import arrival, departure, held
+from nacre.indent._segments import arrival, departure, find_hold
 from nacre.indent._text import tables
 
 Array = npt.NDArray[np.float64]
@@ -143,7 +143,7 @@ class Curve:
         """
         end = arrival(self.force)
         note = _cut(self, slice(end + 1, departure(self.depth, self.force) + 1), "cut")
-        if (way := held(self.force[end::-1])) is not None:
+        if (way := find_hold(self.force[end::-1])) is not None:
             note = _joined(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
         return self._part(slice(0, end + 1), "up to its largest force", note)
 
@@ -182,8 +182,8 @@ class Curve:
 
     def _drift_hold(self) -> slice | None:
         start = departure(self.depth, self.force)
-        found = held(self.force[start:])
-        return None if found is None else slice(start + found.start, start + found.stop)
+        hold = find_hold(self.force[start:])
+        return None if hold is None else slice(start + hold.start, start + hold.stop)
 
     def drift(self) -> Drift:
         """Return the rate at which the depth rises while the force is held.
@@ -306,16 +306,16 @@ class Curve:
         return _curve(depths, self.force - force, self.time, self.name, self.note)
 
     def _part(
-        self, kept: slice | npt.NDArray[np.bool_], which: str, note: str | None = None
+        self, selection: slice | npt.NDArray[np.bool_], which: str, note: str | None = None
     ) -> Curve:
-        depth = self.depth[kept]
+        depth = self.depth[selection]
         if depth.size < LEAST_POINTS:
             raise ValueError(
                 f"the curve must have at least {LEAST_POINTS} points {which}, got {depth.size} of "
                 f"{len(self)}"
             )
-        time = None if self.time is None else self.time[kept]
-        return _curve(depth, self.force[kept], time, self.name, note or self.note)
+        time = None if self.time is None else self.time[selection]
+        return _curve(depth, self.force[selection], time, self.name, note or self.note)
 
 
 class Drift(NamedTuple):
@@ -468,7 +468,7 @@ def read(
     >>> curve
     <Curve 'A1': 3 points, depth 0 m to 20 nm, force 0 N to 750 µN>
     """
-    asked = {"depth": depth, "force": force, "time": time}
+    choices = {"depth": depth, "force": force, "time": time}
     units = checked_units(units)
     if decimal not in (None, ".", ","):
         raise ValueError(f"decimal must be '.' or ',', got {decimal!r}")
@@ -480,21 +480,23 @@ def read(
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     where = repr(str(path))
-    found = tables(path, delimiter, decimal, encoding)
-    head = found[0].head
+    file_tables = tables(path, delimiter, decimal, encoding)
+    head = file_tables[0].head
     if "afmformats" in head:  # all in SI units
         units = {"depth": "m", "force": "N", **units}
-        said = SPRING_CONSTANT.search(head)
-        if said is not None and depth is None and spring_constant is None:
-            spring_constant = float(said[1])
+        match = SPRING_CONSTANT.search(head)
+        if match is not None and depth is None and spring_constant is None:
+            spring_constant = float(match[1])
     if spring_constant is not None and not 0 < spring_constant < math.inf:
         raise ValueError(f"spring_constant must be positive and finite, got {spring_constant}")
     is_spring = spring_constant is not None
     curves = []
-    chosen = chosen_tables(where, found, segment, lambda one: has_curve(one, asked, is_spring))
+    chosen = chosen_tables(
+        where, file_tables, segment, lambda one: has_curve(one, choices, is_spring)
+    )
     for number, table in chosen.items():
-        depths, forces, times = quantities(where, table, asked, units, spring_constant)
-        name = path.stem if len(found) == 1 else f"{path.stem} {number}"
+        depths, forces, times = quantities(where, table, choices, units, spring_constant)
+        name = path.stem if len(file_tables) == 1 else f"{path.stem} {number}"
         try:
             curves.append(Curve(depths, forces, time=times, name=name))
         except ValueError as error:

@@ -16,7 +16,7 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import among
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
-from nacre.indent._residuals import Examined, examined, likeliest
+from nacre.indent._residuals import Examination, examine, likeliest
 from nacre.indent._result import UNFIT, Fit
 from nacre.indent._system import System
 from nacre.indent.checks import check, contact_point, suspicious_units
@@ -150,7 +150,7 @@ def fit(
     for text in doubts:
         warnings.warn(text, core.NacreWarning, stacklevel=2)
 
-    def made(noise: Noise, floor: float = 0.0) -> Model:
+    def new_model(noise: Noise, floor: float = 0.0) -> Model:
         return Model(
             curves,
             system,
@@ -163,31 +163,31 @@ def fit(
             bounds=bounds or {},
         )
 
-    model = made("absolute" if noise == "auto" else noise)
+    model = new_model("absolute" if noise == "auto" else noise)
     if model.dof < 1:
         raise ValueError(
             f"data must have more points than free parameters, {len(model.names)}, got "
             f"{model.depth.size}"
         )
-    with lasting("fit", progress) as told:
-        best = _fitted(made, model, noise, starts, profile, told or (lambda text: None))
+    with lasting("fit", progress) as tell:
+        best = _fitted(new_model, model, noise, starts, profile, tell or (lambda text: None))
     return replace(best, warnings=(*doubts, *best.warnings))
 
 
 def _fitted(
-    made: Callable[..., Model],
+    new_model: Callable[..., Model],
     model: Model,
     noise: str,
     starts: Sequence[Mapping[str, float]] | None,
     profile: bool,
     tell: Callable[[str], object],
 ) -> Fit:
-    """Return the fit of a model; `made` makes it again with another kind of noise."""
+    """Return the fit of a model; `new_model` makes it again with another kind of noise."""
     tell("first estimate")
     start = _start(model)
     if noise == "auto":
         rough = minimum(model, start, rough=True)
-        model = made(*likeliest(model, rough))
+        model = new_model(*likeliest(model, rough))
         start = rough if math.isfinite(model.chi2(rough)) else _start(model)
     best = _best(model, start)
     minima: list[tuple[Array, float]] = []
@@ -201,16 +201,16 @@ def _fitted(
                 best = estimated(model, minimum(model, x))
             else:
                 minima.append((x, chi2))
-    found = examined(model, best)
-    for text in found.warnings:
+    examination = examine(model, best)
+    for text in examination.warnings:
         warnings.warn(text, core.NacreWarning, stacklevel=3)
     ends: dict[str, tuple[float, float]] = {}
-    if profile and not found.warnings:
+    if profile and not examination.warnings:
         for k, unknown in enumerate(model.unknowns):
             if not unknown.kind:
                 tell(f"interval of {unknown.name}")
                 ends[unknown.name] = interval(model, best, k)
-    return _result(model, found, ends, minima, profile)
+    return _result(model, examination, ends, minima, profile)
 
 
 def _curves(data: Data) -> list[Curve]:
@@ -295,10 +295,10 @@ def _start(model: Model) -> Array:
             if unknown.kind == "force_offset":
                 guessed[k] = unknown.place(min(max(zero.force, unknown.low), unknown.high))
                 continue
-            found = zero.depth
+            zero_depth = zero.depth
             if model.noise == "relative":
-                found = min(found, float(curve.depth.min()) - 1e-3 * unknown.scale)
-            guessed[k] = unknown.place(min(max(found, unknown.low), unknown.high))
+                zero_depth = min(zero_depth, float(curve.depth.min()) - 1e-3 * unknown.scale)
+            guessed[k] = unknown.place(min(max(zero_depth, unknown.low), unknown.high))
     places = [x] if np.array_equal(x, guessed) else [x, guessed]
     best = min((_scaled(model, place) for place in places), key=model.chi2)
     if not math.isfinite(model.chi2(best)):
@@ -364,12 +364,12 @@ def _places(model: Model, starts: Sequence[Mapping[str, float]], x: Array) -> li
 
 def _result(
     model: Model,
-    examined: Examined,
+    examination: Examination,
     ends: dict[str, tuple[float, float]],
     minima: list[tuple[Array, float]],
     profile: bool,
 ) -> Fit:
-    best = examined.estimate
+    best = examination.estimate
     x, rates = best.x, model.rates(best.x)
     spread = best.spread
     intervals = {}
@@ -385,8 +385,8 @@ def _result(
     with np.errstate(invalid="ignore"):
         covariance = best.covariance * np.outer(rates, rates)
     system = model.fitted(x)
-    told = system.curve(approach).warnings
-    for sentence in told:
+    curve_warnings = system.curve(approach).warnings
+    for sentence in curve_warnings:
         warnings.warn(sentence, core.NacreWarning, stacklevel=3)
     return Fit(
         estimates=model.values(x),
@@ -395,8 +395,8 @@ def _result(
         correlation=best.correlation,
         intervals=intervals,
         reasons=reasons(model, best, ends, minima)
-        | dict.fromkeys(model.free if examined.warnings else (), UNFIT),
-        sensitivity=examined.sensitivity,
+        | dict.fromkeys(model.free if examination.warnings else (), UNFIT),
+        sensitivity=examination.sensitivity,
         residuals=[rest[part] for part in model.parts],
         loads=[load[part] for part in model.parts],
         approaches=[approach[part] for part in model.parts],
@@ -415,7 +415,7 @@ def _result(
         counterbody=system.counterbody,
         adhesion=system.adhesion,
         evaluations=model.evaluations,
-        warnings=(*examined.warnings, *told),
+        warnings=(*examination.warnings, *curve_warnings),
     )
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Given = Literal["load", "approach", "radius"]
+Variable = Literal["load", "approach", "radius"]
 Branch = Literal["stable", "unstable"]
 Control = Literal["load", "approach"]
 Numbers = float | Vector | Matrix
@@ -123,7 +123,7 @@ class IndentSolution(Tabular, Warned):
     """Material of the tip; None where it is rigid."""
     adhesion: core.Adhesion | None
     """Adhesion of the surfaces."""
-    given: Given
+    given: Variable
     """Which of load, approach and radius was given."""
     branch: Branch
     """Branch of the contacts, "stable" or "unstable"."""
@@ -154,13 +154,13 @@ class IndentSolution(Tabular, Warned):
         cls,
         test: Indentation,
         states: core.IndentStates,
-        given: Given,
+        variable: Variable,
         branch: Branch,
         control: Control,
         stacklevel: int = 4,
     ) -> Self:
         """Return contacts of the compiled module, and issue their warnings."""
-        said = states.warnings()
+        messages = states.warnings()
         # Faster than a call of the class, which is a tenth of a simple contact.
         solution = object.__new__(cls)
         solution.__dict__.update(
@@ -168,7 +168,7 @@ class IndentSolution(Tabular, Warned):
             tip=test.tip,
             counterbody=test.counterbody,
             adhesion=test.adhesion,
-            given=given,
+            given=variable,
             branch=branch,
             control=control,
             load=states.number("load"),
@@ -176,11 +176,11 @@ class IndentSolution(Tabular, Warned):
             radius=states.number("radius"),
             stiffness=states.number("stiffness"),
             outer_radius=states.number("outer_radius"),
-            warnings=tuple(said),
+            warnings=tuple(messages),
             indentation=test,
             _states=states,
         )
-        for message in said:
+        for message in messages:
             warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
         return solution
 
@@ -192,8 +192,8 @@ class IndentSolution(Tabular, Warned):
     @cached_property
     def _states(self) -> core.IndentStates:
         """Contacts of the compiled module, solved again."""
-        given: dict[str, Any] = {self.given: getattr(self, self.given)}
-        return self.indentation._planned.at(given, self.branch)
+        arguments: dict[str, Any] = {self.given: getattr(self, self.given)}
+        return self.indentation._planned.at(arguments, self.branch)
 
     @property
     def state(self) -> Self:
@@ -320,19 +320,19 @@ class IndentSolution(Tabular, Warned):
                 state[name] = values if values.ndim else float(values)
             state["warnings"] = tuple(state["warnings"] or ())
             pulled, central = state.pop("pull_off"), state.pop("central_pressure")
-            made = cls(**state)
-            made.__dict__["central_pressure"] = central
-            made.__dict__["_pulled"] = {name: float(pulled[name]) for name in PULLED}
+            solution = cls(**state)
+            solution.__dict__["central_pressure"] = central
+            solution.__dict__["_pulled"] = {name: float(pulled[name]) for name in PULLED}
             if not (
-                holds(made.body, made.tip, made.counterbody, made.adhesion)
-                and len({np.shape(getattr(made, name)) for name in NUMBERS}) == 1
-                and made.given in get_args(Given)
-                and made.branch in get_args(Branch)
-                and made.control in get_args(Control)
-                and all(isinstance(text, str) for text in made.warnings)
+                holds(solution.body, solution.tip, solution.counterbody, solution.adhesion)
+                and len({np.shape(getattr(solution, name)) for name in NUMBERS}) == 1
+                and solution.given in get_args(Variable)
+                and solution.branch in get_args(Branch)
+                and solution.control in get_args(Control)
+                and all(isinstance(text, str) for text in solution.warnings)
             ):
                 raise TypeError("its parts do not fit together")
-        return made
+        return solution
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the contacts with units and all that they depend on.
@@ -369,8 +369,8 @@ class IndentSolution(Tabular, Warned):
     def __repr__(self) -> str:
         """Return a line with the numbers of the contact, or their ranges."""
         count = np.size(self.load)
-        said = ", ".join(f"{name} {self._range(name)}" for name in NUMBERS[:3])
-        return f"<IndentSolution: {count} contact{'s' if count != 1 else ''}, {said}>"
+        ranges = ", ".join(f"{name} {self._range(name)}" for name in NUMBERS[:3])
+        return f"<IndentSolution: {count} contact{'s' if count != 1 else ''}, {ranges}>"
 
     def __str__(self) -> str:
         """Return the table."""
@@ -384,24 +384,24 @@ class IndentSolution(Tabular, Warned):
 
     def _range(self, name: str) -> str:
         values = np.ravel(getattr(self, name))
-        ends = dict.fromkeys(said(float(f(values)), name) for f in (np.min, np.max))
+        ends = dict.fromkeys(with_unit(float(f(values)), name) for f in (np.min, np.max))
         return " to ".join(ends)
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
-        shown = [row for row in INDENT if row.label]
-        columns = [np.ravel(row.of(self)).tolist() for row in shown]
+        quantities = [row for row in INDENT if row.label]
+        columns = [np.ravel(row.of(self)).tolist() for row in quantities]
         rows = [
-            [said(value, column.name) for value, column in zip(row, shown, strict=True)]
+            [with_unit(value, column.name) for value, column in zip(row, quantities, strict=True)]
             for row in list(zip(*columns, strict=True))[:ROWS]
         ]
         notes = []
         if (more := np.size(self.load) - ROWS) > 0:
             notes.append(f"and {more} more contacts")
         if self.adhesion is not None:
-            pulled = (f"{n.rpartition('_')[2]} {said(v, n)}" for n, v in self._pulled.items())
+            pulled = (f"{n.rpartition('_')[2]} {with_unit(v, n)}" for n, v in self._pulled.items())
             notes.append(f"pull-off: {', '.join(pulled)}")
         notes += [f"warning: {warning}" for warning in self.warnings]
-        return [row.label for row in shown], rows, notes
+        return [row.label for row in quantities], rows, notes
 
 
 IndentState = IndentSolution
@@ -488,10 +488,10 @@ class Indentation:
         adhesion: core.Adhesion | None = None,
     ) -> Self:
         """Plan the indentation."""
-        made = super().__new__(cls)
-        made._planned = core.Indentation(body, tip, counterbody, adhesion)
-        made._tip, made._adhesion = tip, adhesion
-        return made
+        indentation = super().__new__(cls)
+        indentation._planned = core.Indentation(body, tip, counterbody, adhesion)
+        indentation._tip, indentation._adhesion = tip, adhesion
+        return indentation
 
     @property
     def body(self) -> core.HalfSpace:
@@ -552,13 +552,13 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        given: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
-        return self._at(given, branch, "load")
+        arguments: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+        return self._at(arguments, branch, "load")
 
-    def _at(self, given: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
-        states = self._planned.at(given, branch)
+    def _at(self, arguments: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
+        states = self._planned.at(arguments, branch)
         # What was given is the value that is not None.
-        name = next(name for name, value in given.items() if value is not None)
+        name = next(name for name, value in arguments.items() if value is not None)
         return IndentSolution._of(self, states, name, branch, control)
 
     def curve(self, *, approach: Vector, wrt: Sequence[str] = ()) -> IndentCurve:
@@ -645,11 +645,11 @@ class Indentation:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
-        given = (self.body, self.tip, self.counterbody), {"adhesion": self.adhesion}
-        return copyreg.__newobj_ex__, (type(self), *given)  # type: ignore[attr-defined]
+        arguments = (self.body, self.tip, self.counterbody), {"adhesion": self.adhesion}
+        return copyreg.__newobj_ex__, (type(self), *arguments)  # type: ignore[attr-defined]
 
 
-def said(value: float, name: str) -> str:
+def with_unit(value: float, name: str) -> str:
     """Return a number of an indentation with its unit."""
     return written(value, UNITS[name], 4) if math.isfinite(value) else str(value)
 
@@ -713,5 +713,5 @@ def solve(
     if not among(control, get_args(Control)):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
-    given: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
-    return test._at(given, branch, control)
+    arguments: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+    return test._at(arguments, branch, control)
