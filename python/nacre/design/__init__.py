@@ -90,15 +90,15 @@ def coating_chart(
     array([[0.14, 0.34],
            [0.16, 0.26]])
     """
-    asked, study = _parted(options)
+    contact_options, study = _split_options(options)
 
     def case(thickness: float, young: float) -> dict[str, Any]:
         coating = core.Layer(core.Elastic(young, poisson), thickness)
-        return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **asked}
+        return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **contact_options}
 
     sliding: dict[str, Any] = {"friction": friction, "direction": direction}
-    check_direction({"shape": shape, **asked}, **sliding)
-    stress = {**sliding, "refine": refine if _refinable(asked) else None}
+    check_direction({"shape": shape, **contact_options}, **sliding)
+    stress = {**sliding, "refine": refine if _refinable(contact_options) else None}
     outputs = ["peak_pressure", "coating_tension", "interface_shear", "contact_area", "approach"]
     parameters = {"thickness": thickness, "young": young}
     dataset = sweep(case, parameters, outputs=outputs, stress=stress, **study)
@@ -110,11 +110,14 @@ def coating_chart(
     return dataset
 
 
-def _refinable(asked: Mapping[str, Any]) -> bool:
+def _refinable(contact_options: Mapping[str, Any]) -> bool:
     """Whether the stresses of a contact can be refined."""
-    grid = asked.get("grid")
-    given = any(asked.get(name) is not None for name in ("hardness", "indentation", "coefficients"))
-    return not given and (grid is None or not any(grid.periodic))
+    grid = contact_options.get("grid")
+    has_cell_fields = any(
+        contact_options.get(name) is not None
+        for name in ("hardness", "indentation", "coefficients")
+    )
+    return not has_cell_fields and (grid is None or not any(grid.periodic))
 
 
 def load_curve(
@@ -150,16 +153,16 @@ def load_curve(
     >>> (curve.stiffness * curve.approach / curve["load"]).round(2).values
     array([1.5, 1.5])
     """
-    asked, study = _parted(options)
+    contact_options, study = _split_options(options)
     outputs: dict[str, Output] = {
         "approach": "approach",
         "stiffness": normal_stiffness,
         "contact_area": "contact_area",
         "peak_pressure": "peak_pressure",
     }
-    case = {"shape": shape, "body": body, **asked}
+    case = {"shape": shape, "body": body, **contact_options}
     dataset = sweep(case, {"load": load}, outputs=outputs, **study)
-    line = isinstance(asked.get("grid"), core.Grid) and asked["grid"].is_line
+    line = isinstance(contact_options.get("grid"), core.Grid) and contact_options["grid"].is_line
     dataset["load"].attrs["units"] = symbol("N/m" if line else "N")
     dataset["stiffness"].attrs["units"] = symbol("Pa" if line else "N/m")
     return dataset
@@ -201,10 +204,10 @@ def tilt_curve(
     >>> round(1e3 * curve.eccentricity.sel(axis="x", tilt=3e-5).item(), 1)
     2.5
     """
-    asked, study = _parted(options)
+    contact_options, study = _split_options(options)
 
     def case(tilt: float) -> dict[str, Any]:
-        return {"shape": shape, "body": body, "load": load, "tilt": (tilt, None), **asked}
+        return {"shape": shape, "body": body, "load": load, "tilt": (tilt, None), **contact_options}
 
     outputs = ("moment", "eccentricity", "approach", "peak_pressure")
     return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
@@ -252,11 +255,11 @@ def force_table(
     >>> table["load"].shape, bool((table["load"].diff("approach") > 0).all())
     ((2, 2, 1), True)
     """
-    asked, study = _parted(options)
+    contact_options, study = _split_options(options)
 
     def case(approach: float, tilt_x: float, tilt_y: float) -> dict[str, Any]:
         motion = {"approach": approach, "tilt": (tilt_x, tilt_y)}
-        return {"shape": shape, "body": body, **motion, **asked}
+        return {"shape": shape, "body": body, **motion, **contact_options}
 
     parameters = {"approach": approach, "tilt_x": tilt_x, "tilt_y": tilt_y}
     outputs: dict[str, Output] = {
@@ -264,7 +267,7 @@ def force_table(
         "stiffness": stiffness,
     }
     table = sweep(case, parameters, outputs=outputs, **study)
-    line = isinstance(asked.get("grid"), core.Grid) and asked["grid"].is_line
+    line = isinstance(contact_options.get("grid"), core.Grid) and contact_options["grid"].is_line
     names = ["load", "moment x", "moment y"], ["approach", "tilt x", "tilt y"]
     if "stiffness_0" in table.dims:  # else all cases failed
         table = table.rename(stiffness_0="row", stiffness_1="column")
@@ -285,13 +288,15 @@ def normal_stiffness(solution: Solution) -> float:
     return float(np.asarray(solution.stiffness())[0, 0])
 
 
-def _parted(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _split_options(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the options of `nacre.solve`, and the options of `nacre.sweep`."""
     bar = options.get("progress")
-    kept = ("store", "version", "executor", "retry")
-    study = {name: options[name] for name in kept if name in options}
-    asked = {name: value for name, value in options.items() if name not in (*study, "progress")}
-    unknown = set(asked) - ARGUMENTS
+    study_names = ("store", "version", "executor", "retry")
+    study = {name: options[name] for name in study_names if name in options}
+    contact_options = {
+        name: value for name, value in options.items() if name not in (*study, "progress")
+    }
+    unknown = set(contact_options) - ARGUMENTS
     if unknown:
         raise TypeError(f"{', '.join(sorted(unknown))}: no argument of nacre.solve or nacre.sweep")
-    return asked, study | {"progress": bar}
+    return contact_options, study | {"progress": bar}

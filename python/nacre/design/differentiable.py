@@ -52,12 +52,12 @@ class Point:
     solution: Solution
     lowest: float
     gradients: dict[str, Gradient] = field(default_factory=dict)
-    told: set[str] | None = None
+    issued: set[str] | None = None
 
     def tell(self, *gradients: Gradient) -> None:
         """Warn of what makes derivatives doubtful, once."""
-        found = {sentence for gradient in gradients for sentence in gradient.warnings}
-        fresh, self.told = found - (self.told or set()), found | (self.told or set())
+        sentences = {sentence for gradient in gradients for sentence in gradient.warnings}
+        fresh, self.issued = sentences - (self.issued or set()), sentences | (self.issued or set())
         for sentence in sorted(fresh):
             warnings.warn(sentence, core.NacreWarning, stacklevel=2)
 
@@ -76,12 +76,12 @@ class Recent:
             if key in self.values:
                 self.values.move_to_end(key)
                 return self.values[key]
-        made = make()
+        entry = make()
         with self.lock:
-            self.values[key] = made
+            self.values[key] = entry
             while len(self.values) > self.most:
                 self.values.popitem(last=False)
-        return made
+        return entry
 
 
 class Differentiable:
@@ -100,18 +100,18 @@ class Differentiable:
                 f"a solver must not have {sorted(refused)}: "
                 f"its results depend on the parameters of a call alone"
             )
-        given = {name: value for name, value in arguments.items() if value is not None}
-        if not isinstance(given.get("grid"), core.Grid):
+        known = {name: value for name, value in arguments.items() if value is not None}
+        if not isinstance(known.get("grid"), core.Grid):
             raise TypeError(
-                f"grid must be a Grid, so that cells stay where they are, got {given.get('grid')!r}"
+                f"grid must be a Grid, so that cells stay where they are, got {known.get('grid')!r}"
             )
         keep = core.integer("keep", keep)
         if keep < 1:
             raise ValueError(f"keep must be a number of solutions, 1 or more, got {keep!r}")
-        self.grid: core.Grid = given["grid"]
+        self.grid: core.Grid = known["grid"]
         self.cells = self.grid.shape[0] * self.grid.shape[1]
-        self.outputs = _named(outputs)
-        self.arguments = {"tolerance": ACCURATE, **given}
+        self.outputs = _outputs_by_name(outputs)
+        self.arguments = {"tolerance": ACCURATE, **known}
         self.shape: core.Shape | None = self.arguments.pop("shape", None)
         self.points = Recent(keep)
         self.plans = Recent(PLANS)
@@ -126,14 +126,14 @@ class Differentiable:
                     f"parameters must be paths that begin with one of {', '.join(ROOTS)}, "
                     f"got {path!r}"
                 )
-            holder(self._given(), path, "parameters", "the arguments")
+            holder(self._all_arguments(), path, "parameters", "the arguments")
 
     def point(self, names: tuple[str, ...], x: Array) -> Point:
         """Return the solved contact at a vector."""
         x = np.ascontiguousarray(x, dtype=np.float64)
         digest = hashlib.sha256(x.tobytes()).digest()
-        found: Point = self.points.at((names, len(x), digest), lambda: self._solved(names, x))
-        return found
+        state: Point = self.points.at((names, len(x), digest), lambda: self._solved(names, x))
+        return state
 
     def values(self, names: tuple[str, ...], x: Array) -> tuple[Array, Array]:
         """Return the pressures of the cells and the outputs."""
@@ -142,14 +142,14 @@ class Differentiable:
             name for name, one in self.outputs.items() if not (isinstance(one, str) and one in READ)
         ]
         gradients = self._gradients(point, hard)
-        found = {name: gradient.value for name, gradient in gradients.items()}
+        by_name = {name: gradient.value for name, gradient in gradients.items()}
         for name, one in self.outputs.items():
-            if name not in found:
-                found[name] = READ[one](point.solution)
+            if name not in by_name:
+                by_name[name] = READ[one](point.solution)
             if one == "approach":
-                found[name] += point.lowest
+                by_name[name] += point.lowest
         pressure: Array = point.solution.pressure.ravel()
-        return pressure, np.array([found[name] for name in self.outputs], dtype=np.float64)
+        return pressure, np.array([by_name[name] for name in self.outputs], dtype=np.float64)
 
     def pressure_push(self, names: tuple[str, ...], x: Array, rates: Array) -> Array:
         """Return the rate of the pressure of each cell along a rate of the vector."""
@@ -158,7 +158,7 @@ class Differentiable:
         point, n = self.point(names, x), len(names)
         gap = rates[n:].reshape(self.grid.shape) if len(rates) > n else None
         along = dict(zip(names, rates[:n].tolist(), strict=True))
-        if point.told is None:  # A direction has no warnings, and this gradient needs no solve.
+        if point.issued is None:  # A direction has no warnings, and this gradient needs no solve.
             none = np.zeros(self.grid.shape)
             point.tell(point.solution.vjp(none, [], shape=point.shape))
         direction = point.solution.jvp(along, gap, shape=point.shape)
@@ -178,8 +178,8 @@ class Differentiable:
         """Return the rates of the outputs along a rate of the vector."""
         if not rates.any():
             return np.zeros(len(self.outputs))
-        found = self._gradients(self.point(names, x), list(self.outputs))
-        return np.array([_row(found[name], names, len(x)) @ rates for name in self.outputs])
+        gradients = self._gradients(self.point(names, x), list(self.outputs))
+        return np.array([_row(gradients[name], names, len(x)) @ rates for name in self.outputs])
 
     def outputs_pull(self, names: tuple[str, ...], x: Array, weights: Array) -> Array:
         """Return the derivatives of a weighted sum of the outputs by the vector."""
@@ -187,33 +187,33 @@ class Differentiable:
         if not weights.any():
             return total
         by_name = {name: w for name, w in zip(self.outputs, weights, strict=True) if w}
-        found = self._gradients(self.point(names, x), list(by_name))
+        gradients = self._gradients(self.point(names, x), list(by_name))
         for name, weight in by_name.items():
-            total += weight * _row(found[name], names, len(x))
+            total += weight * _row(gradients[name], names, len(x))
         return total
 
-    def _given(self) -> dict[str, Any]:
+    def _all_arguments(self) -> dict[str, Any]:
         shape = {} if self.shape is None else {"shape": self.shape}
         return {**self.arguments, **shape}
 
     def _solved(self, names: tuple[str, ...], x: Array) -> Point:
         n = len(names)
         try:
-            made = self._given()
+            arguments = self._all_arguments()
             for path, value in zip(names, x[:n].tolist(), strict=True):
-                put(made, path, value, names="parameters", of="the arguments")
-            given, lowest = made.pop("shape", None), 0.0
-            shape = given
+                put(arguments, path, value, names="parameters", of="the arguments")
+            own_shape, lowest = arguments.pop("shape", None), 0.0
+            shape = own_shape
             if len(x) > n:
                 gap = x[n:].reshape(self.grid.shape)
                 lowest = float(gap.min())
-                shape = self._surface(gap) if given is None else given + self._surface(gap)
+                shape = self._surface(gap) if own_shape is None else own_shape + self._surface(gap)
                 # A height map has gaps from its highest sample on: the approach counts from there.
-                if "approach" in made:
-                    made["approach"] -= lowest
-            planned = {name: made.pop(name) for name in PLANNED if name in made}
-            plan = self.plans.at(tuple(planned.items()), lambda: Contact(**planned))
-            return Point(names, given, plan.solve(shape, **made), lowest)
+                if "approach" in arguments:
+                    arguments["approach"] -= lowest
+            plan_arguments = {name: arguments.pop(name) for name in PLANNED if name in arguments}
+            plan = self.plans.at(tuple(plan_arguments.items()), lambda: Contact(**plan_arguments))
+            return Point(names, own_shape, plan.solve(shape, **arguments), lowest)
         except Exception as error:
             at = ", ".join(f"{k} = {v:.6g}" for k, v in zip(names, x[:n], strict=True))
             error.add_note(f"in a differentiable solve, at {at or 'its arguments'}")
@@ -225,14 +225,14 @@ class Differentiable:
         heights = np.tile(-gap, (2, 1)) if grid.is_line else -gap
         return core.HeightMap(heights, grid.spacing, grid.center, grid.periodic)
 
-    def _gradients(self, point: Point, wanted: list[str]) -> dict[str, Gradient]:
+    def _gradients(self, point: Point, names: list[str]) -> dict[str, Gradient]:
         """Return the derivatives of outputs, those that are not known in one go."""
-        if fresh := [name for name in wanted if name not in point.gradients]:
+        if fresh := [name for name in names if name not in point.gradients]:
             outputs = [self.outputs[name] for name in fresh]
-            found = point.solution.gradient(outputs, list(point.names), shape=point.shape)
-            point.tell(*found)
-            point.gradients |= dict(zip(fresh, found, strict=True))
-        return {name: point.gradients[name] for name in wanted}
+            derivatives = point.solution.gradient(outputs, list(point.names), shape=point.shape)
+            point.tell(*derivatives)
+            point.gradients |= dict(zip(fresh, derivatives, strict=True))
+        return {name: point.gradients[name] for name in names}
 
 
 def _row(gradient: Gradient, names: tuple[str, ...], size: int) -> Array:
@@ -242,20 +242,20 @@ def _row(gradient: Gradient, names: tuple[str, ...], size: int) -> Array:
     return np.concatenate([np.array(numbers, dtype=np.float64), gap])
 
 
-def _named(outputs: Outputs) -> dict[str, Any]:
+def _outputs_by_name(outputs: Outputs) -> dict[str, Any]:
     """Return outputs by name; a word is its own name."""
     if isinstance(outputs, Mapping):
-        named = dict(outputs)
+        by_name = dict(outputs)
     elif isinstance(outputs, str) or not isinstance(outputs, Sequence):
         raise TypeError(f"outputs must be a list of words or a dict of names, got {outputs!r}")
     else:
-        named = {one: one for one in outputs if isinstance(one, str)}
-        if len(named) < len(outputs):
+        by_name = {one: one for one in outputs if isinstance(one, str)}
+        if len(by_name) < len(outputs):
             raise TypeError(
                 f"outputs must be different words, or a dict that names the others, "
                 f'such as {{"norm": ("pressure_norm", 16.0)}}, got {outputs!r}'
             )
-    for name in named:
+    for name in by_name:
         if not isinstance(name, str):
             raise TypeError(f"names of outputs must be text, got {name!r}")
-    return named
+    return by_name

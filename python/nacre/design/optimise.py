@@ -73,9 +73,9 @@ class Optimum(Fields):
     def _table(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the table, the heading first, and lines below."""
         first = {name: column[0] for name, column in self.course.items()}
-        found = {"objective": self.objective, **self.values}
+        optimum = {"objective": self.objective, **self.values}
         rows = [["", "start", "optimum", "change"]]
-        for name, value in found.items():
+        for name, value in optimum.items():
             start = first[name]
             change = f"{100 * (value / start - 1):+.1f} %" if start else ""
             rows.append([name, f"{start:.5g}", f"{value:.5g}", change])
@@ -216,7 +216,7 @@ def optimise(
     def keep(x: Array) -> None:
         point = problem.at(x)
         row = {"solves": float(problem.solves), "objective": point.value * problem.unit}
-        row |= {"excess": -float(point.slack.min(initial=math.inf)), **problem.named(x)}
+        row |= {"excess": -float(point.slack.min(initial=math.inf)), **problem.by_name(x)}
         if rows and row == rows[-1]:
             return
         rows.append(row)
@@ -243,7 +243,7 @@ def optimise(
                     factor = max(1.0, 1.0 / max(steepest, least))
                     ends = {"ftol": least}
                     ends |= {"ftol": factor * least} if constraints else {"gtol": factor * least}
-                    found = minimize(
+                    minimum = minimize(
                         lambda x, factor=factor: problem.scaled(x, factor),
                         x,
                         jac=True,
@@ -253,7 +253,7 @@ def optimise(
                         **options,
                     )
                     x = problem.best().x
-                    termination = "converged" if found.success else "line search"
+                    termination = "converged" if minimum.success else "line search"
                     if before - problem.at(x).value < tolerance:
                         break
         except Enough:
@@ -262,16 +262,18 @@ def optimise(
     table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     reached = point.outputs[:, 1:].T.tolist()
     limits = [(*pair, tuple(r)) for pair, r in zip(problem.limits, reached, strict=True)]
-    slopes = dict(zip(problem.named(x), point.slope, strict=True))
-    told = [line for solution in point.solutions for line in solution.report.warnings]
-    told = list(dict.fromkeys([*told, *point.warnings]))
-    told += [f"{s.name} does not change the objective there" for s in scales if not slopes[s.name]]
+    slopes = dict(zip(problem.by_name(x), point.slope, strict=True))
+    warning_lines = [line for solution in point.solutions for line in solution.report.warnings]
+    warning_lines = list(dict.fromkeys([*warning_lines, *point.warnings]))
+    warning_lines += [
+        f"{s.name} does not change the objective there" for s in scales if not slopes[s.name]
+    ]
     excess = -float(point.slack.min(initial=math.inf))
     if excess > tolerance:
         termination = "infeasible" if termination == "line search" else termination
-        told += [f"a limit is exceeded: the output is {1 + excess:.3g} times as large"]
-    best = problem.named(point.x), point.value * problem.unit, tuple(limits), table
-    return Optimum(*best, point.solutions, problem.solves, termination, told)
+        warning_lines += [f"a limit is exceeded: the output is {1 + excess:.3g} times as large"]
+    best = problem.by_name(point.x), point.value * problem.unit, tuple(limits), table
+    return Optimum(*best, point.solutions, problem.solves, termination, warning_lines)
 
 
 def _cases(cases: Any) -> list[dict[str, Any]]:

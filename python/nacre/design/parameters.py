@@ -49,8 +49,8 @@ def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
     if unknown := set(bounds) - set(start):
         raise ValueError(f"bounds must be of parameters in start, got {sorted(unknown)}")
     scales = []
-    for name, begun in start.items():
-        value = core.real(f"start[{name!r}]", begun)
+    for name, first in start.items():
+        value = core.real(f"start[{name!r}]", first)
         low, high = bounds.get(name, (None, None))
         low, high = (None if b is None or math.isinf(b) else float(b) for b in (low, high))
         if not math.isfinite(value):

@@ -62,32 +62,34 @@ class Problem:
     known: dict[bytes, Point] = field(default_factory=dict)
     plans: dict[int, tuple[Contact, dict[str, Any]]] = field(default_factory=dict)
 
-    def named(self, x: Array) -> dict[str, float]:
+    def by_name(self, x: Array) -> dict[str, float]:
         """Return the parameters by name at a point of the optimiser."""
         pairs = zip(self.scales, x, strict=True)
         return {scale.name: scale.rounded(float(v)) for scale, v in pairs}
 
     def arguments(self, x: Array, case: Mapping[str, Any]) -> dict[str, Any]:
         """Return arguments of a solve."""
-        named = self.named(x)
+        parameters = self.by_name(x)
         if callable(self.build):
-            made = {**self.build(**named), **case}
+            keywords = {**self.build(**parameters), **case}
         else:
-            made = {**self.build, **case}
-            for path, value in named.items():
-                put(made, path, value)
-        if unknown := set(made) - ARGUMENTS | {"shape", "body"} - set(made):
+            keywords = {**self.build, **case}
+            for path, value in parameters.items():
+                put(keywords, path, value)
+        if unknown := set(keywords) - ARGUMENTS | {"shape", "body"} - set(keywords):
             raise TypeError(f"build and cases must give arguments of nacre.solve, see {unknown}")
-        return made
+        return keywords
 
     def begin(self, x: Array, grid: core.Grid | None) -> None:
         """Take new cells, chosen for each case where none are given."""
-        made = [self.arguments(x, case) for case in self.cases]
+        case_arguments = [self.arguments(x, case) for case in self.cases]
         self.known, self.plans = {}, {}
-        self.grids = [grid or g["grid"] for g in made if grid or g.get("grid") is not None]
-        if len(self.grids) < len(made):
-            self.grids = [solve(**arguments).report.grid for arguments in made]
-            self.solves += len(made)
+        self.grids = [
+            grid or g["grid"] for g in case_arguments if grid or g.get("grid") is not None
+        ]
+        if len(self.grids) < len(case_arguments):
+            self.grids = [solve(**arguments).report.grid for arguments in case_arguments]
+            self.solves += len(case_arguments)
 
     def best(self) -> Point:
         """Return the best point on these cells: within the limits if there is one."""
@@ -110,32 +112,32 @@ class Problem:
             try:
                 self.known[key] = self.evaluated(np.array(x, dtype=np.float64))
             except Exception as error:
-                named = ", ".join(f"{k} = {v:.6g}" for k, v in self.named(x).items())
-                error.add_note(f"in nacre.design.optimise, at {named}")
+                place_text = ", ".join(f"{k} = {v:.6g}" for k, v in self.by_name(x).items())
+                error.add_note(f"in nacre.design.optimise, at {place_text}")
                 raise
         return self.known[key]
 
     def evaluated(self, x: Array) -> Point:
         """Solve all cases, and their derivatives."""
         last = next(reversed(self.known.values())).solutions if self.known else None
-        wanted = [self.objective, *(output for output, _ in self.limits)]
-        outputs = np.zeros((len(self.cases), len(wanted)))
-        slopes = np.zeros((len(self.cases), len(wanted), len(x)))
-        solutions, told = [], []
+        targets = [self.objective, *(output for output, _ in self.limits)]
+        outputs = np.zeros((len(self.cases), len(targets)))
+        slopes = np.zeros((len(self.cases), len(targets), len(x)))
+        solutions, warning_texts = [], []
         for k, (case, grid) in enumerate(zip(self.cases, self.grids, strict=True)):
-            made = self.arguments(x, case)
+            keywords = self.arguments(x, case)
             changes = self.changes(x, case, grid)
-            solution = self.solved(k, made, last[k] if last else None)
+            solution = self.solve_case(k, keywords, last[k] if last else None)
             paths = {path for change, _ in changes for path in change}
-            gradients = solution.gradient(wanted, sorted(paths))
-            self.solves += 1 + len(wanted)
+            gradients = solution.gradient(targets, sorted(paths))
+            self.solves += 1 + len(targets)
             for j, gradient in enumerate(gradients):
                 outputs[k, j] = gradient.value
                 touched = gradient.gap != 0
                 for i, (change, gap) in enumerate(changes):
                     slopes[k, j, i] = sum(gradient[path] * rate for path, rate in change.items())
                     slopes[k, j, i] += gradient.gap[touched] @ gap[touched]
-                told += gradient.warnings
+                warning_texts += gradient.warnings
             solutions.append(solution)
         values = outputs[:, 0]
         if self.across != 1 and not np.all(values > 0):
@@ -148,24 +150,24 @@ class Problem:
         slack = (1 - outputs[:, 1:] / tops).ravel()
         d_slack = (-slopes[:, 1:] / tops[:, None]).reshape(-1, len(x))
         rates = shares @ slopes[:, 0] / self.unit
-        return Point(x, mean / self.unit, rates, slack, d_slack, outputs, solutions, told)
+        return Point(x, mean / self.unit, rates, slack, d_slack, outputs, solutions, warning_texts)
 
-    def solved(self, k: int, made: dict[str, Any], last: Solution | None) -> Solution:
+    def solve_case(self, k: int, keywords: dict[str, Any], last: Solution | None) -> Solution:
         """Solve a case, with the plan of an equal body and from the last solution."""
-        made = {"tolerance": ACCURATE, **made, "grid": self.grids[k]}
+        keywords = {"tolerance": ACCURATE, **keywords, "grid": self.grids[k]}
         names = ("body", "counterbody", "grid", "threads")
-        planned = {name: made.pop(name) for name in names if name in made}
-        plan = next((p for p, given in self.plans.values() if given == planned), None)
-        plan = plan or Contact(**planned)
-        made.pop("max_cells", None)  # of the grid, which is chosen by now
-        self.plans[k] = plan, planned
-        return plan.solve(made.pop("shape"), **({"initial": last} | made))
+        plan_keywords = {name: keywords.pop(name) for name in names if name in keywords}
+        plan = next((p for p, other in self.plans.values() if other == plan_keywords), None)
+        plan = plan or Contact(**plan_keywords)
+        keywords.pop("max_cells", None)  # of the grid, which is chosen by now
+        self.plans[k] = plan, plan_keywords
+        return plan.solve(keywords.pop("shape"), **({"initial": last} | keywords))
 
     def changes(
         self, x: Array, case: Mapping[str, Any], grid: core.Grid
     ) -> list[tuple[dict[str, float], Array]]:
         """Return the derivatives of arguments by path, and of gaps, along each parameter."""
-        found = []
+        derivatives = []
         for i, scale in enumerate(self.scales):
             up = scale.high is None or x[i] + STEP <= scale.high
             down = scale.low is None or x[i] - STEP >= scale.low
@@ -177,13 +179,13 @@ class Problem:
             gap = np.zeros(grid.shape)
             edges = set()
             for step, weight in zip(points, weights[len(points)], strict=True):
-                made = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
-                moved = {name: made[name] for name in DIFFERENTIABLE if name in made}
+                keywords = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
+                moved = {name: keywords[name] for name in DIFFERENTIABLE if name in keywords}
                 for path, value in numbers(moved).items():
                     values.setdefault(path, []).append(value)
                 with np.errstate(invalid="ignore"):
-                    gap += sign * weight / STEP * made["shape"].gaps(grid)
-                shape = made["shape"]
+                    gap += sign * weight / STEP * keywords["shape"].gaps(grid)
+                shape = keywords["shape"]
                 edge = "radius" if isinstance(shape, core.FlatPunch) else "length"
                 edges.add(getattr(shape, edge, None))
             if len(edges) > 1:
@@ -194,5 +196,5 @@ class Problem:
             factors = sign / STEP * np.array(weights[len(points)])
             # What stays has no rate, not even one of rounding, for which a derivative is asked.
             moving = {path: v for path, v in values.items() if len(set(v)) > 1}
-            found.append(({path: float(factors @ v) for path, v in moving.items()}, gap))
-        return found
+            derivatives.append(({path: float(factors @ v) for path, v in moving.items()}, gap))
+        return derivatives

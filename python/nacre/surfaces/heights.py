@@ -97,7 +97,7 @@ class Heights(NamedTuple):
     """Unit that the file names."""
     is_metric: bool = True
     """Whether the numbers are metres where no unit is named."""
-    named: tuple[str, ...] = ()
+    axis_units: tuple[str, ...] = ()
     """Units of columns, in which the numbers are no more."""
     note: str = ""
     """What a message adds to the name of the file."""
@@ -131,9 +131,9 @@ def text(path: Path, channel: str | int | None = None) -> Heights:
     what instruments write; those write one line for each y. A profile, places beside heights, and
     counters that nothing tells from heights are refused, whatever the ending.
     """
-    found = Text.of(path)
-    table = found.chosen(channel)
-    return found.points(table) or found.matrix(table)
+    file = Text.of(path)
+    table = file.chosen(channel)
+    return file.points(table) or file.matrix(table)
 
 
 @dataclass
@@ -173,9 +173,9 @@ class Text:
         """Read a file; a line of numbers that is damaged is an error."""
         comments, remarks, lines = _content(path)
         mark = _separator([line for _, line in lines])
-        found = cls(path, comments, {}, remarks, [], False)
+        file = cls(path, comments, {}, remarks, [], False)
         table: Table | None = None
-        torn: dict[int, tuple[int, int, int]] = {}
+        breaks: dict[int, tuple[int, int, int]] = {}
         near: list[str] = []
         points = False
         for number, line in lines:
@@ -189,20 +189,20 @@ class Text:
                     )
                 table = None
                 near.append(line)
-                found.above.append((number, line))
-                found._say(line, mark)
+                file.above.append((number, line))
+                file._say(line, mark)
                 continue
             if mark != ",":
-                found.has_decimal_commas |= "," in line
+                file.has_decimal_commas |= "," in line
                 points = points or "." in line
-                if found.has_decimal_commas and points:
+                if file.has_decimal_commas and points:
                     raise ValueError(
                         f"{str(path)!r} must have decimal commas or decimal points, line {number} "
                         f"brings both"
                     )
             if table is None or len(row) != table.width:
                 if table is not None:
-                    torn[len(found.tables)] = table.lines[0], table.width, number
+                    breaks[len(file.tables)] = table.lines[0], table.width, number
                 table = Table([], [])
                 if near and (top := _numbers_beside(near[-1], mark, len(row))) is not None:
                     if len(top) < len(row) - 1:
@@ -211,16 +211,16 @@ class Text:
                             f"{near[-1][:60]!r}"
                         )
                     table.rows.append([np.nan, *top])  # places along a line, and a word beside
-                    table.lines.append(found.above.pop()[0])
+                    table.lines.append(file.above.pop()[0])
                     near.pop()
                 used = len(row) - _trailing(line, mark)
                 table.headings, table.title = _headings(near, mark, len(row), used)
                 near = []
-                found.tables.append(table)
+                file.tables.append(table)
             table.rows.append(row)
             table.lines.append(number)
-        found._check(torn, lines, mark)
-        return found
+        file._check(breaks, lines, mark)
+        return file
 
     def _say(self, line: str, mark: str | None) -> None:
         """Keep what a line above a table says: a name, values and units."""
@@ -234,10 +234,13 @@ class Text:
             self.head.setdefault(name, [value.replace(",", ".") for value in values])
 
     def _check(
-        self, torn: dict[int, tuple[int, int, int]], lines: list[tuple[int, str]], mark: str | None
+        self,
+        breaks: dict[int, tuple[int, int, int]],
+        lines: list[tuple[int, str]],
+        mark: str | None,
     ) -> None:
         """Refuse lines of different width, but for counts above a matrix; drop what is no table."""
-        for place, (first, width, number) in torn.items():
+        for place, (first, width, number) in breaks.items():
             before, table = self.tables[place - 1], self.tables[place]
             sizes = sorted((len(table.rows), table.width))
             if len(before.rows) > 1 or sorted(before.rows[0][:2]) != sizes:
@@ -292,7 +295,7 @@ class Text:
         first = self.tables[0]
         if channel is None and counts and _fits(first, counts) is not None:
             return first
-        listed = ", ".join(
+        listing = ", ".join(
             f"{k} ({table.title[:60]!r}, {len(table.rows)} lines of {table.width} numbers from "
             f"line {table.lines[0]})"
             for k, table in enumerate(self.tables)
@@ -300,18 +303,18 @@ class Text:
         requirement = "given" if channel is None else f"one of these, got {channel!r}"
         raise ValueError(
             f"channel must be {requirement}: {str(self.path)!r} has {len(self.tables)} tables, "
-            f"{listed}"
+            f"{listing}"
         )
 
     def counts(self) -> tuple[int, int] | None:
         """Return the numbers of points along x and y that the head gives."""
-        found = []
+        sizes = []
         for known in COUNTS:
-            said = [values[0] for name, values in self.head.items() if known.fullmatch(name)]
-            said += [value for name, value in self.comments.items() if known.fullmatch(name)]
-            numbers = {int(float(text)) for text in said if NUMBER.fullmatch(text)}
-            found.append(numbers.pop() if len(numbers) == 1 else 0)
-        return (found[0], found[1]) if all(found) else None
+            texts = [values[0] for name, values in self.head.items() if known.fullmatch(name)]
+            texts += [value for name, value in self.comments.items() if known.fullmatch(name)]
+            numbers = {int(float(text)) for text in texts if NUMBER.fullmatch(text)}
+            sizes.append(numbers.pop() if len(numbers) == 1 else 0)
+        return (sizes[0], sizes[1]) if all(sizes) else None
 
     def points(self, table: Table) -> Heights | None:
         """Return heights of points x, y, z on a grid; None where these are no points."""
@@ -332,9 +335,9 @@ class Text:
         ]
         x, y, z = (metres(unit or "") for unit in units)
         if x and y and z:
-            named = tuple(str(unit) for unit in units)
+            axis_units = tuple(str(unit) for unit in units)
             steps = steps[0] * (x / z), steps[1] * (y / z)
-            return Heights(heights, steps, units[2], False, named)
+            return Heights(heights, steps, units[2], False, axis_units)
         return Heights(heights, steps, self.unit(), False)
 
     def matrix(self, table: Table) -> Heights:
@@ -353,7 +356,7 @@ class Text:
             )
         spacing = self.spacing()
         is_image = self.path.suffix.lower() != ".csv" or (
-            any(pattern.fullmatch(said) for said in self.head for pattern in COUNTS)
+            any(pattern.fullmatch(key) for key in self.head for pattern in COUNTS)
             or (spacing is not None and "spacing" not in self.comments)
         )
         if is_image and counts is not None:
@@ -374,9 +377,9 @@ class Text:
 
     def unit(self) -> str | None:
         """Return the unit of the heights that the file names."""
-        said = [self.comments.get("unit", "")]
-        said += [values[-1] for name, values in self.head.items() if UNIT.fullmatch(name)]
-        units = [unit.strip("()[] ").replace("μ", "µ") for unit in said if unit]
+        candidates = [self.comments.get("unit", "")]
+        candidates += [values[-1] for name, values in self.head.items() if UNIT.fullmatch(name)]
+        units = [unit.strip("()[] ").replace("μ", "µ") for unit in candidates if unit]
         if not units:
             return None
         if metres(units[0]) is None:
@@ -401,7 +404,7 @@ class Text:
                     f"{text[:60]!r}"
                 )
             return numbers[0] or 0.0, numbers[-1] or 0.0
-        found = []
+        steps = []
         heights = metres(self.unit() or "m") or 1.0
         for axis in "xy":
             for name, values in self.head.items():
@@ -410,9 +413,9 @@ class Text:
                 unit = metres(values[1] if len(values) > 1 else column.unit or "")
                 which = (match[1] or match[2] or "xy") if match else ""
                 if number and unit and (axis in which or which == "lateral"):
-                    found.append(number * unit / heights)
+                    steps.append(number * unit / heights)
                     break
-        return (found[0], found[1]) if len(found) == 2 else None
+        return (steps[0], steps[1]) if len(steps) == 2 else None
 
 
 def metres(unit: str) -> float | None:
@@ -484,13 +487,13 @@ def _are_places(pairs: Array) -> bool:
 
 def _distinct(values: Array) -> Array:
     """Return coordinates in order, once each but for rounding or the error of a stage."""
-    found = np.unique(values)
-    gaps = np.diff(found)
-    same = found[np.insert(gaps > 1e-6 * (np.ptp(found) or 1.0), 0, True)]
+    ordered = np.unique(values)
+    gaps = np.diff(ordered)
+    same = ordered[np.insert(gaps > 1e-6 * (np.ptp(ordered) or 1.0), 0, True)]
     if same.size <= 0.5 * values.size or values.size < LEAST_JITTERED:
         return same
     # Steps of a grid whose places are off by some of a step.
-    coarse = found[np.insert(gaps > 0.25 * gaps.max(), 0, True)]
+    coarse = ordered[np.insert(gaps > 0.25 * gaps.max(), 0, True)]
     place = (values - coarse[0]) / float(np.median(np.diff(coarse)))
     is_tight = float(np.abs(place - np.median(place - place.round()) - place.round()).max()) <= OFF
     return coarse if is_tight and coarse.size <= 0.5 * values.size else same
@@ -623,17 +626,17 @@ def _headings(
     if not near:
         return [], ""
 
-    def named(line: str) -> list[str]:
+    def fields_at(line: str) -> list[str]:
         names = fields_of(line, mark or " ")
         while len(names) > used and not names[-1]:
             names.pop()
         return names + [""] * (width - len(names)) if used <= len(names) < width else names
 
-    names = named(near[-1])
+    names = fields_at(near[-1])
     units: list[str] = []
     if len(near) > 1 and len(names) == width and all(_bare_unit(text) for text in names if text):
         units, near = names, near[:-1]
-        names = named(near[-1])
+        names = fields_at(near[-1])
     if len(names) != width or not any(names):
         return [], near[-1]
     columns = [column_of(text) for text in names]
@@ -649,10 +652,10 @@ def _numbers_beside(line: str, mark: str | None, width: int) -> list[float] | No
     """
     fields = fields_of(line, mark or " ")
     numbers = [_number(field.replace(",", ".")) for field in fields]
-    found = [number for number in numbers if number is not None and np.isfinite(number)]
-    if line[0] in "#%" or len(fields) != width or 2 * len(found) <= max(width, 3):
+    finite = [number for number in numbers if number is not None and np.isfinite(number)]
+    if line[0] in "#%" or len(fields) != width or 2 * len(finite) <= max(width, 3):
         return None
-    return found if numbers[0] is None else []
+    return finite if numbers[0] is None else []
 
 
 def _bare_unit(text: str) -> str | None:
@@ -667,7 +670,7 @@ def _content(
 
     A comment that names another channel is a line: it stands between tables.
     """
-    said: dict[str, str] = {}
+    named_values: dict[str, str] = {}
     comments: list[tuple[int, str]] = []
     lines: list[tuple[int, str]] = []
     for number, line in enumerate(decoded(path).replace("\u2212", "-").splitlines(), start=1):
@@ -677,10 +680,10 @@ def _content(
             is_title = name.lower() == "channel" and lines
             (lines if is_title else comments).append((number, stripped))
             if colon:
-                said.setdefault(name.lower(), value)
+                named_values.setdefault(name.lower(), value)
         elif stripped.strip():
             lines.append((number, _unmarked(stripped)))
-    return said, comments, lines
+    return named_values, comments, lines
 
 
 def _unmarked(line: str) -> str:
@@ -708,8 +711,8 @@ def _separator(texts: Sequence[str]) -> str | None:
     sample = texts[:: max(1, len(texts) // SAMPLE)]
 
     def rows(mark: str | None) -> int:
-        found = (_row(text, mark)[0] for text in sample if mark is None or mark in text)
-        return sum(row is not None and len(row) > 1 for row in found)
+        parsed_rows = (_row(text, mark)[0] for text in sample if mark is None or mark in text)
+        return sum(row is not None and len(row) > 1 for row in parsed_rows)
 
     return max((";", "\t", ",", None), key=rows)  # the first of equals
 

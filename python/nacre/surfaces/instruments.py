@@ -19,7 +19,7 @@ from nacre._tools.text import is_text
 from nacre.surfaces.heights import Heights, Text
 
 Array = npt.NDArray[np.float64]
-Taken = TypeVar("Taken")
+Content = TypeVar("Content")
 
 TABLES = ("asc", "xyz")
 """Formats of SurfaceTopography for tables in text, which take any numbers for heights."""
@@ -62,9 +62,9 @@ def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str 
 def _first(
     path: Path,
     channel: str | int | None,
-    take: Callable[[Any], Taken],
-    table: Callable[[bool], Taken | None],
-) -> Taken:
+    take: Callable[[Any], Content],
+    table: Callable[[bool], Content | None],
+) -> Content:
     """Return what the first reader of SurfaceTopography has that knows the file.
 
     `table` reads text that no likely reader knows; it is called with whether there were some.
@@ -76,14 +76,14 @@ def _first(
     content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
     others = [reader for reader in readers if reader.format() not in TABLES]
     match = {reader: reader.can_read(content[:512]) for reader in others}
-    headed = [one for one in others if one.format() == "di" and NANOSCOPE.match(content)]
+    nanoscope = [one for one in others if one.format() == "di" and NANOSCOPE.match(content)]
     likely = [one for one in others if ending in (one.file_extensions() or ())]
-    likely = headed + [one for one in likely if one not in headed]
+    likely = nanoscope + [one for one in likely if one not in nanoscope]
     likely += [one for one in others if match[one] == MagicMatch.YES and one not in likely]
     reasons: dict[str, str] = {}
 
-    def taken(asked: Sequence[Any]) -> Taken | None:
-        for reader in asked:
+    def read_first(candidates: Sequence[Any]) -> Content | None:
+        for reader in candidates:
             try:
                 with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
                     return take(opened)
@@ -92,24 +92,28 @@ def _first(
             except Other as error:
                 raise ValueError(f"{str(path)!r} {error}") from None
             except Exception as error:  # readers raise anything for a damaged or another file
-                said = f"no {error}" if isinstance(error, KeyError) else str(error)
-                reasons[reader.name()] = said or type(error).__name__
+                reason = f"no {error}" if isinstance(error, KeyError) else str(error)
+                reasons[reader.name()] = reason or type(error).__name__
         return None
 
-    if (found := taken(likely)) is not None:
-        return found
-    told = "; ".join(f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items())
+    if (surface := read_first(likely)) is not None:
+        return surface
+    reasons_text = "; ".join(
+        f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items()
+    )
     is_plain = is_text(content)
-    if is_plain and (found := table(bool(likely))) is not None:
-        return found
+    if is_plain and (surface := table(bool(likely))) is not None:
+        return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
-        raise ValueError(f"{str(path)!r} cannot be read: {told}")
+        raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
     maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
-    found = taken([one for one in maybe if not is_plain or one.format() in HEADED])
-    if found is not None:
-        return found
+    surface = read_first([one for one in maybe if not is_plain or one.format() in HEADED])
+    if surface is not None:
+        return surface
     if likely:
-        raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {told}")
+        raise ValueError(
+            f"{str(path)!r} has no format that SurfaceTopography reads; {reasons_text}"
+        )
     raise ValueError(
         f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
         ".csv and .xyz"
@@ -128,7 +132,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
     """Return the heights of a table; SurfaceTopography knows the heads of a matrix."""
     from SurfaceTopography.IO import AscReader
 
-    has_channels = all(found.title.startswith("#") for found in text.tables[1:])
+    has_channels = all(table.title.startswith("#") for table in text.tables[1:])
     if len(text.tables) > 1 and not has_channels:
         text.tables = [text.chosen(channel)]
         channel = None
@@ -144,14 +148,14 @@ def _table(text: Text, channel: str | int | None) -> Heights:
     first.lines = np.linspace(first.lines[0], first.lines[-1], len(first.rows)).tolist()
     try:
         with AscReader(io.StringIO(text.plain())) as reader:
-            found = _heights(reader, channel)
+            heights = _heights(reader, channel)
     except Unfound as error:
         raise ValueError(f"{error}, got {channel!r}") from None
     except Exception:
         return own._replace(is_metric=False)
-    if found.unit is None and found.spacing is None:
-        return own._replace(heights=found.heights, is_metric=False)
-    return found._replace(is_metric=False)
+    if heights.unit is None and heights.spacing is None:
+        return own._replace(heights=heights.heights, is_metric=False)
+    return heights._replace(is_metric=False)
 
 
 def _mended(path: Path) -> str | io.BytesIO:
@@ -163,15 +167,15 @@ def _mended(path: Path) -> str | io.BytesIO:
         names = archive.namelist()
         main = next(name for name in names if name.rpartition("/")[2] == "main.xml")
         folder = main.removesuffix("main.xml")
-        made = io.BytesIO()
-        with zipfile.ZipFile(made, "w") as copy:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w") as copy:
             for name in names:
                 content = archive.read(name)
                 if name == main:
                     content = REVISION.sub(rb"\1ISO5436 - 2000\2", content)
                 copy.writestr(name.removeprefix(folder), content)
-        made.seek(0)
-        return made
+        buffer.seek(0)
+        return buffer
     return str(path)
 
 
@@ -188,11 +192,11 @@ def _heights(reader: Any, channel: str | int | None) -> Heights:
     if not maps:
         names = ", ".join(repr(one.name) for one in reader.channels) or _others(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
-    found = _channel(reader, channel)
+    map_channel = _channel(reader, channel)
     # A file without sizes needs some, which are not used.
-    lacking = found.physical_sizes is None and found.nb_grid_pts is not None
-    sizes = {"physical_sizes": tuple(map(float, found.nb_grid_pts))} if lacking else {}
-    heights = of_topography(found.topography(**sizes))
+    lacking = map_channel.physical_sizes is None and map_channel.nb_grid_pts is not None
+    sizes = {"physical_sizes": tuple(map(float, map_channel.nb_grid_pts))} if lacking else {}
+    heights = of_topography(map_channel.topography(**sizes))
     return heights._replace(spacing=None) if lacking else heights
 
 
@@ -216,9 +220,9 @@ def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | N
 
 def _others(reader: Any) -> str:
     """Return the titles of channels of Gwyddion that hold no heights, with their units."""
-    said = getattr(reader, "_metadata", {})
-    fields = [name for name in said if re.fullmatch(r"/\d+/data", str(name))]
-    return ", ".join(repr(said.get(f"{name}/title") or name) for name in fields)
+    metadata = getattr(reader, "_metadata", {})
+    fields = [name for name in metadata if re.fullmatch(r"/\d+/data", str(name))]
+    return ", ".join(repr(metadata.get(f"{name}/title") or name) for name in fields)
 
 
 def of_topography(surface: Any) -> Heights:
@@ -240,15 +244,15 @@ def of_topography(surface: Any) -> Heights:
     return Heights(heights, spacing, unit, False)
 
 
-def _channel(reader: Any, asked: str | int | None) -> Any:
+def _channel(reader: Any, choice: str | int | None) -> Any:
     channels = list(reader.channels)
     names = [channel.name for channel in channels]
-    if asked is None:
+    if choice is None:
         return reader.default_channel
-    if isinstance(asked, str):
-        if asked in names:
-            return channels[names.index(asked)]
-    elif 0 <= asked < len(channels):
-        return channels[asked]
+    if isinstance(choice, str):
+        if choice in names:
+            return channels[names.index(choice)]
+    elif 0 <= choice < len(channels):
+        return channels[choice]
     known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
     raise Unfound(f"channel must be one of {known}")

@@ -101,19 +101,19 @@ def read_map(
         raise ValueError(f"unit must be one of {', '.join(METRES)}, got {unit!r}")
     if channel is not None:
         channel = name_or_number("channel", channel)
-    name, found = _found(path, channel)
-    heights, sides = found.heights, found.spacing
+    name, surface = _read_heights(path, channel)
+    heights, sides = surface.heights, surface.spacing
     if transpose:
         heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
-    factor = _metres(name, found, unit)
+    factor = _metres(name, surface, unit)
     heights = heights * factor
-    given = spacing
+    is_spacing_given = spacing is not None
     if spacing is None:
         if sides is None:
-            raise ValueError(f"spacing must be given: {name}{found.note} does not have it")
+            raise ValueError(f"spacing must be given: {name}{surface.note} does not have it")
         spacing = sides[0] * factor, sides[1] * factor
-    is_known = unit is not None or found.unit is not None
-    _check_size(name, heights, spacing, is_known, given is not None)
+    is_known = unit is not None or surface.unit is not None
+    _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
     heights = _filled(name, heights, detrend, wraps)
     try:
@@ -122,7 +122,7 @@ def read_map(
         raise ValueError(f"{name}: {error}") from error
 
 
-def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
+def _read_heights(path: Any, channel: str | int | None) -> tuple[str, Heights]:
     """Return a name for messages, and the heights."""
     if not isinstance(path, str | os.PathLike):
         if not hasattr(path, "heights"):
@@ -139,31 +139,31 @@ def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
     if ending == ".npy":
         if channel is not None:
             raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
-        found = _heights.npy(path)
+        surface = _heights.npy(path)
     elif ending in (".csv", ".xyz"):
-        found = _heights.text(path, channel)
+        surface = _heights.text(path, channel)
     else:
         from nacre.surfaces.instruments import instrument
 
-        found = instrument(path, channel)
-    return repr(str(path)), found._replace(heights=without_sentinels(found.heights))
+        surface = instrument(path, channel)
+    return repr(str(path)), surface._replace(heights=without_sentinels(surface.heights))
 
 
-def _metres(name: str, found: Heights, unit: str | None) -> float:
+def _metres(name: str, surface: Heights, unit: str | None) -> float:
     """Return the length of the unit [m]."""
-    is_named = unit is not None and METRES[unit] in map(_heights.metres, found.named)
-    said = found.unit if unit is None or is_named else unit
-    if said is None and not found.is_metric:
-        sizes = f"its heights span {_span(found.heights):.4g}"
-        if found.spacing is not None:
-            nx, ny = found.heights.shape
-            dx, dy = found.spacing
+    is_named = unit is not None and METRES[unit] in map(_heights.metres, surface.axis_units)
+    unit_name = surface.unit if unit is None or is_named else unit
+    if unit_name is None and not surface.is_metric:
+        sizes = f"its heights span {_span(surface.heights):.4g}"
+        if surface.spacing is not None:
+            nx, ny = surface.heights.shape
+            dx, dy = surface.spacing
             sizes += f" and its sides {(nx - 1) * dx:.4g} x {(ny - 1) * dy:.4g}"
         raise ValueError(f"unit must be given: {name} names none; {sizes}")
-    length = _heights.metres(said or "m")
+    length = _heights.metres(unit_name or "m")
     if length is None:
         raise ValueError(
-            f"unit must be given: {name} has {said!r}, which is none of {', '.join(METRES)}"
+            f"unit must be given: {name} has {unit_name!r}, which is none of {', '.join(METRES)}"
         )
     return length
 

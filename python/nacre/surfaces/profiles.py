@@ -147,7 +147,7 @@ def _table(
             f"more, got {table.width} of {len(values)}"
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
-    first = _named(words, AXES[0])
+    first = _known_column(words, AXES[0])
     if first is None:
         rest = [k for k in range(counted, table.width) if is_strict(values[:, k])]
         timed = [k for k in rest if words and words[k] in TIMES | NUMBERED]
@@ -155,11 +155,11 @@ def _table(
         is_clear = table.width - counted == 2 or len(rest) < 2
         first = (rest[0] if timed and rest else counted) if is_clear else None
     place = _column(path, table, "x", x, first)
-    is_drop = drop is not None or (height is None and _named(words, DROPS) is not None)
+    is_drop = drop is not None or (height is None and _known_column(words, DROPS) is not None)
     if is_drop:
-        other = _column(path, table, "drop", drop, _named(words, DROPS))
+        other = _column(path, table, "drop", drop, _known_column(words, DROPS))
     else:
-        other = _column(path, table, "height", height, _named(words, AXES[2]))
+        other = _column(path, table, "height", height, _known_column(words, AXES[2]))
     sizes = _sizes(path, table, unit, place, other)
     heights = without_sentinels(values[:, other]) * sizes[1]
     return values[:, place] * sizes[0], heights if is_drop else _below(heights)
@@ -172,8 +172,8 @@ def _sizes(
     lengths = unit if isinstance(unit, tuple) else (unit, unit)
     usual = "mm" if path.suffix.lower() in MINIPROF else None
     known = [
-        given or (table.headings[column].unit if table.headings else None) or usual
-        for column, given in ((place, lengths[0]), (other, lengths[1]))
+        keyword_unit or (table.headings[column].unit if table.headings else None) or usual
+        for column, keyword_unit in ((place, lengths[0]), (other, lengths[1]))
     ]
     heading = table.headings[other].heading if table.headings else ""
     if known[1] is None and (bracket := IN_BRACKETS.search(heading)):
@@ -187,10 +187,10 @@ def _sizes(
             stacklevel=5,
         )
     sizes = []
-    for name, said in zip(("x", "heights"), known, strict=True):
-        size = metres(said or "")
+    for name, unit_name in zip(("x", "heights"), known, strict=True):
+        size = metres(unit_name or "")
         if size is None:
-            got = "names none" if said is None else f"got {said!r}"
+            got = "names none" if unit_name is None else f"got {unit_name!r}"
             raise ValueError(
                 f"unit must be one of {', '.join(METRES)} for the {name} of {str(path)!r}, {got}; "
                 f"unit= can be a pair"
@@ -215,12 +215,12 @@ def _scan(
                 f"{keyword} must be left out for the line scan in {str(path)!r}, whose heights are "
                 f"a channel, got {column!r}"
             )
-    places, heights, named = line_scan(path, height)
+    places, heights, file_unit = line_scan(path, height)
     lengths = unit if isinstance(unit, tuple) else (unit, unit)
-    sizes = [metres(given or named or "") for given in lengths]
+    sizes = [metres(keyword_unit or file_unit or "") for keyword_unit in lengths]
     if sizes[0] is None or sizes[1] is None:
         raise ValueError(
-            f"unit must be one of {', '.join(METRES)} for {str(path)!r}, which names {named!r}"
+            f"unit must be one of {', '.join(METRES)} for {str(path)!r}, which names {file_unit!r}"
         )
     return places * sizes[0], _below(without_sentinels(heights) * sizes[1])
 
@@ -262,56 +262,56 @@ def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
     return places, drops
 
 
-def _named(words: Sequence[str], known: frozenset[str]) -> int | None:
+def _known_column(words: Sequence[str], known: frozenset[str]) -> int | None:
     """Return the only column whose name begins with a known word."""
     hits = [k for k, word in enumerate(words) if word in known]
     return hits[0] if len(hits) == 1 else None
 
 
 def _column(
-    path: Path, table: Table, keyword: str, asked: str | int | None, usual: int | None
+    path: Path, table: Table, keyword: str, choice: str | int | None, usual: int | None
 ) -> int:
     """Return the number of a column, by its name or number, or the usual one."""
     names = [column.name for column in table.headings]
-    if asked is None and usual is not None:
+    if choice is None and usual is not None:
         return usual
-    if isinstance(asked, str) and names.count(asked) == 1:
-        return names.index(asked)
-    if asked is not None and not isinstance(asked, str):
-        asked = core.integer(keyword, asked)
-        if 0 <= asked < table.width:
-            return asked
-    listed = ", ".join(f"{k} {name!r}" for k, name in enumerate(names)) or (
+    if isinstance(choice, str) and names.count(choice) == 1:
+        return names.index(choice)
+    if choice is not None and not isinstance(choice, str):
+        choice = core.integer(keyword, choice)
+        if 0 <= choice < table.width:
+            return choice
+    listing = ", ".join(f"{k} {name!r}" for k, name in enumerate(names)) or (
         f"{table.width} columns without names, first {', '.join(f'{v:g}' for v in table.rows[0])}"
     )
     keywords = "drop= or height=" if keyword == "height" else f"{keyword}="
-    got = "" if asked is None else f", got {asked!r}"
+    got = "" if choice is None else f", got {choice!r}"
     raise ValueError(
         f"{keywords} must name a column of {str(path)!r} by its name or number{got}: it has "
-        f"{listed}"
+        f"{listing}"
     )
 
 
 def _simpack(path: Path) -> tuple[Array, Array]:
     """Return positions and drops of a rail or a wheel [m], whose z points down."""
-    said: dict[str, float] = {}
+    header: dict[str, float] = {}
     rows: list[list[float]] = []
     head, begin, points = decoded(path).partition("point.begin")
     for key, value in re.findall(r"^\s*([\w.]+)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?)", head, re.M):
-        said[key.lower()] = float(value)
+        header[key.lower()] = float(value)
     for line in points.partition("point.end")[0].splitlines():
         fields = line.partition("!")[0].split()
         if len(fields) >= 2:
             rows.append([float(fields[0]), float(fields[1])])
     if not begin or len(rows) < 2:
         raise ValueError(f"{str(path)!r} must have points between point.begin and point.end")
-    if said.get("rotate", 0.0) != 0:
-        raise ValueError(f"{str(path)!r} must not be rotated, got rotate = {said['rotate']:g}")
-    if not (factor := said.get("units.len.f", 0.0)) > 0:
+    if header.get("rotate", 0.0) != 0:
+        raise ValueError(f"{str(path)!r} must not be rotated, got rotate = {header['rotate']:g}")
+    if not (factor := header.get("units.len.f", 0.0)) > 0:
         raise ValueError(f"{str(path)!r} must name its unit of length, units.len.f, above 0")
-    shift = [said.get("shift.y", 0.0), said.get("shift.z", 0.0)]
+    shift = [header.get("shift.y", 0.0), header.get("shift.z", 0.0)]
     y, z = (np.array(rows) + shift).T / factor
-    y = -y if said.get("mirror.y") == 1 else y
-    z = -z if said.get("mirror.z") == 1 else z
-    is_wheel = said.get("type", float(path.suffix.lower() == ".prw")) == 1
+    y = -y if header.get("mirror.y") == 1 else y
+    z = -z if header.get("mirror.z") == 1 else z
+    is_wheel = header.get("type", float(path.suffix.lower() == ".prw")) == 1
     return y, -z if is_wheel else z
