@@ -32,8 +32,8 @@ def _run(arguments: Sequence[str] | None) -> int:
     """Run one command and return its exit code; an error is one line on stderr."""
     import nacre
 
-    given = sys.argv[1:] if arguments is None else list(arguments)
-    if given == ["--version"]:  # soon, without the libraries of all commands
+    argv = sys.argv[1:] if arguments is None else list(arguments)
+    if argv == ["--version"]:  # soon, without the libraries of all commands
         print(f"nacre {nacre.__version__}")
         return 0
     try:
@@ -44,7 +44,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 
     try:
-        if not given:
+        if not argv:
             app(["--help"], prog_name="nacre", standalone_mode=False)
             return 2
         return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)

@@ -131,12 +131,12 @@ class _Hertzian:
     _contact: core.Hertz
     __match_args__: tuple[str, ...]
 
-    def _keep(self, contact: core.Hertz, **found: Any) -> None:
+    def _keep(self, contact: core.Hertz, **fields: Any) -> None:
         """Keep the contact, its arguments as floats, and what was found."""
         for name in self.__match_args__:
-            given = getattr(self, name)
-            found[name] = None if given is None else float(given)
-        self.__dict__.update(found, _contact=contact)
+            argument = getattr(self, name)
+            fields[name] = None if argument is None else float(argument)
+        self.__dict__.update(fields, _contact=contact)
 
     def max_shear(self, poisson: float) -> Pair:
         """Largest shear stress below the middle of the contact, and its depth.

@@ -117,8 +117,8 @@ def solver(
     >>> round(float(jax.grad(approach)(load) * load / approach(load)), 2)  # δ ~ W^(2/3)
     0.67
     """
-    given = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
-    contact = Differentiable(given, outputs, keep)
+    keywords = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
+    contact = Differentiable(keywords, outputs, keep)
     functions: dict[tuple[str, ...], Any] = {}
 
     def solve(parameters: Mapping[str, Any], gap: Any = None) -> Result:
@@ -137,10 +137,10 @@ def solver(
         x = jnp.concatenate([jnp.atleast_1d(part) for part in parts] or [jnp.zeros(0)])
         if names not in functions:
             functions[names] = _function(contact, names)
-        found = functions[names](x)
-        pressure = found[1 : contact.cells + 1].reshape(contact.grid.shape)
-        values = dict(zip(contact.outputs, found[contact.cells + 1 :], strict=True))
-        return Result(pressure, values, pressure > 0, found[0] > 0)
+        flat = functions[names](x)
+        pressure = flat[1 : contact.cells + 1].reshape(contact.grid.shape)
+        values = dict(zip(contact.outputs, flat[contact.cells + 1 :], strict=True))
+        return Result(pressure, values, pressure > 0, flat[0] > 0)
 
     return solve
 
@@ -162,7 +162,7 @@ def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
     def values(x: Array) -> Array:
         return np.concatenate([[1.0], *contact.values(names, x)])
 
-    def solved(x: Any) -> Any:
+    def primal(x: Any) -> Any:
         if not isinstance(x, jax.core.Tracer):
             return jnp.asarray(values(np.asarray(x)))  # A solve that fails raises its error.
         return _callback(values, 1 + cells + count, x)
@@ -176,7 +176,7 @@ def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
     # Compiled once, also for calls that are not.
     pressure = jax.jit(_product(contact.pressure_push, contact.pressure_pull, names, cells))
     outputs = jax.jit(_product(contact.outputs_push, contact.outputs_pull, names, count))
-    function = jax.custom_jvp(solved)
+    function = jax.custom_jvp(primal)
     function.defjvp(rule)
     return function
 
@@ -215,8 +215,8 @@ def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -
             return b.at[:size].add(_callback(backward, size, x, b[size:]))
 
         b = jnp.concatenate([rate, jnp.zeros(count)])
-        found = jax.lax.custom_linear_solve(lambda b: b, b, solve, transposed, symmetric=True)
-        return found[size:]
+        extended = jax.lax.custom_linear_solve(lambda b: b, b, solve, transposed, symmetric=True)
+        return extended[size:]
 
     return product
 
@@ -224,16 +224,16 @@ def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -
 def _callback(function: Callable[..., Array], size: int, *arrays: Any) -> Any:
     """Return what a function of arrays returns, NaN where it fails, as an array of JAX."""
 
-    def called(*arrays: Any) -> Array:
+    def values_or_nan(*arrays: Any) -> Array:
         try:
             return function(*(np.asarray(array, dtype=np.float64) for array in arrays))
         except Exception as error:
-            said = "; ".join([str(error), *getattr(error, "__notes__", [])])
-            _warn(f"the results are NaN: {said}")
+            message = "; ".join([str(error), *getattr(error, "__notes__", [])])
+            _warn(f"the results are NaN: {message}")
             return np.full(size, np.nan)
 
     result = jax.ShapeDtypeStruct((size,), np.float64)
-    return jax.pure_callback(called, result, *arrays, vmap_method="sequential")
+    return jax.pure_callback(values_or_nan, result, *arrays, vmap_method="sequential")
 
 
 def _warn(message: str) -> None:

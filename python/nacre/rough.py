@@ -106,14 +106,14 @@ def random_surface(
             "shortest must be at least two points, "
             f"{finest:g}, and below longest, got {shortest} and {longest}"
         )
-    given = {"rms_slope": rms_slope, "rms_height": rms_height}
-    known = {name: value for name, value in given.items() if value is not None}
+    targets = {"rms_slope": rms_slope, "rms_height": rms_height}
+    known = {name: value for name, value in targets.items() if value is not None}
     if len(known) != 1:
         raise ValueError("exactly one of rms_slope and rms_height must be given")
-    (name, wanted), *_ = known.items()
-    if not (np.isfinite(wanted) and wanted > 0):
-        raise ValueError(f"{name} must be above 0, got {wanted}")
-    made = fourier_synthesis(
+    (name, target), *_ = known.items()
+    if not (np.isfinite(target) and target > 0):
+        raise ValueError(f"{name} must be above 0, got {target}")
+    topography = fourier_synthesis(
         shape,
         size,
         hurst=hurst,
@@ -123,14 +123,14 @@ def random_surface(
         rolloff=0.0,
         rng=seed,
     )
-    heights = np.asarray(made.heights(), dtype=np.float64)
+    heights = np.asarray(topography.heights(), dtype=np.float64)
     heights -= heights.mean()
     spacing = size[0] / shape[0], size[1] / shape[1]
     surface = core.HeightMap(heights, spacing, periodic=(True, True))
-    found = spectral_slope(surface) if name == "rms_slope" else heights.std()
-    if found == 0:
+    actual = spectral_slope(surface) if name == "rms_slope" else heights.std()
+    if actual == 0:
         raise ValueError(f"no wave lies between shortest {shortest} and longest {longest}")
-    return core.HeightMap(heights * (wanted / found), spacing, periodic=(True, True))
+    return core.HeightMap(heights * (target / actual), spacing, periodic=(True, True))
 
 
 def spectral_slope(surface: core.HeightMap) -> float:
@@ -184,8 +184,8 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
             factors = (1j * waves) ** order
             if order == 1 and field.shape[axis] % 2 == 0:
                 factors[(slice(None),) * axis + (-1,)] = 0.0  # the highest wave has no direction
-            found = np.fft.rfft(field, axis=axis) * factors
-            return np.asarray(np.fft.irfft(found, field.shape[axis], axis=axis))
+            transform = np.fft.rfft(field, axis=axis) * factors
+            return np.asarray(np.fft.irfft(transform, field.shape[axis], axis=axis))
 
         weighted = window[axis] * rest
         inclined = derived(weighted, 1) - slope * rest + trend * window[axis]
@@ -369,8 +369,10 @@ def load_curve(
     if grid is None and not isinstance(shape, core.HeightMap):
         raise ValueError("grid must be given for a shape that is not a map")
     cells = _grid(shape) if grid is None else grid
-    planned = {name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords}
-    contact = Contact(body, cells, counterbody, **planned)
+    plan_options = {
+        name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords
+    }
+    contact = Contact(body, cells, counterbody, **plan_options)
     area = cells.size[0] * cells.size[1]
     columns: dict[str, list[float]] = {name: [] for name in CURVE}
     last: Solution | None = None
@@ -378,7 +380,7 @@ def load_curve(
         last = contact.solve(shape, load=value * area, initial=last, **keywords)
         corrected = corrected_area(last)
         gap = last.gap[np.isfinite(last.gap)]
-        found = {
+        numbers = {
             "load": last.load,
             "contact_area": last.contact_area,
             "corrected_area": corrected,
@@ -389,7 +391,7 @@ def load_curve(
             "stiffness": last.stiffness()[0, 0] / area,
             "patches": patches(last).size,
         }
-        for name, number in found.items():
+        for name, number in numbers.items():
             columns[name].append(float(number))
     dataset = xarray.Dataset(
         {name: ("pressure", column) for name, column in columns.items()},
@@ -537,7 +539,7 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
     highest = float(values.max()) if values.size and values.max() > 0 else 1.0
     numbers, edges = np.histogram(values, bins, (0.0, highest))
     density = numbers / count / np.diff(edges)
-    found = xarray.DataArray(
+    distribution = xarray.DataArray(
         density,
         {name: 0.5 * (edges[1:] + edges[:-1])},
         name="density",
@@ -547,8 +549,8 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
             "share_at_zero": 1 - values.size / count,
         },
     )
-    found[name].attrs = {"long_name": name, "units": symbol(unit)}
-    return found
+    distribution[name].attrs = {"long_name": name, "units": symbol(unit)}
+    return distribution
 
 
 def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
@@ -582,17 +584,17 @@ def _spectra(
     with extra("files"):
         import xarray
 
-    found = {}
+    densities = {}
     for name, heights in fields.items():
         topography = _topography(heights - heights.mean(), grid, "solution")
         wavenumber, density = topography.power_spectrum_from_area()
-        kept = np.isfinite(density) & (wavenumber > 0)
-        found[name] = ("wavenumber", np.asarray(density[kept], dtype=np.float64))
-    dataset = xarray.Dataset(found, {"wavenumber": np.asarray(wavenumber[kept])})
+        finite = np.isfinite(density) & (wavenumber > 0)
+        densities[name] = ("wavenumber", np.asarray(density[finite], dtype=np.float64))
+    dataset = xarray.Dataset(densities, {"wavenumber": np.asarray(wavenumber[finite])})
     dataset.attrs["source"] = f"nacre {core.__version__}"
     dataset.attrs |= attributes
     dataset["wavenumber"].attrs = {"long_name": "wavenumber", "units": f"rad/{symbol('m')}"}
-    for name in found:
+    for name in densities:
         words = f"spectral density of the {name} surface"
         dataset[name].attrs = {"long_name": words, "units": f"{symbol('m')}⁴"}
     return dataset

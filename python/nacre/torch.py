@@ -106,8 +106,8 @@ def solver(
     >>> round(load.grad.item() * load.item(), 2)  # δ ~ W^(2/3)
     0.67
     """
-    given = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
-    contact = Differentiable(given, outputs, keep)
+    keywords = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
+    contact = Differentiable(keywords, outputs, keep)
 
     def solve(parameters: Mapping[str, Any], gap: Any = None) -> Result:
         if not isinstance(parameters, Mapping):
