@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use ndarray::{ArcArray2, Array1, Array2};
 
+use crate::compliance::convolution::Addition;
 use crate::compliance::ends::{Ends, FreeEnds};
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
@@ -46,6 +47,8 @@ pub struct Solution {
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
+    /// What the free ends of the bodies add to the coefficients, from the plan that solved it; `None` where no plan did.
+    pub(super) ends: Option<Vec<Addition>>,
 }
 
 impl PartialEq for Solution {
@@ -114,6 +117,7 @@ impl Solution {
             coefficients: None,
             report,
             gap: Gap::Known(gap),
+            ends: None,
         })
     }
 

@@ -68,7 +68,10 @@ impl Tangent {
         };
         let is_given = setup.coefficients.is_some();
         let near = if is_given { *grid } else { grid.of_offsets(shape) };
-        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?;
+        let additions = match &solution.ends {
+            Some(additions) => additions.clone(),
+            None => Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?,
+        };
         let (coefficients, datum) = operator(&report.body, &setup, &near, &additions, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let within = additions.iter().map(|addition| addition.on_rows(x.clone()));
