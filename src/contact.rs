@@ -1,8 +1,8 @@
 //! The contact problem: g = h + u − δ − s_x x − s_y y ≥ 0, p ≥ 0, p g = 0.
 
-mod alternatives;
 mod automatic;
 mod batch;
+mod between_stations;
 mod cascade;
 mod driver;
 mod options;

@@ -14,7 +14,7 @@
 //! criteria of Dang Van and of Crossland, in two the amplitude of the shear stress on a plane, of Findley and Matake.
 
 use crate::error::{Error, Result};
-use crate::numerics::ball::smallest_ball;
+use crate::numerics::enclosing_ball::smallest_ball;
 
 mod criterion;
 mod planes;

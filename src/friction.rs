@@ -25,7 +25,7 @@
 //! | `coulomb` | Coulomb's law in cells |
 //! | `second_order` | rolling to second order in the length of a cell |
 //! | `newton` | tractions for a pressure: the operators of sliding and of rolling, Newton's linear systems |
-//! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
+//! | `tangential_problem` | sliding in one step, rolling; fields of the whole grid, and their errors |
 //! | `halved` | from a solution on cells of twice the length: a start, and the discretisation error |
 //! | `session` | pressure and tractions in turn |
 //! | `solution` | what comes out |
@@ -45,7 +45,7 @@ mod second_order;
 mod session;
 mod solution;
 mod step;
-mod task;
+mod tangential_problem;
 
 pub use creep::{CreepCoefficients, CreepWatch, creep_coefficients};
 pub use session::{FrictionProgress, Last};

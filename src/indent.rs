@@ -23,18 +23,18 @@
 //! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
 
 mod adhesion;
-mod change;
 mod curve;
-mod density;
+mod derivatives;
 mod equation;
 mod indenter;
 mod point;
+mod pressure;
 mod pull_off;
 mod tip;
 
 pub use adhesion::{Adhesion, Branch, Control};
-pub use change::{Change, Held, Variable};
 pub use curve::Curve;
+pub use derivatives::{Change, Held, Variable};
 pub use equation::stack::{IndentParameter, Stack};
 pub use indenter::{Apart, Indent};
 pub use point::{IndentWarning, InteriorStress, Point, PullOff};

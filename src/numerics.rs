@@ -1,7 +1,7 @@
 //! Numerical methods that know nothing of contact.
 
-pub(crate) mod ball;
 pub(crate) mod dense;
+pub(crate) mod enclosing_ball;
 pub(crate) mod fft;
 pub(crate) mod layout;
 pub(crate) mod linear_cg;

@@ -34,12 +34,12 @@ use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
-mod beside;
-mod beyond;
 mod ends;
 mod field;
 mod half_space;
 mod options;
+mod outside_grid;
+mod outside_patch;
 mod plan;
 mod refined;
 mod section;

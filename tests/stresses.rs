@@ -9,7 +9,6 @@ mod support {
 }
 
 mod stress {
-    mod beyond;
     mod closed_forms;
     mod coated;
     mod edge;
@@ -18,6 +17,7 @@ mod stress {
     mod friction;
     mod invariants;
     mod limits;
+    mod outside_grid;
     mod patch;
     mod periodic;
     mod plan;

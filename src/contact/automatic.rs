@@ -6,7 +6,7 @@
 
 mod relief;
 mod search;
-mod task;
+mod trial;
 
 use std::ops::ControlFlow;
 
@@ -14,7 +14,7 @@ use crate::compliance::ends::{Ends, check_carried};
 use crate::compliance::response::Body;
 use crate::contact::automatic::relief::overlap;
 use crate::contact::automatic::search::{Search, moved_out, touched_sides};
-use crate::contact::automatic::task::{Task, frame_of};
+use crate::contact::automatic::trial::{Trial, frame_of};
 use crate::contact::driver::WatchedSolve;
 use crate::contact::options::{Algorithm, Motion, Options, Setup};
 use crate::contact::plan::{Contact, bodies};
@@ -72,7 +72,7 @@ pub fn solve_with<'a>(
     let options = watched_options.options;
     let ends = Ends::of(&bodies(body, setup));
     let limited = ends.limit(shape);
-    let task = Task {
+    let trial = Trial {
         shape: if ends.any() { &limited } else { shape },
         body,
         setup,
@@ -87,8 +87,8 @@ pub fn solve_with<'a>(
         if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let mut solution = match shape.grid() {
-        Some(grid) => task.solve(grid, options, &mut watched)?,
-        None => solve_on_own_grid(task, options, &mut watched)?,
+        Some(grid) => trial.solve(grid, options, &mut watched)?,
+        None => solve_on_own_grid(trial, options, &mut watched)?,
     };
     if !shape.alternatives().is_empty() {
         let plan = Contact::plan(body, *solution.grid(), setup.clone())?;
@@ -98,7 +98,7 @@ pub fn solve_with<'a>(
 }
 
 /// A solution on a grid that is chosen, with these options.
-fn solve_on_own_grid(task: Task, options: &Options, watched: &mut Progress) -> Result<Solution> {
+fn solve_on_own_grid(trial: Trial, options: &Options, watched: &mut Progress) -> Result<Solution> {
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
@@ -109,10 +109,10 @@ fn solve_on_own_grid(task: Task, options: &Options, watched: &mut Progress) -> R
         indentation: None,
         ..options.clone()
     };
-    let (mut solution, warning) = solve_on_fit_grid(task, &plain, watched)?;
+    let (mut solution, warning) = solve_on_fit_grid(trial, &plain, watched)?;
     if plain != *options {
         let grid = *solution.grid();
-        solution = task.solve(grid, options, watched)?;
+        solution = trial.solve(grid, options, watched)?;
     }
     solution.report.warnings.extend(warning);
     Ok(solution)
@@ -153,22 +153,22 @@ pub fn choose_grid<'a>(
 
 /// A solution on a grid that fits it, and a warning where no such grid was found.
 fn solve_on_fit_grid(
-    task: Task,
+    trial: Trial,
     options: &Options,
     progress: &mut Progress,
 ) -> Result<(Solution, Option<Warning>)> {
-    let mut search = Search::new(task, options)?;
+    let mut search = Search::new(trial, options)?;
     let (mut refinement, mut enlargements) = (Refinement::default(), 0);
     let mut grid = search.grid(progress)?;
-    let mut solution = task.solve(grid, options, progress)?;
+    let mut solution = trial.solve(grid, options, progress)?;
     loop {
         if !solution.report.converged() {
             return Ok((solution, None));
         }
-        let missed = overlap(&task, &solution, frame_of(&grid))?;
+        let missed = overlap(&trial, &solution, frame_of(&grid))?;
         let touched = solution
             .cells_in_contact()
-            .map(|contact| touched_sides(&contact, &grid, task.shape.extent()))
+            .map(|contact| touched_sides(&contact, &grid, trial.shape.extent()))
             .unwrap_or_default();
         let too_coarse = peak_error(&solution).filter(|error| *error > PEAK_ERROR);
         let warning = match &missed {
@@ -181,17 +181,17 @@ fn solve_on_fit_grid(
                 (refinement, enlargements) = (Refinement::default(), enlargements + 1);
                 Some(match missed {
                     Some(missed) => search.holding(missed, &solution, progress)?,
-                    None => enlarged(&task, &grid, touched)?,
+                    None => enlarged(&trial, &grid, touched)?,
                 })
             }
             Some(_) => None,
-            None => refinement.next(&solution, &task)?,
+            None => refinement.next(&solution, &trial)?,
         };
         let Some(next) = next else {
             return Ok((solution, warning));
         };
         grid = next;
-        solution = match task.solve(grid, options, progress) {
+        solution = match trial.solve(grid, options, progress) {
             // The grid before was not too large.
             Err(Error::Memory { .. }) => return Ok((solution, warning)),
             Ok(finer) if finer.report.termination == Termination::IterationLimit => {
@@ -204,14 +204,14 @@ fn solve_on_fit_grid(
 
 /// The grid whose `sides` are moved out by half its width, with cells of the same size, or larger ones where
 /// there would be too many.
-fn enlarged(task: &Task, grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
+fn enlarged(trial: &Trial, grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
     let (frame, size) = (frame_of(grid), grid.size());
     let wider = [0, 1].map(|k| moved_out(frame[k], sides[k], 0.5 * size[k]));
     let cells = [0, 1].map(|k| {
         let moved = sides[k].iter().filter(|side| **side).count();
         grid.shape()[k] + moved * grid.shape()[k].div_ceil(2)
     });
-    task.grid_over(wider, task.at_most(cells))
+    trial.grid_over(wider, trial.at_most(cells))
 }
 
 /// Estimated error of the peak pressure, relative to the peak, above which cells are divided.
@@ -240,12 +240,12 @@ struct Refinement {
 impl Refinement {
     /// The next grid after that of `solution`, which has converged; `None` where the peak pressure is accurate, where
     /// nobody can tell, and where no permitted grid makes it so.
-    fn next(&mut self, solution: &Solution, task: &Task) -> Result<Option<Grid>> {
-        let Some(short_of_end) = short_of_ends(solution, task.shape) else {
+    fn next(&mut self, solution: &Solution, trial: &Trial) -> Result<Option<Grid>> {
+        let Some(short_of_end) = short_of_ends(solution, trial.shape) else {
             return Ok(None);
         };
         if short_of_end.contains(&true) {
-            return halved(task, solution.grid(), short_of_end);
+            return halved(trial, solution.grid(), short_of_end);
         }
         let Some(error) = peak_error(solution) else {
             return Ok(None);
@@ -263,14 +263,14 @@ impl Refinement {
         // Where halving along one axis was of no use, the other axis may need it.
         let both = self.in_vain > 0;
         let axes = [0, 1].map(|k| both || narrow[k] || (bends[k] && error > PEAK_ERROR));
-        halved(task, solution.grid(), axes)
+        halved(trial, solution.grid(), axes)
     }
 }
 
 /// The grid whose cells are halved along `axes`; `None` where there would be too many.
-fn halved(task: &Task, grid: &Grid, axes: [bool; 2]) -> Result<Option<Grid>> {
+fn halved(trial: &Trial, grid: &Grid, axes: [bool; 2]) -> Result<Option<Grid>> {
     let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { 2 } else { 1 });
-    if shape[0].saturating_mul(shape[1]) > task.most {
+    if shape[0].saturating_mul(shape[1]) > trial.most {
         return Ok(None);
     }
     Ok(Some(Grid::new(shape, grid.size())?.centered_at(grid.center())?))

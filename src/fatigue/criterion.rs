@@ -3,7 +3,7 @@
 use super::planes::{Plane, Planes};
 use super::{State, check, deviator, from_coordinates, hydrostatic, largest};
 use crate::error::{Error, Result, positive};
-use crate::numerics::ball::smallest_ball;
+use crate::numerics::enclosing_ball::smallest_ball;
 use crate::stress::Tensor;
 
 /// Names of the criteria.

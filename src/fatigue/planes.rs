@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{State, largest};
-use crate::numerics::ball::smallest_ball;
+use crate::numerics::enclosing_ball::smallest_ball;
 
 /// A plane, and its stresses over a history.
 #[derive(Debug, Clone, Copy)]

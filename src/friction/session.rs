@@ -15,7 +15,9 @@ use super::halved::{LEAST, coarse_friction, discretisation, refined};
 use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
-use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
+use super::tangential_problem::{
+    Before, PressedCells, SolvedTractions, TangentialProblem, bounds, zeros,
+};
 use crate::compliance::traction::Tangential;
 use crate::contact::{
     Contact, Motion, Options, Report, Solution, Termination, Unestimated, Warning,
@@ -117,12 +119,12 @@ impl<'a> Session<'a> {
     ) -> Result<FrictionSolution> {
         let last = last.filter(|_| !matches!(next, Move::RollSteadily(_)));
         let solution = last.map(|last| last.solution);
-        let (motion, friction, task) = match next {
+        let (motion, friction, problem) = match next {
             Move::Slide(step) => self.slide(step, solution)?,
             Move::RollSteadily(rolling) | Move::RollOneCell(rolling) => {
                 let is_steady = matches!(next, Move::RollSteadily(_));
-                let task = self.roll(rolling, is_steady, solution)?;
-                (rolling.motion, &rolling.friction, task)
+                let problem = self.roll(rolling, is_steady, solution)?;
+                (rolling.motion, &rolling.friction, problem)
             }
         };
         let earlier = solution.map(|last| &last.normal);
@@ -133,7 +135,7 @@ impl<'a> Session<'a> {
                 && normal.report.converged()
                 && normal.report.motion == motion
         });
-        self.settle(&task, &motion, friction, [earlier, known], progress)
+        self.settle(&problem, &motion, friction, [earlier, known], progress)
     }
 
     /// Motion, friction and problem of a step of sliding.
@@ -141,7 +143,7 @@ impl<'a> Session<'a> {
         &self,
         step: &'s Step,
         last: Option<&'s FrictionSolution>,
-    ) -> Result<(Motion, &'s Friction, TractionTask<'s>)> {
+    ) -> Result<(Motion, &'s Friction, TangentialProblem<'s>)> {
         let grid = self.contact.grid();
         let before = last.map(|last| last.normal.report.motion);
         let motion = match (step.motion, before) {
@@ -159,7 +161,7 @@ impl<'a> Session<'a> {
         let before = before_of(last, self.contact)?;
         let [x, y] = before.shift;
         let starts = [x, y, before.twist];
-        let task = TractionTask {
+        let problem = TangentialProblem {
             rolling: None,
             is_steady: false,
             is_second_order: false,
@@ -170,7 +172,7 @@ impl<'a> Session<'a> {
             }),
             before,
         };
-        Ok((motion, friction, task))
+        Ok((motion, friction, problem))
     }
 
     /// The problem of rolling, steady or by one cell after `last`.
@@ -179,7 +181,7 @@ impl<'a> Session<'a> {
         rolling: &'r Rolling,
         is_steady: bool,
         last: Option<&FrictionSolution>,
-    ) -> Result<TractionTask<'r>> {
+    ) -> Result<TangentialProblem<'r>> {
         let grid = self.contact.grid();
         rolling.friction.check(grid)?;
         let [along, across] = rolling.freedoms(grid)?;
@@ -188,7 +190,7 @@ impl<'a> Session<'a> {
             Freedom::Prescribed(value) => Freedom::Prescribed(value * d),
             other => other,
         };
-        Ok(TractionTask {
+        Ok(TangentialProblem {
             rolling: Some(rolling),
             is_steady,
             is_second_order: self.options.order == 2,
@@ -201,7 +203,7 @@ impl<'a> Session<'a> {
     /// the `known` one.
     fn settle(
         &self,
-        task: &TractionTask,
+        problem: &TangentialProblem,
         motion: &Motion,
         friction: &Friction,
         [earlier, known]: [Option<&Solution>; 2],
@@ -212,16 +214,16 @@ impl<'a> Session<'a> {
             start: Instant::now(),
             report: FrictionReport {
                 coupled: self.coupled,
-                order: if task.is_steady { self.options.order } else { 0 },
+                order: if problem.is_steady { self.options.order } else { 0 },
                 tolerance,
                 ..FrictionReport::default()
             },
             stopped: false,
             progress,
         };
-        let half = self.halved(task, &mut course);
-        let keeps_shares = task.slides() || task.is_second_order;
-        let mut traction = task.before.traction.clone();
+        let half = self.halved(problem, &mut course);
+        let keeps_shares = problem.slides() || problem.is_second_order;
+        let mut traction = problem.before.traction.clone();
         let mut last_bound: Option<Array2<f64>> = None;
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let mut mixing = Mixing::default();
@@ -251,14 +253,14 @@ impl<'a> Session<'a> {
                     Zip::from(q).and(&bound).and(&last).for_each(|q, b, l| *q = share(*q, *b, *l));
                 }
             }
-            task.check(grid, &bound, tolerance)?;
-            task.check_memory(grid, &bound)?;
+            problem.check(grid, &bound, tolerance)?;
+            problem.check_memory(grid, &bound)?;
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
-            let [x, y, _] = task.increments.map(Freedom::force);
+            let [x, y, _] = problem.increments.map(Freedom::force);
             let starts = match &half {
                 Some(Ok(half)) if is_first => vec![refined(half, grid, &bound)],
-                _ if is_first && x.hypot(y) > 0.0 && task.slides() => {
+                _ if is_first && x.hypot(y) > 0.0 && problem.slides() => {
                     self.starts(motion, &normal, [x, y], friction, &traction)?
                 }
                 _ => vec![traction.clone()],
@@ -271,7 +273,7 @@ impl<'a> Session<'a> {
                 pressure: &normal.pressure,
                 gap: &gap,
             };
-            let solved = self.tractions(task, pressed, &starts, goal, &mut course);
+            let solved = self.tractions(problem, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
             }
@@ -288,18 +290,18 @@ impl<'a> Session<'a> {
             let (shape, mut watch) = (self.lifted(&traction), |_: &Report| course.tell());
             self.contact.compare(&mut normal, &shape, motion, &self.pressing(), &mut watch);
         }
-        self.finish(task, friction, (normal, solved), half, course)
+        self.finish(problem, friction, (normal, solved), half, course)
     }
 
     /// Tractions for a pressure, with what is left of the convolutions.
     fn tractions(
         &self,
-        task: &TractionTask,
+        problem: &TangentialProblem,
         pressed: PressedCells,
         starts: &[[Array2<f64>; 2]],
         tolerance: f64,
         course: &mut FrictionCourse,
-    ) -> Option<SolvedTask> {
+    ) -> Option<SolvedTractions> {
         let counted = course.report.convolutions;
         let effort =
             Effort { tolerance, most: self.options.max_convolutions.saturating_sub(counted) };
@@ -309,7 +311,7 @@ impl<'a> Session<'a> {
             course.report.imbalance = misfit.imbalance;
             course.tell()
         };
-        let solved = task.solve(&self.tangential, pressed, starts, effort, &mut watch)?;
+        let solved = problem.solve(&self.tangential, pressed, starts, effort, &mut watch)?;
         course.report.convolutions = counted + solved.solution.convolutions;
         course.report.imbalance = solved.solution.misfit.imbalance;
         Some(solved)
@@ -318,9 +320,9 @@ impl<'a> Session<'a> {
     /// The solution with its errors on the whole grid.
     fn finish(
         &self,
-        task: &TractionTask,
+        problem: &TangentialProblem,
         friction: &Friction,
-        (mut normal, solved): (Solution, Option<SolvedTask>),
+        (mut normal, solved): (Solution, Option<SolvedTractions>),
         half: Option<Halved>,
         course: FrictionCourse,
     ) -> Result<FrictionSolution> {
@@ -332,12 +334,12 @@ impl<'a> Session<'a> {
             pressure: &normal.pressure,
             gap: &normal.gap(),
         };
-        let mut fields = task.fields(&self.tangential, pressed, solved.as_ref());
+        let mut fields = problem.fields(&self.tangential, pressed, solved.as_ref());
         if !fields.are_finite() {
             return Err(Error::Overflow);
         }
         if course.stopped {
-            fields.restore(task);
+            fields.restore(problem);
         }
         let is_good = fields.violation <= tolerance + ROUNDING
             && course.report.imbalance <= tolerance + ROUNDING
@@ -360,7 +362,7 @@ impl<'a> Session<'a> {
             seconds: course.start.elapsed().as_secs_f64(),
             ..course.report
         };
-        let warning = fields.warning(task, grid, &normal.pressure);
+        let warning = fields.warning(problem, grid, &normal.pressure);
         let warnings = &mut normal.report.warnings;
         warnings.retain(|warning| !matches!(warning, Warning::LargeMotion { .. }));
         warnings.extend(warning);
@@ -374,7 +376,7 @@ impl<'a> Session<'a> {
             report,
         };
         if let Some(half) = half.filter(|_| solution.report.converged()) {
-            let [along, across, _] = task.increments;
+            let [along, across, _] = problem.increments;
             let loaded = [along, across].map(|freedom| matches!(freedom, Freedom::Loaded(_)));
             match half.and_then(|half| discretisation(&solution, &half, loaded)) {
                 Ok(errors) => solution.report.discretisation = Some(errors),
@@ -388,8 +390,8 @@ impl<'a> Session<'a> {
 
     /// Steady rolling to second order on cells of twice the length, which starts from cells of four times the length, and so
     /// on; `None` for other problems.
-    fn halved(&self, task: &TractionTask, course: &mut FrictionCourse) -> Option<Halved> {
-        let rolling = task.rolling.filter(|_| task.is_steady && task.is_second_order)?;
+    fn halved(&self, problem: &TangentialProblem, course: &mut FrictionCourse) -> Option<Halved> {
+        let rolling = problem.rolling.filter(|_| problem.is_steady && problem.is_second_order)?;
         let grid = self.contact.grid();
         let [rows, columns] = grid.shape();
         if columns < 2 * LEAST || !grid.is_line() && rows < 2 * LEAST {
@@ -408,9 +410,9 @@ impl<'a> Session<'a> {
                 Session { compares: false, ..Session::new(&contact, self.shape, options)? };
             let friction = coarse_friction(&rolling.friction, grid, contact.grid());
             let rolling = Rolling { friction, ..rolling.clone() };
-            let task = session.roll(&rolling, true, None)?;
+            let problem = session.roll(&rolling, true, None)?;
             let mut progress = |_: &FrictionReport| course.tell();
-            session.settle(&task, &rolling.motion, &rolling.friction, [None; 2], &mut progress)
+            session.settle(&problem, &rolling.motion, &rolling.friction, [None; 2], &mut progress)
         };
         Some(solve().map_err(|_| Unestimated::Unsolved))
     }

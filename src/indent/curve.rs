@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::change::{Held, Variable};
+use super::derivatives::{Held, Variable};
 use super::equation::stack::IndentParameter;
 use super::indenter::Indent;
 use super::point::{IndentWarning, Point};

@@ -7,10 +7,10 @@ use spec_math::cephes64::j1;
 
 use crate::error::{Error, Result, finite, refuse_if, require};
 use crate::indent::adhesion::{Adhesion, Branch, Control};
-use crate::indent::density::{WHOLE, Zone, bessel_sum};
 use crate::indent::equation::stack::Stack;
 use crate::indent::equation::{Parts, bracketed, times};
 use crate::indent::point::{Point, PullOff};
+use crate::indent::pressure::{WHOLE, Zone, bessel_sum};
 use crate::indent::tip::Tip;
 use crate::numerics::parallel::dot;
 use crate::numerics::roots::newton;

@@ -4,9 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::density::{Answer, Density, WHOLE, Zone, bessel_sum};
 use super::equation::stack::StackLevel;
 use super::equation::{Parts, add, times};
+use super::pressure::{Answer, Density, WHOLE, Zone, bessel_sum};
 use super::tip::Tip;
 use crate::error::{Result, not_negative};
 

@@ -5,9 +5,9 @@ use std::f64::consts::FRAC_PI_2;
 use super::equation::basis::Break;
 use crate::error::{Result, positive, require};
 
-mod term;
+mod profile_terms;
 
-use term::ProfileTerm;
+use profile_terms::ProfileTerm;
 
 /// An axisymmetric tip.
 ///
@@ -60,8 +60,10 @@ impl Tip {
                 vec![ProfileTerm::Hinge { at: *flat, curvature: 1.0 / radius }]
             }
             Form::FlatCone { flat, slope } => vec![ProfileTerm::Step { at: *flat, slope: *slope }],
-            Form::Profile { radii, heights } => term::profile(radii, heights)?,
-            Form::Area { coefficients, depth } => term::area_function(coefficients, *depth)?,
+            Form::Profile { radii, heights } => profile_terms::profile(radii, heights)?,
+            Form::Area { coefficients, depth } => {
+                profile_terms::area_function(coefficients, *depth)?
+            }
         };
         let mut kinks: Vec<f64> = terms.iter().filter_map(ProfileTerm::kink).collect();
         kinks.sort_by(f64::total_cmp);
@@ -153,7 +155,9 @@ impl Tip {
             Form::Sphere { radius } => [0.0, *radius],
             Form::RoundedPunch { flat, .. } | Form::FlatCone { flat, .. } => [*flat, f64::INFINITY],
             Form::Profile { radii, .. } => [0.0, radii[radii.len() - 1]],
-            Form::Area { coefficients, depth } => [0.0, term::radius(coefficients, *depth)],
+            Form::Area { coefficients, depth } => {
+                [0.0, profile_terms::radius(coefficients, *depth)]
+            }
             _ => [0.0, f64::INFINITY],
         }
     }

@@ -26,9 +26,9 @@ use std::ops::Range;
 
 use ndarray::Array2;
 
-use super::beside::{Beside, Sampled};
 use super::field::{Bound, Extreme};
 use super::options::{StressOptions, StressProgress, WatchedStress};
+use super::outside_patch::{OutsidePatch, Sampled};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::section::Span;
 use super::subcell::BodyPair;
@@ -313,7 +313,8 @@ impl Refined<'_> {
                     .map(|cell| (cell - patch.window[axis].start) * finer[axis]);
                 start..end
             });
-            let beside = Beside { grid: self.solution.grid(), parts, core, fields: Vec::new() };
+            let beside =
+                OutsidePatch { grid: self.solution.grid(), parts, core, fields: Vec::new() };
             let scope = Scope {
                 beside: Some(beside),
                 half_width: whole.whole.half_width(),

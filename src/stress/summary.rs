@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use super::beside::Beside;
-use super::beyond::Beyond;
 use super::field::{Extreme, Largest, LargestWithError, Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
+use super::outside_grid::OutsideGrid;
+use super::outside_patch::OutsidePatch;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::{CellPoint, LocalSteps, STRESSES, StepErrors, around};
 use crate::compliance::response::interior::Place;
@@ -335,7 +335,7 @@ pub(super) fn summary_once(
 /// What is evaluated of a plan.
 pub(super) struct Scope<'a> {
     /// What the plan's stress lacks, and the cells that count.
-    pub(super) beside: Option<Beside<'a>>,
+    pub(super) beside: Option<OutsidePatch<'a>>,
     /// Cells that do not count.
     pub(super) without: &'a [Window],
     /// Half-width of the contact, for which depths are chosen.
@@ -536,7 +536,7 @@ struct Planes<'a, 'b> {
     done: usize,
     /// Planes that are evaluated at most, but for those below an interface.
     planned: usize,
-    beyond: Beyond<'a>,
+    beyond: OutsideGrid<'a>,
 }
 
 impl<'a, 'b> Planes<'a, 'b> {
@@ -575,7 +575,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             progress,
             done: 0,
             planned,
-            beyond: Beyond::new(plan, friction),
+            beyond: OutsideGrid::new(plan, friction),
         }
     }
 
@@ -875,7 +875,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     }
 
     /// The peaks at the last of `places`, which are the extremes from number `from` of those that were begun, or larger ones
-    /// beyond the grid: [`Beyond::peaks`].
+    /// beyond the grid: [`OutsideGrid::peaks`].
     fn with_beyond<const N: usize, const K: usize>(
         &mut self,
         (from, peaks, best): (usize, [Extreme; N], [f64; N]),

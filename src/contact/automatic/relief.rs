@@ -3,7 +3,7 @@
 use ndarray::Axis;
 
 use crate::compliance::influence::CellInfluence;
-use crate::contact::automatic::task::{Frame, Task, enclosing};
+use crate::contact::automatic::trial::{Frame, Trial, enclosing};
 use crate::contact::plan::bodies;
 use crate::contact::problem::patch::block;
 use crate::contact::solution::Solution;
@@ -217,8 +217,8 @@ pub(super) struct Overlap {
 
 /// Places outside `frame`, which holds the contact of `solution`, where the shape overlaps the deformed surface;
 /// `None` where it does so nowhere.
-pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<Option<Overlap>> {
-    let relief = Relief::new(task.shape, solution.tilt);
+pub(super) fn overlap(trial: &Trial, solution: &Solution, frame: Frame) -> Result<Option<Overlap>> {
+    let relief = Relief::new(trial.shape, solution.tilt);
     let mut lows = relief.lows_outside(frame);
     // Pressure pushes the surface away, so that only these can touch.
     lows.retain(|low| low.gap < solution.approach);
@@ -227,7 +227,7 @@ pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<
     }
     let pressed = Pressed::by(solution);
     let reach = lows.iter().fold(0.0, |reach: f64, low| reach.max(pressed.farthest(low.at)));
-    let bodies = pressed.plan(task, reach)?;
+    let bodies = pressed.plan(trial, reach)?;
     let mut overlap: Option<Overlap> = None;
     for low in lows {
         let displacement: f64 = bodies.iter().map(|body| pressed.displacement(body, low.at)).sum();
@@ -279,11 +279,11 @@ impl Pressed {
     }
 
     /// The influence of one block on each of the two bodies, for offsets up to `reach`.
-    fn plan(&self, task: &Task, reach: f64) -> Result<Vec<CellInfluence>> {
+    fn plan(&self, trial: &Trial, reach: f64) -> Result<Vec<CellInfluence>> {
         if self.blocks.is_empty() {
             return Ok(Vec::new());
         }
-        let bodies = bodies(task.body, task.setup).into_iter().cloned();
+        let bodies = bodies(trial.body, trial.setup).into_iter().cloned();
         bodies.map(|body| CellInfluence::plan(body, self.sides, reach)).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use crate::compliance::response::Body;
 use crate::contact::automatic::relief::{Low, Overlap, Relief, limited};
-use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
+use crate::contact::automatic::trial::{Frame, Trial, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
 use crate::contact::plan::bodies;
 use crate::contact::solution::{Progress, Solution};
@@ -44,17 +44,17 @@ const ENLARGEMENTS: usize = 10;
 /// Reductions of the coarse grid around a contact that is small on it, by a factor of 4/3 at least.
 const REDUCTIONS: usize = 40;
 
-/// The search for the grid of one task. It remembers the places that the grid must hold.
+/// The search for the grid of one trial. It remembers the places that the grid must hold.
 pub(super) struct Search<'a> {
-    task: Task<'a>,
+    trial: Trial<'a>,
     options: Options,
     extent: [Extent; 2],
     overlap_frame: Option<Frame>,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(task: Task<'a>, options: &Options) -> Result<Self> {
-        let extent = task.shape.extent();
+    pub(super) fn new(trial: Trial<'a>, options: &Options) -> Result<Self> {
+        let extent = trial.shape.extent();
         if extent.contains(&Extent::Endless) {
             return Err(Error::Inconsistent(
                 "grid must be given for a shape without end: its contact is as long as the grid",
@@ -63,7 +63,7 @@ impl<'a> Search<'a> {
         // Options that only the real grid can meet are checked here and left out.
         options.stop_criteria()?;
         Ok(Self {
-            task,
+            trial,
             options: Options {
                 tolerance: FRAME_TOLERANCE,
                 initial: None,
@@ -78,7 +78,7 @@ impl<'a> Search<'a> {
 
     /// The grid that is found from the shape alone.
     pub(super) fn grid(&mut self, progress: &mut Progress) -> Result<Grid> {
-        let frame = first_frame(&self.task)?;
+        let frame = first_frame(&self.trial)?;
         self.fit(frame, progress)
     }
 
@@ -98,9 +98,9 @@ impl<'a> Search<'a> {
         let (mut enlargements, mut reductions, mut elsewhere) = (0, 0, false);
         loop {
             let cells = if self.overlap_frame.is_some() { OVERLAP_CELLS } else { COARSE_CELLS };
-            let grid = self.task.grid_over(frame, [cells; 2])?;
+            let grid = self.trial.grid_over(frame, [cells; 2])?;
             frame = frame_of(&grid);
-            let solution = self.task.solve(grid, &self.options, progress)?;
+            let solution = self.trial.solve(grid, &self.options, progress)?;
             let Some(contact) = solution.cells_in_contact() else {
                 // Nothing touches there: where nothing overlaps anywhere, any grid shows that.
                 match self.deepest().filter(|_| !elsewhere) {
@@ -161,8 +161,8 @@ impl<'a> Search<'a> {
     /// A rectangle around the place where the shape overlaps the undeformed surface most; `None` where it overlaps
     /// nowhere, or where the motion is not prescribed.
     fn deepest(&self) -> Option<Frame> {
-        let (approach, tilt) = self.task.prescribed()?;
-        let (relief, region, lows) = survey(&self.task, tilt);
+        let (approach, tilt) = self.trial.prescribed()?;
+        let (relief, region, lows) = survey(&self.trial, tilt);
         let deepest = lows.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
         let frame = relief.below(&[deepest], approach, region)?;
         Some(limited(frame, self.extent))
@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
             // Even, so that the middle of a symmetric contact lies between cells.
             count.next_multiple_of(2)
         });
-        self.task.grid_over(frame, self.task.at_most(shape))
+        self.trial.grid_over(frame, self.trial.at_most(shape))
     }
 }
 
@@ -213,20 +213,20 @@ pub(super) fn moved_out([low, high]: [f64; 2], sides: [bool; 2], distance: f64) 
 }
 
 /// The middle of the shape, or the point where the load acts, where it lies on the shape.
-fn middle(task: &Task) -> [f64; 2] {
-    let extent = task.shape.extent();
+fn middle(trial: &Trial) -> [f64; 2] {
+    let extent = trial.shape.extent();
     std::array::from_fn(|axis| {
         let [low, high] = extent[axis].range();
         let middle = if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 };
-        task.motion.eccentricity[axis].filter(|e| *e > low && *e < high).unwrap_or(middle)
+        trial.motion.eccentricity[axis].filter(|e| *e > low && *e < high).unwrap_or(middle)
     })
 }
 
 /// The low places of the whole shape with a given tilt, and the rectangle in which they were looked for.
-fn survey<'a>(task: &Task<'a>, tilt: [f64; 2]) -> (Relief<'a>, Frame, Vec<Low>) {
-    let relief = Relief::new(task.shape, tilt);
-    let middle = middle(task);
-    let radii = task.shape.radii().into_iter().filter(|r| r.is_finite());
+fn survey<'a>(trial: &Trial<'a>, tilt: [f64; 2]) -> (Relief<'a>, Frame, Vec<Low>) {
+    let relief = Relief::new(trial.shape, tilt);
+    let middle = middle(trial);
+    let radii = trial.shape.radii().into_iter().filter(|r| r.is_finite());
     let region = relief.region(middle, radii.reduce(f64::max).unwrap_or(1.0));
     let lows = relief.lows(region, middle);
     (relief, region, lows)
@@ -236,15 +236,15 @@ fn survey<'a>(task: &Task<'a>, tilt: [f64; 2]) -> (Relief<'a>, Frame, Vec<Low>) 
 /// the load by the estimate W = 2 E* δ √(a b), which holds for a flat square punch within 10 %. Where a motion
 /// is prescribed with which nothing overlaps in the middle of the shape: the rectangle around all places that
 /// overlap.
-fn first_frame(task: &Task) -> Result<Frame> {
-    let (extent, radii) = (task.shape.extent(), task.shape.radii());
-    let center = middle(task);
-    let relief = Relief::new(task.shape, task.tilt());
+fn first_frame(trial: &Trial) -> Result<Frame> {
+    let (extent, radii) = (trial.shape.extent(), trial.shape.radii());
+    let center = middle(trial);
+    let relief = Relief::new(trial.shape, trial.tilt());
     let base = relief.gap(center);
-    if let Some((approach, tilt)) = task.prescribed()
+    if let Some((approach, tilt)) = trial.prescribed()
         && base >= approach
     {
-        let (relief, region, lows) = survey(task, tilt);
+        let (relief, region, lows) = survey(trial, tilt);
         if let Some(frame) = relief.below(&lows, approach, region) {
             return Ok(limited(frame, extent));
         }
@@ -268,8 +268,8 @@ fn first_frame(task: &Task) -> Result<Frame> {
             width
         })
     };
-    let approach = match (task.motion.load, task.motion.approach) {
-        (Some(load), _) => approach_under(load, task, &widths),
+    let approach = match (trial.motion.load, trial.motion.approach) {
+        (Some(load), _) => approach_under(load, trial, &widths),
         (None, Some(approach)) => (approach - base).max(0.0),
         (None, None) => 0.0,
     };
@@ -294,11 +294,11 @@ fn first_frame(task: &Task) -> Result<Frame> {
 }
 
 /// The approach that carries the load, by the estimate of [`first_frame`], for half-widths at each approach.
-fn approach_under(load: f64, task: &Task, widths: &impl Fn(f64) -> [f64; 2]) -> f64 {
+fn approach_under(load: f64, trial: &Trial, widths: &impl Fn(f64) -> [f64; 2]) -> f64 {
     let carries = |approach: f64| {
         let [a, b] = widths(approach);
         let half = (a * b).sqrt();
-        4.0 * approach * half / compliance(task, 1.0 / half)
+        4.0 * approach * half / compliance(trial, 1.0 / half)
     };
     let mut approach = 1.0;
     while approach > 1e-30 && carries(approach) > load {
@@ -312,7 +312,7 @@ fn approach_under(load: f64, task: &Task, widths: &impl Fn(f64) -> [f64; 2]) -> 
 
 /// α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the response itself,
 /// and the local compliance.
-fn compliance(task: &Task, alpha: f64) -> f64 {
+fn compliance(trial: &Trial, alpha: f64) -> f64 {
     let of = |body: &Body| {
         let limits = body.asymptotes();
         let larger = match limits.short.max(limits.long) {
@@ -321,5 +321,5 @@ fn compliance(task: &Task, alpha: f64) -> f64 {
         };
         larger + alpha * body.local()
     };
-    bodies(task.body, task.setup).into_iter().map(of).sum()
+    bodies(trial.body, trial.setup).into_iter().map(of).sum()
 }

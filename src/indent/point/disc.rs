@@ -15,8 +15,8 @@ use std::f64::consts::PI;
 use super::Point;
 use crate::error::{Error, Result};
 use crate::indent::adhesion::Adhesion;
-use crate::indent::density::{Density, WHOLE, oscillating};
 use crate::indent::equation::basis::Waves;
+use crate::indent::pressure::{Density, WHOLE, oscillating};
 use crate::numerics::special::chebyshev_nodes;
 
 /// Nodes of a panel. What oscillates is analytic up to two thicknesses from the real axis, so that eight nodes on a panel of one

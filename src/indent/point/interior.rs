@@ -4,10 +4,10 @@ use spec_math::cephes64::{j0, j1};
 
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
-use crate::indent::density::WHOLE;
 use crate::indent::equation::add;
 use crate::indent::equation::basis::{Panel, Waves};
 use crate::indent::point::{Point, check_distances};
+use crate::indent::pressure::WHOLE;
 use crate::indent::tip::FEW_KINKS;
 use crate::numerics::quadrature::Rule;
 

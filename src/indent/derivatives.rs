@@ -24,10 +24,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::Adhesion;
-use super::density::{Answer, Density, Rate, WHOLE, Zone, bessel_sum};
 use super::equation::stack::{IndentParameter, StackLevel};
 use super::equation::{add, times};
 use super::point::{Point, check_distances};
+use super::pressure::{Answer, Density, Rate, WHOLE, Zone, bessel_sum};
 use super::tip::TipParameter;
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;

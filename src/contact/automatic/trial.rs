@@ -26,7 +26,7 @@ pub(super) fn frame_of(grid: &Grid) -> Frame {
 
 /// A shape that is pressed into a body.
 #[derive(Clone, Copy)]
-pub(super) struct Task<'a> {
+pub(super) struct Trial<'a> {
     pub(super) shape: &'a dyn Surface,
     pub(super) body: &'a Body,
     pub(super) setup: &'a Setup,
@@ -37,7 +37,7 @@ pub(super) struct Task<'a> {
     pub(super) most: usize,
 }
 
-impl Task<'_> {
+impl Trial<'_> {
     /// A grid over the part of a rectangle that lies between the ends of the bodies. Cells of the rectangle are no
     /// smaller.
     pub(super) fn grid_over(&self, frame: Frame, shape: [usize; 2]) -> Result<Grid> {

@@ -29,7 +29,7 @@ const ROLLING_BYTES: u64 = 1200;
 
 /// What is asked of the tangential motion.
 #[derive(Debug)]
-pub(super) struct TractionTask<'a> {
+pub(super) struct TangentialProblem<'a> {
     /// Rolling; `None` in sliding.
     pub(super) rolling: Option<&'a Rolling>,
     /// Whether rolling is steady, so that no state comes before.
@@ -82,7 +82,7 @@ pub(super) struct PressedCells<'a> {
     pub(super) gap: &'a Array2<f64>,
 }
 
-impl TractionTask<'_> {
+impl TangentialProblem<'_> {
     pub(super) fn slides(&self) -> bool {
         self.rolling.is_none()
     }
@@ -270,7 +270,7 @@ impl TractionTask<'_> {
         starts: &[[Array2<f64>; 2]],
         effort: Effort,
         watch: &mut ConvolutionWatch,
-    ) -> Option<SolvedTask> {
+    ) -> Option<SolvedTractions> {
         let window = self.window(pressed.bound, pressed.spreading)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
         let law = Law { bound: cut(pressed.bound, &window) };
@@ -302,7 +302,7 @@ impl TractionTask<'_> {
                 *moved = *loaded.next()?;
             }
         }
-        Some(SolvedTask { window, cells: operators.cells(), solution, moved })
+        Some(SolvedTractions { window, cells: operators.cells(), solution, moved })
     }
 
     /// The problem on a window: what the displacements must be, and the columns and forces of the loaded degrees of freedom.
@@ -354,7 +354,7 @@ impl TractionTask<'_> {
         &self,
         tangential: &Tangential,
         pressed: PressedCells,
-        solved: Option<&SolvedTask>,
+        solved: Option<&SolvedTractions>,
     ) -> FrictionFields {
         let grid = pressed.grid;
         let shape = grid.shape();
@@ -385,7 +385,7 @@ impl TractionTask<'_> {
         let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
         let unit = self.direction().map_or(1.0, |d| 1.0 / spacing[d.axis()]);
         let mut states = vec![CellState::Free; cells];
-        for (cell, state) in solved.into_iter().flat_map(SolvedTask::states) {
+        for (cell, state) in solved.into_iter().flat_map(SolvedTractions::states) {
             states[place(0, cell)] = *state;
         }
         // −s d
@@ -411,7 +411,7 @@ impl TractionTask<'_> {
         let mut slip = zeros(shape);
         let (mut violation, mut scale, mut excess, mut most) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let mut full_slip = solved.is_some();
-        for (cell, state) in solved.into_iter().flat_map(SolvedTask::states) {
+        for (cell, state) in solved.into_iter().flat_map(SolvedTractions::states) {
             if *state == CellState::Free {
                 continue;
             }
@@ -459,7 +459,7 @@ impl TractionTask<'_> {
 }
 
 /// A solved problem on its window.
-pub(super) struct SolvedTask {
+pub(super) struct SolvedTractions {
     window: Window,
     cells: usize,
     pub(super) solution: TractionResult,
@@ -467,7 +467,7 @@ pub(super) struct SolvedTask {
     moved: [f64; 3],
 }
 
-impl SolvedTask {
+impl SolvedTractions {
     /// Cells of the window, and what they do.
     fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
         each_cell(&self.window).map(|(i, j)| [i, j]).zip(&self.solution.states)
@@ -511,7 +511,7 @@ impl FrictionFields {
     /// The warning of creepages or a twist that are not small, where `pressure` is.
     pub(super) fn warning(
         &self,
-        task: &TractionTask,
+        problem: &TangentialProblem,
         grid: &Grid,
         pressure: &Array2<f64>,
     ) -> Option<Warning> {
@@ -521,7 +521,7 @@ impl FrictionFields {
                 let (x, y) = (grid.x(), grid.y());
                 let touching = pressure.indexed_iter().filter(|(_, p)| **p > 0.0);
                 touching.fold(0.0_f64, |most, ((i, j), _)| {
-                    let unit = task.unit_motions([x[i], y[j]]);
+                    let unit = problem.unit_motions([x[i], y[j]]);
                     let along = |axis: usize| {
                         creepage[0] * unit[0][axis]
                             + creepage[1] * unit[1][axis]
@@ -535,11 +535,11 @@ impl FrictionFields {
     }
 
     /// Brings back the state before the step, where there was one: the history can continue from there.
-    pub(super) fn restore(&mut self, task: &TractionTask) {
-        if task.is_steady {
+    pub(super) fn restore(&mut self, problem: &TangentialProblem) {
+        if problem.is_steady {
             return;
         }
-        let before = &task.before;
+        let before = &problem.before;
         self.traction.clone_from(&before.traction);
         self.displacement.clone_from(&before.displacement);
         self.slip.iter_mut().for_each(|s| s.fill(0.0));

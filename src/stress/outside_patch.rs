@@ -60,7 +60,7 @@ impl Surface for Sampled {
 
 /// What the stress of a patch lacks, from plans on the whole grid, and the cells of the patch that count.
 #[derive(Debug)]
-pub(super) struct Beside<'a> {
+pub(super) struct OutsidePatch<'a> {
     pub(super) grid: &'a Grid,
     /// Plans, and the factor of each.
     pub(super) parts: Vec<(Evaluation<'a>, f64)>,
@@ -69,7 +69,7 @@ pub(super) struct Beside<'a> {
     pub(super) fields: Vec<Sampled>,
 }
 
-impl<'a> Beside<'a> {
+impl<'a> OutsidePatch<'a> {
     /// Evaluates the stress at `place`, and adds it in the cells of `grid` that count.
     pub(super) fn add(
         &mut self,

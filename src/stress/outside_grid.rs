@@ -2,7 +2,7 @@
 //!
 //! Where the largest value at a depth lies on the border of the grid, the plane is evaluated again on wider grids, each twice
 //! as wide as the last, until it lies within. Below layers that bend, a larger value may lie farther out than one within the
-//! grid: there wider grids are searched in any case, as far as the layers bend. Beyond the grid, the load is far: its cells
+//! grid: there wider grids are searched in any case, as far as the layers bend. OutsideGrid the grid, the load is far: its cells
 //! are taken as uniform, and merged into larger ones of the same force and moments. The method was derived here.
 
 use std::ops::ControlFlow;
@@ -38,7 +38,7 @@ const ACROSS: usize = 32;
 const BETWEEN: usize = 4;
 
 /// Error of stresses beyond the grid where the load is uniform over cells, and merged so that its third moments differ,
-/// as a part of the largest of them on that grid. Of 20 stacks, all extremes are within it (`tests/stress/beyond.rs` has
+/// as a part of the largest of them on that grid. Of 20 stacks, all extremes are within it (`tests/stress/outside_grid.rs` has
 /// some).
 const MERGING: f64 = 2e-3;
 
@@ -68,7 +68,7 @@ const WIDEST: usize = 52;
 
 /// What evaluates a plan beyond its grid.
 #[derive(Debug)]
-pub(super) struct Beyond<'a> {
+pub(super) struct OutsideGrid<'a> {
     plan: &'a StressPlan,
     friction: [f64; 2],
     /// Number of wider grids that are searched in any case, and at most.
@@ -80,7 +80,7 @@ pub(super) struct Beyond<'a> {
     wider: Vec<StressPlan>,
 }
 
-impl<'a> Beyond<'a> {
+impl<'a> OutsideGrid<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2]) -> Self {
         let slides = friction.iter().any(|f| *f != 0.0) || plan.known.is_some();
         let searched = searched(&plan.whole, slides);
