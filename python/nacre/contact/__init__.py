@@ -571,7 +571,7 @@ class Contact:
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
-                    solution = _finished(outcome, case["shape"], check, stacklevel=3)
+                    solution = _checked_solution(outcome, case["shape"], check, stacklevel=3)
                 except Exception as error:  # of the tolerance, or a warning that is one
                     error.add_note(f"in case {number}")
                     outcome, solution = error, getattr(error, "solution", None)
@@ -732,10 +732,14 @@ def _solved(keywords: dict[str, Any], plan: core.Plan | None = None) -> Solution
     keywords["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
     if callable(progress):
         keywords["progress"] = lambda *parts: progress(Report._of(parts))
-    return _finished(core.solve(keywords, plan), keywords["shape"], keywords["check"], stacklevel=4)
+    return _checked_solution(
+        core.solve(keywords, plan), keywords["shape"], keywords["check"], stacklevel=4
+    )
 
 
-def _finished(solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int) -> Solution:
+def _checked_solution(
+    solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int
+) -> Solution:
     """Issue the warnings of a solution, and return it if its tolerance was met."""
     for message in solved.warnings():
         warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)

@@ -319,7 +319,7 @@ def gradients(
     options
         Shape and tolerance.
     """
-    linear, keywords = linearised(solution, **options)
+    linear, keywords = linearisation(solution, **options)
     derivatives = linear.gradients([output for _, output in named_outputs], wrt)
     return [
         Gradient(
@@ -338,7 +338,7 @@ def gradients(
     ]
 
 
-def linearised(
+def linearisation(
     solution: Any, shape: core.Shape | None, tolerance: float
 ) -> tuple[core.Linear, dict[str, Any]]:
     """Return the linearisation of a solution, and its options with the shape that is known."""

@@ -24,7 +24,7 @@ from nacre.contact.gradient import (
     Output,
     described,
     gradients,
-    linearised,
+    linearisation,
 )
 from nacre.contact.stresses import Stressed
 from nacre.results import display, files, tables, values, vtk
@@ -199,7 +199,7 @@ class Report(Result):
         """Return the parts of a report with this state."""
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
-        state = values.named("report", data, cls._names(), cls._LATER)
+        state = values.with_names("report", data, cls._names(), cls._LATER)
         bodies: Any = []
         for name, kind in BODIES.items():
             encoded = state.pop(name)
@@ -208,7 +208,7 @@ class Report(Result):
             bodies.append(value)
         for name, keys in NESTED.items():
             if isinstance(state[name], Mapping):
-                state[name] = values.named(name, state[name], keys)
+                state[name] = values.with_names(name, state[name], keys)
         state |= {name: None for name in ENDLESS if state[name] == math.inf}
         return as_text("Report", state), *bodies
 
@@ -583,7 +583,7 @@ class Solution(Result, Stressed):
         """
         if not isinstance(directions, dict | None):
             raise TypeError("directions must be a dict of paths and their rates")
-        linear, keywords = linearised(self, shape, tolerance)
+        linear, keywords = linearisation(self, shape, tolerance)
         change = linear.jvp(list((directions or {}).items()), gap)
         return Direction(*change, MethodCall(self, "jvp", (directions, gap), keywords))
 

@@ -110,14 +110,14 @@ class Problem:
             if self.known and self.solves + cost > self.most:
                 raise Enough
             try:
-                self.known[key] = self.evaluated(np.array(x, dtype=np.float64))
+                self.known[key] = self.evaluate(np.array(x, dtype=np.float64))
             except Exception as error:
                 place_text = ", ".join(f"{k} = {v:.6g}" for k, v in self.by_name(x).items())
                 error.add_note(f"in nacre.design.optimise, at {place_text}")
                 raise
         return self.known[key]
 
-    def evaluated(self, x: Array) -> Point:
+    def evaluate(self, x: Array) -> Point:
         """Solve all cases, and their derivatives."""
         last = next(reversed(self.known.values())).solutions if self.known else None
         targets = [self.objective, *(output for output, _ in self.limits)]

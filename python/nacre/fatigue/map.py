@@ -20,12 +20,12 @@ from nacre.fatigue.criteria import Rule
 from nacre.fatigue.summary import (
     ESTIMATE,
     PLASTICITY,
+    assessment_of,
     checked_depths,
-    fitted,
     flag,
     in_region,
     numbers,
-    prepared,
+    read_fields,
     rule_of,
     unresolved,
     word,
@@ -91,7 +91,7 @@ class ShakedownMap(Tabular, Warned):
             return np.array([numbers(row) for row in rows])
 
         return cls(
-            **fitted(
+            **read_fields(
                 cls.__name__,
                 state,
                 friction=numbers,
@@ -253,7 +253,7 @@ def shakedown_map(
         raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
     if not np.isfinite(coefficients).all() or coefficients.min() < 0:
         raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
-    assessment = prepared(solution, (), rule, residual, body, direction, x, threads)
+    assessment = assessment_of(solution, (), rule, residual, body, direction, x, threads)
     ordered_depths = checked_depths(depths, assessment.rolling.body)
     regions = [
         region
@@ -276,7 +276,7 @@ def shakedown_map(
                 tell(i / len(regions))
             doubts: dict[str, None] = {}
             for k, rows in enumerate(
-                assessment.evaluated(region, ordered_depths, coefficients.tolist())
+                assessment.evaluate(region, ordered_depths, coefficients.tolist())
             ):
                 best = {
                     name: max(rows, key=lambda row, name=name: row.values[name])  # type: ignore[misc]

@@ -112,7 +112,7 @@ class LayerFatigue(Result):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         return cls(
-            **fitted(
+            **read_fields(
                 cls.__name__,
                 state,
                 layer=int,
@@ -222,7 +222,7 @@ class FatigueSummary(Tabular, Warned):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         return cls(
-            **fitted(
+            **read_fields(
                 cls.__name__,
                 state,
                 layers=lambda parts: [LayerFatigue._restored(one) for one in parts],
@@ -358,7 +358,9 @@ class FatigueSummary(Tabular, Warned):
         )
 
 
-def fitted(kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]) -> dict[str, Any]:
+def read_fields(
+    kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]
+) -> dict[str, Any]:
     """Return the fields of a kind of result from plain data; wrong ones are a `ValueError`."""
     fields = {}
     for key, read in readers.items():
@@ -538,7 +540,7 @@ class Assessment:
             )
         return rows
 
-    def evaluated(
+    def evaluate(
         self, region: Region, depths: Array | None, frictions: Sequence[float]
     ) -> list[list[Row]]:
         """Return what a layer needs at depths, or at chosen ones, for each coefficient."""
@@ -631,7 +633,7 @@ def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
     return ordered
 
 
-def prepared(
+def assessment_of(
     solution: Any,
     criteria: Iterable[Criterion],
     rule: Rule,
@@ -749,7 +751,7 @@ def assess(
     >>> sorted(substrate.safety_factors)
     ['DangVan', 'first_yield', 'shakedown']
     """
-    assessment = prepared(solution, criteria, rule, residual, body, direction, x, threads)
+    assessment = assessment_of(solution, criteria, rule, residual, body, direction, x, threads)
     limits = layer_values("shear_yield", shear_yield, assessment.rolling.body)
     for limit in limits:
         if limit is not None and not 0.0 < limit < np.inf:
@@ -770,13 +772,13 @@ def assess(
         for done, region in enumerate(regions):
             if tell is not None:
                 tell(done / len(regions))
-            rows_by_region += assessment.evaluated(region, ordered_depths, [float(friction)])
+            rows_by_region += assessment.evaluate(region, ordered_depths, [float(friction)])
         if tell is not None:
             tell(1.0)
-    return _summed(assessment, regions, rows_by_region, limits)
+    return _summarise(assessment, regions, rows_by_region, limits)
 
 
-def _summed(
+def _summarise(
     assessment: Assessment,
     regions: list[Region],
     rows_by_region: list[list[Row]],

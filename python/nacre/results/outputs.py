@@ -174,7 +174,7 @@ def errors(
     }
 
 
-def evaluated(
+def output_values(
     solution: Solution | FrictionSolution,
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],

@@ -181,10 +181,10 @@ def checked_state(
         raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
     if (stored_kind := state.pop("kind")) != kind:
         raise ValueError(f'the key "kind" must be "{kind}", got "{stored_kind}"')
-    return named(kind, state, names, later)
+    return with_names(kind, state, names, later)
 
 
-def named(
+def with_names(
     place: str, data: Mapping[str, Any], names: Collection[str], later: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return data with these names and no others; those of `later` may be missing, and are None."""

@@ -30,13 +30,13 @@ from nacre.results.outputs import (
     Output,
     Room,
     check_direction,
-    evaluated,
+    output_values,
     outputs_by_name,
     plain,
     rolls,
 )
-from nacre.studies.dataset import assembled, counted, laid_out
-from nacre.studies.identity import identified, key_of
+from nacre.studies.dataset import assemble, failure_lines, layout
+from nacre.studies.identity import identity_of, key_of
 from nacre.studies.journal import Journal, Record
 
 if TYPE_CHECKING:
@@ -187,7 +187,7 @@ def sweep(
     if path is not None and path.suffix.lower() != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
     _check_store(path)
-    coordinates, points = laid_out(parameters)
+    coordinates, points = layout(parameters)
     if isinstance(case, Mapping):
         _check_paths(case, points)
     room = _room(case, points) if outputs is None or isinstance(case, Mapping) else None
@@ -210,7 +210,7 @@ def sweep(
             version = core.integer("version", version)
         except TypeError:
             raise TypeError(f"version must be a text or an integer, got {version!r}") from None
-    identity = identified(checked_outputs, stress_options, fatigue_options, version)
+    identity = identity_of(checked_outputs, stress_options, fatigue_options, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
         message = (
@@ -249,14 +249,14 @@ def sweep(
             ):
                 advance()
         records = [journal.records[key] for key in keys]
-        dataset = assembled(coordinates, records, checked_outputs)
+        dataset = assemble(coordinates, records, checked_outputs)
         if path is not None:
             from nacre._tools.disk import STUDY, replacing, write_dataset
 
             _check_store(path)  # hours later
             with replacing(path) as temporary:
                 write_dataset(dataset, temporary, STUDY)
-    for line in counted(records):
+    for line in failure_lines(records):
         warnings.warn(line, core.NacreWarning, stacklevel=2)
     return dataset
 
@@ -317,7 +317,7 @@ def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
                 f"dict(shape=..., body=..., load=...), got {keywords!r:.80}"
             )
         return dict(keywords)
-    arguments, paths = _opened(case, point)
+    arguments, paths = _split_paths(case, point)
     for path in paths:
         arguments |= core.with_value(_holder(arguments, path), path, point[path])
     if isinstance(fields := arguments.get("bearing"), dict):  # made once: its numbers go together
@@ -325,7 +325,9 @@ def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
     return arguments
 
 
-def _opened(case: Mapping[str, Any], point: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def _split_paths(
+    case: Mapping[str, Any], point: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[str]]:
     """Return arguments before the numbers at paths are replaced, and the paths.
 
     A bearing that holds such numbers is a dictionary of its fields.
@@ -349,10 +351,10 @@ def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
 
 def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -> None:
     """Raise a `ValueError` if a path leads to a number in none of the cases."""
-    for path in _opened(case, points[0])[1]:
+    for path in _split_paths(case, points[0])[1]:
         wrong: ValueError | None = None
         for point in points:
-            arguments, _ = _opened(case, point)
+            arguments, _ = _split_paths(case, point)
             try:
                 _holder(arguments, path)
                 break
@@ -479,7 +481,7 @@ def _solve(
         unresolved: list[str] = []
         threads = {"threads": arguments["threads"]}
         rate = partial(assess, solution, **threads, **fatigue)
-        values = evaluated(solution, outputs, threads | stress, unresolved, rate)
+        values = output_values(solution, outputs, threads | stress, unresolved, rate)
         kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
         record = {
             "values": values,

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
+def layout(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
     """Return the coordinates of a study, and the parameters of each of its cases in order."""
     import xarray
 
@@ -50,8 +50,8 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
             if isinstance(parameter, Mapping):
                 labels, values[name] = [str(label) for label in parameter], list(parameter.values())
             else:
-                is_table = hasattr(parameter, "to_numpy")
-                rows = parameter.to_numpy() if is_table else parameter
+                # A column of a table has this method.
+                rows = parameter.to_numpy() if hasattr(parameter, "to_numpy") else parameter
                 values[name] = [v.item() if isinstance(v, np.generic) else v for v in rows]
                 labels = values[name]
                 kinds = {type(v) for v in labels}
@@ -78,13 +78,13 @@ def laid_out(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[s
     return dataset, points
 
 
-def assembled(
+def assemble(
     coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
 ) -> xarray.Dataset:
     """Return the Dataset of all cases; that of bearings is in SI."""
     if any(record.get("bears") for record in records) and system() is not SI:
         with Within(SI):
-            return assembled(coordinates, records, outputs)
+            return assemble(coordinates, records, outputs)
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
@@ -145,7 +145,7 @@ def assembled(
     return dataset
 
 
-def counted(records: Sequence[Record]) -> list[str]:
+def failure_lines(records: Sequence[Record]) -> list[str]:
     """Return a line on the cases that failed and a line on the cases with warnings, by kind."""
     lines = []
     if failed := sum("error" in record for record in records):

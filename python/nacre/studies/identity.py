@@ -30,7 +30,7 @@ class Identity(NamedTuple):
     """Descriptions of what the data cannot tell apart."""
 
 
-def identified(
+def identity_of(
     outputs: Mapping[str, Any],
     stress: Mapping[str, Any],
     fatigue: Mapping[str, Any],
