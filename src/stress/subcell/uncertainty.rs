@@ -13,8 +13,9 @@
 //! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
 //! taken as uniform. Where an edge is reconstructed it is a thirtieth, and as much more as the bodies
 //! respond otherwise to a wave than to waves of a cell, from which the edge was found; a hundredth in the
-//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half:
-//! the surface beside a cell that the edge crosses sees the whole error. A step on cells of side d holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
+//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, or where the
+//! pressure is, it is a half: the surface beside a cell that the edge crosses sees the whole error. A step on cells of side d
+//! holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
 //! reaches a depth z with the transfer of the layered body, (1 + αz) e^{−αz} and the like:
 //!
 //! ```text
@@ -319,14 +320,21 @@ impl Uncertainty {
                 });
                 let (q, u) = fields.twist;
                 let twisted = friction * q.abs().max((material.shear() * u).abs());
-                let largest = |slides: bool| {
+                // The largest error with these shares of the pressure and of the tractions.
+                let largest = |of_pressure: f64, of_tractions: f64| {
                     let pairs = pressed.iter().zip(&sheared);
-                    let sums = pairs.map(|(p, s)| if slides { p + friction * s } else { *p });
-                    sums.fold(if slides { twisted } else { 0.0 }, f64::max)
+                    let sums = pairs.map(|(p, s)| of_pressure * p + of_tractions * friction * s);
+                    sums.fold(of_tractions * twisted, f64::max)
                 };
-                let of_pressure = largest(!uniform);
-                for (error, share) in errors.pressure[axis].iter_mut().zip(wave.shares) {
-                    *error = error.max(share * of_pressure);
+                for (known, (error, share)) in
+                    errors.pressure[axis].iter_mut().zip(wave.shares).enumerate()
+                {
+                    let of_tractions = match known == Known::Mean as usize {
+                        _ if uniform => 0.0,
+                        true => wave.uniform,
+                        false => share,
+                    };
+                    *error = error.max(largest(share, of_tractions));
                 }
                 if uniform {
                     let sheared = sheared.iter().fold(0.0, |a: f64, s| a.max(friction * s));
