@@ -16,7 +16,7 @@ from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
 from nacre.results.base import checked
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.quantities import CREEP
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ __all__ = ["creep_coefficients", "creep_curve", "history"]
 
 
 @dataclass(frozen=True, repr=False)
-class CreepCoefficients(Listed):
+class CreepCoefficients(TableResult):
     """Kalker's linear coefficients of an elliptic contact, with their estimated errors.
 
     Examples

@@ -21,7 +21,7 @@ from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.hertz import contact_modulus
 from nacre.results import display
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
 from nacre.results.quantities import ROUGHNESS
 
@@ -197,7 +197,7 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
 
 
 @dataclass(frozen=True, repr=False)
-class Roughness(Listed):
+class Roughness(TableResult):
     """Height parameters of a map, about its mean, and its slope and curvature."""
 
     _QUANTITIES = ROUGHNESS

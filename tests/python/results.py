@@ -13,7 +13,7 @@ import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre import fatigue
 from nacre.indent import Adhesion, Curve, Fit, Indentation, OliverPharr, Tip, fit, oliver_pharr
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.quantities import AXIS, Quantity
 
 DLC = nacre.Elastic(420e9, 0.25)
@@ -101,7 +101,7 @@ INDENT: dict[str, Callable[[], nacre.indent.IndentSolution]] = {
 
 
 @dataclass(frozen=True, repr=False)
-class Tried(Listed):
+class Tried(TableResult):
     """A result that no Rust knows: everything follows from its fields and quantities."""
 
     _QUANTITIES = (

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from nacre.bearing.geometry import Bearing, Ring
 from nacre.bearing.iso import rating
 from nacre.bearing.solution import BearingSolution
-from nacre.bearing.solving import solved
+from nacre.bearing.solving import solve_bearing
 
 Along = Sequence[float | None] | None
 
@@ -107,4 +107,4 @@ class Solvable(Bearing):
         >>> round(float(standard.loads.max()))
         1929
         """
-        return solved(self, locals())
+        return solve_bearing(self, locals())

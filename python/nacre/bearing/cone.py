@@ -122,10 +122,10 @@ def check_carried(
     if not load.any() or _is_within(cone, load):
         return
     rows = np.flatnonzero(free)
-    for wanted in ((2, 3, 4), (0, 1)):  # thrust and moments; forces across where these do not help
+    for axes in ((2, 3, 4), (0, 1)):  # thrust and moments; forces across where these do not help
         bounds = []
         for k, row in enumerate(rows):
-            if row in wanted and (change := _change(cone, load, k)) is not None:
+            if row in axes and (change := _change(cone, load, k)) is not None:
                 bound = loads[row] + change / units[row]
                 bound = 0.0 if abs(bound) < OUTSIDE * abs(change) else _rounded(bound, change)
                 side = "least" if change > 0 else "most"

@@ -106,9 +106,9 @@ class Rollers:
 
     def places(self, moved: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        found = np.stack([moved - own, own], axis=1)
-        found[..., 0] -= self.play / 4
-        return Places(found, self.jacobian, self.curvature)
+        coordinates = np.stack([moved - own, own], axis=1)
+        coordinates[..., 0] -= self.play / 4
+        return Places(coordinates, self.jacobian, self.curvature)
 
     def angles(self, moved: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
@@ -228,8 +228,8 @@ Kinematics = Rollers | Balls
 
 def kinematics_of(bearing: Any, angles: Array) -> Kinematics:
     """Return the motion of the elements of a bearing at their angles."""
-    made = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
-    return made(bearing, angles)
+    kind = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
+    return kind(bearing, angles)
 
 
 @dataclass
@@ -285,14 +285,14 @@ class Problem:
         """Return what holds at a displacement and positions."""
         kinematics = self.kinematics
         moved = kinematics.motion @ ring
-        found = kinematics.places(moved, own)
-        reaction = self.law(found.places)
-        gradient = np.einsum("zrak,zra->zk", found.jacobian, reaction.force)
+        places = kinematics.places(moved, own)
+        reaction = self.law(places.places)
+        gradient = np.einsum("zrak,zra->zk", places.jacobian, reaction.force)
         gradient[:, 2:] -= self.centrifugal * self.outward
         hessian = np.einsum(
-            "zrak,zrab,zrbl->zkl", found.jacobian, reaction.stiffness, found.jacobian
+            "zrak,zrab,zrbl->zkl", places.jacobian, reaction.stiffness, places.jacobian
         )
-        hessian += np.einsum("zr,zrkl->zkl", reaction.force[..., 0], found.curvature)
+        hessian += np.einsum("zr,zrkl->zkl", reaction.force[..., 0], places.curvature)
         scale = np.trace(hessian[:, 2:, 2:], axis1=1, axis2=2).max(initial=0.0) or 1.0
         inner = hessian[:, 2:, 2:] + FLAT * scale * np.diag(kinematics.lengths**2)
         inverse = np.linalg.inv(inner)
@@ -307,11 +307,11 @@ class Problem:
         energies = reaction.energy.sum(1) - self.centrifugal * (own * self.outward).sum(1)
         energy = float(energies.sum() - self.loads @ ring) - self.thrust * float(ring[2])
         state = State(
-            ring, own, found.places, reaction, energy, wanting, gradient[:, 2:],
+            ring, own, places.places, reaction, energy, wanting, gradient[:, 2:],
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
             np.einsum("zak,za->k", motion, pull) - self.loads - self.thrust * AXIAL,
             (step, follow),
-            float((found.places[..., 0] + np.abs(found.places[..., 1]) * kinematics.half).max()),
+            float((places.places[..., 0] + np.abs(places.places[..., 1]) * kinematics.half).max()),
             energies,
         )  # fmt: skip
         state.balance, state.unsettled = self.mismatches(state)
@@ -346,25 +346,25 @@ class Problem:
             if state.unsettled <= ELEMENTS * tolerance:
                 break
             step = state.back[0] * np.minimum(share, self.limits(state, state.back[0]))[:, None]
-            tried = self.state(state.ring, state.own + step)
-            lower = tried.energies <= state.energies + FLAT * tried.reaction.energy.sum(1)
+            trial = self.state(state.ring, state.own + step)
+            lower = trial.energies <= state.energies + FLAT * trial.reaction.energy.sum(1)
             share = np.where(lower, 1.0, share / 4)
             if not lower.all():
-                tried = self.state(state.ring, np.where(lower[:, None], tried.own, state.own))
-            state = tried
+                trial = self.state(state.ring, np.where(lower[:, None], trial.own, state.own))
+            state = trial
         return state
 
-    def start(self, given: Array, pressed: float) -> tuple[Array, Array]:
+    def start(self, displacement: Array, pressed: float) -> tuple[Array, Array]:
         """Return a first guess: where the energy is least along the direction of the loads."""
         arm = np.array([1, 1, 1, 1 / self.kinematics.arm, 1 / self.kinematics.arm])
         along = np.where(self.free, self.loads * arm**2, 0.0)
         size = float(np.linalg.norm(along / arm))
-        ring = given.copy()
+        ring = displacement.copy()
         if size > 0:
             along = along / size
 
             def slope(way: float) -> float:
-                at = given + way * along
+                at = displacement + way * along
                 own = self.kinematics.neutral(self.kinematics.motion @ at, pressed)
                 return float(self.state(at, own).wanting @ along)
 
@@ -375,7 +375,7 @@ class Problem:
             for _ in range(20):
                 middle = (low + way) / 2
                 low, way = (middle, way) if slope(middle) < 0 else (low, middle)
-            ring = given + way * along
+            ring = displacement + way * along
         return ring, self.kinematics.neutral(self.kinematics.motion @ ring, pressed)
 
     def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
@@ -416,7 +416,7 @@ class Problem:
         share: Array = np.minimum(1.0, (FARTHEST * deep + beside) / np.where(size > 0, size, 1.0))
         return share
 
-    def rested(self, state: State) -> State:
+    def idle_midway(self, state: State) -> State:
         """Return the state with elements midway that touch nothing there: they carry rounding."""
         if self.centrifugal == 0:
             moved = self.kinematics.motion @ state.ring
@@ -450,16 +450,16 @@ class Problem:
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
             if state.balance <= tolerance:
-                return self.rested(state), done, "converged"
+                return self.idle_midway(state), done, "converged"
             if done == max_iterations:
                 break
             ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
-                tried = reached(state.ring + share * ring_step, state.own + share * own_step)
-                rounding = SLACK * float(np.abs(tried.reaction.energy).sum())
-                if tried.energy < lowest or (
-                    tried.energy <= state.energy + rounding and tried.balance < closest
+                trial = reached(state.ring + share * ring_step, state.own + share * own_step)
+                rounding = SLACK * float(np.abs(trial.reaction.energy).sum())
+                if trial.energy < lowest or (
+                    trial.energy <= state.energy + rounding and trial.balance < closest
                 ):
                     break
                 share /= 2
@@ -469,7 +469,7 @@ class Problem:
                 reach = max(FARTHEST, share * reach)
             elif shorter:
                 reach *= FARTHER
-            closest = min(tried.balance, closest if tried.energy >= lowest - rounding else math.inf)
-            lowest = min(tried.energy, lowest)
-            state = tried
+            closest = min(trial.balance, closest if trial.energy >= lowest - rounding else math.inf)
+            lowest = min(trial.energy, lowest)
+            state = trial
         return state, done, "iteration limit"

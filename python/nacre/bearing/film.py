@@ -21,7 +21,7 @@ from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.hertz import contact_modulus
 from nacre.results import display
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.quantities import FILM, Quantity
 
 SEPARATED = 3.0
@@ -44,7 +44,7 @@ COATED = (
 
 
 @dataclass(frozen=True, repr=False)
-class Film(Listed):
+class Film(TableResult):
     """Oil film in a contact, after formulae for bare smooth bodies: a model.
 
     Examples
@@ -265,11 +265,11 @@ def film_thickness(
             f"(g_V = {viscous:.3g}, g_E = {elastic:.3g})"
         )
     if not line:
-        found = {"U": u, "W": w, "G": g, "k": k}
+        parameters = {"U": u, "W": w, "G": g, "k": k}
         beyond = [
-            f"{name} = {found[name]:.3g} is out of {low:g} to {high:g}"
+            f"{name} = {parameters[name]:.3g} is out of {low:g} to {high:g}"
             for name, (low, high) in FITTED.items()
-            if not 0.99 * low <= found[name] <= 1.01 * high  # k is right to a part of a cell
+            if not 0.99 * low <= parameters[name] <= 1.01 * high  # k is right to a part of a cell
         ]
         if beyond:
             notes.append(f"Hamrock and Dowson's fit is extrapolated: {', '.join(beyond)}")

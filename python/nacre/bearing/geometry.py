@@ -83,9 +83,9 @@ def millimetres(length: float) -> str:
 
 def substrate(body: Layers) -> core.Elastic:
     """Return the elastic constants of a body below its layers."""
-    found = body.substrate if isinstance(body, core.HalfSpace) else body
-    assert isinstance(found, core.Elastic)
-    return found
+    material = body.substrate if isinstance(body, core.HalfSpace) else body
+    assert isinstance(material, core.Elastic)
+    return material
 
 
 class Follows(float):
@@ -390,8 +390,8 @@ class Bearing(ABC):
             Curvatures.
         """
         number = RINGS.index(ring)
-        found = 1 / self.radius + (1, -1)[number] / self.raceways[number]
-        return np.full(core.real_array("x", x).shape, found)
+        total = 1 / self.radius + (1, -1)[number] / self.raceways[number]
+        return np.full(core.real_array("x", x).shape, total)
 
     @cached_property
     def modulus(self) -> tuple[float, float]:
@@ -431,10 +431,10 @@ class Bearing(ABC):
         return {field.name: vars(self)[field.name] for field in dataclasses.fields(self)}
 
 
-def decoded(data: Any) -> Bearing:
+def bearing_from(data: Any) -> Bearing:
     """Return the bearing that plain data describe; other data raise an error."""
-    ((name, given),) = data.items()
-    return KNOWN[name](**decode(given))
+    ((name, fields),) = data.items()
+    return KNOWN[name](**decode(fields))
 
 
 def laminae_of(length: float, laminae: int) -> Array:

@@ -153,7 +153,7 @@ def _shape(ratio: float, grooves: tuple[float, float], thrust: bool) -> float:
     return float((1 + inside ** (10 / 3)) ** -0.3 * (2 * inner / (2 * inner - 1)) ** 0.41)
 
 
-class Rated(NamedTuple):
+class ReferenceLife(NamedTuple):
     """Reference rating life, and what it is made of."""
 
     revolutions: float
@@ -226,8 +226,8 @@ def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
     x = laminae_of(bearing.length, count)
     curvature = np.stack([bearing.curvature(ring, x) for ring in RINGS])
     line = loads * count / bearing.length
-    found: Array = np.sqrt(line * moduli[:, None] * curvature / math.pi)
-    return found
+    pressures: Array = np.sqrt(line * moduli[:, None] * curvature / math.pi)
+    return pressures
 
 
 def pressure_factors(bearing: Any, loads: Array, pressures: Array) -> Array:
@@ -250,7 +250,7 @@ def _mean(loads: Array, power: float) -> Array:
 
 def reference_life(
     bearing: Bearing, loads: Array, factors: Array | float, rotating: str = "inner"
-) -> Rated:
+) -> ReferenceLife:
     """Return the reference rating life under loads of elements.
 
     ISO/TS 16281:2008, equations (61) to (65) for the laminae of rollers ``(Z, 2, laminae)``, with
@@ -259,13 +259,13 @@ def reference_life(
     """
     capacity = bearing.capacity
     assert capacity is not None
-    found = capacities(bearing, capacity)
+    ring_capacities = capacities(bearing, capacity)
     if bearing.rolls:
         powers, exponent, life = (4.0, 4.5), 4.5, -8 / 9
-        limits = np.array(found) * LAMINAE ** (-7 / 9)
+        limits = np.array(ring_capacities) * LAMINAE ** (-7 / 9)
     else:
         powers, exponent, life = (3.0, 10 / 3), 10 / 3, -0.9
-        limits = np.array(found)
+        limits = np.array(ring_capacities)
     if rotating == "outer":
         powers = powers[::-1]
     rows = (loads * factors).reshape(bearing.rows, bearing.count, *loads.shape[1:])
@@ -277,4 +277,4 @@ def reference_life(
     revolutions = sums**life if sums > 0 else math.inf
     slope = 10 / 3 if bearing.rolls else 3.0
     equivalent = capacity * revolutions ** (-1 / slope) if sums > 0 else 0.0
-    return Rated(revolutions, equivalent, found)
+    return ReferenceLife(revolutions, equivalent, ring_capacities)

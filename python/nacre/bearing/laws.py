@@ -80,8 +80,8 @@ class Slices:
 
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
-        found: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
-        return found
+        depths: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
+        return depths
 
     def loads(self, places: Array) -> Array:
         """Return the loads of the laminae ``(Z, 2, laminae)`` [N]."""
@@ -299,7 +299,7 @@ class Solved:
         self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
-        kept: dict[tuple[int, int], Solution] = {}
+        solutions: dict[tuple[int, int], Solution] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
@@ -307,7 +307,7 @@ class Solved:
                 futures = [pool.submit(self._solve, j, r, places[j, r]) for j, r in tasks]
                 for (j, r), future in zip(tasks, futures, strict=True):
                     solution, tangent = future.result()
-                    kept[j, r] = solution
+                    solutions[j, r] = solution
                     energy[j, r] = solution.elastic_energy
                     force[j, r] = solution.load, solution.moment[0]
                     stiffness[j, r] = tangent[:2, :2]
@@ -316,8 +316,8 @@ class Solved:
         if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
-        self.kept = kept
-        return Reaction(energy, force, stiffness, kept)
+        self.kept = solutions
+        return Reaction(energy, force, stiffness, solutions)
 
     def sizes(self) -> Array:
         """Return the sides of the grids ``(Z, 2, 2)`` [m]."""

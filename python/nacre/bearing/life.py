@@ -30,7 +30,7 @@ from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.results import display
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
 
 if TYPE_CHECKING:
@@ -202,15 +202,15 @@ class Zaretsky(LundbergPalmgren):
 
     def shear(self, stress: Stress) -> Array:
         """Return the stress that counts, ``(nz, nx, ny)`` [Pa]."""
-        found: Array = stress.max_shear.reshape(stress.z.size, stress.x.size, stress.y.size)
-        return found
+        stresses: Array = stress.max_shear.reshape(stress.z.size, stress.x.size, stress.y.size)
+        return stresses
 
 
 Model = LundbergPalmgren
 Models = Model | Mapping[int | str, Model]
 
 
-class _Beside(Listed, is_base=True):
+class _Beside(TableResult, is_base=True):
     """Base of results that have the extremes of coating and interfaces beside them."""
 
     interface_shear: float
@@ -264,18 +264,20 @@ class StressVolume(_Beside):
     """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
     def _rows(self) -> list[tuple[str, str]]:
-        said = f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
-        return [("integral", said), *self._layered()]
+        integral_text = (
+            f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
+        )
+        return [("integral", integral_text), *self._layered()]
 
 
 def _in_si(
-    told: Callable[Concatenate[LifeRatio, P], T],
+    unbound: Callable[Concatenate[LifeRatio, P], T],
 ) -> Callable[Concatenate[LifeRatio, P], T]:
     """Return a method that is in SI for lives of bearings, and in the units that are set else."""
 
-    @functools.wraps(told)
+    @functools.wraps(unbound)
     def inside(ratio: LifeRatio, /, *args: P.args, **kwargs: P.kwargs) -> T:
-        method = display.in_si(told) if OF_RINGS in ratio.model else told
+        method = display.in_si(unbound) if OF_RINGS in ratio.model else unbound
         return method(ratio, *args, **kwargs)
 
     return inside
@@ -325,11 +327,11 @@ class LifeRatio(_Beside):
 
     @_in_si
     def _rows(self) -> list[tuple[str, str]]:
-        said = f"{self.ratio:.5g}"
+        ratio_text = f"{self.ratio:.5g}"
         if math.isinf(self.ratio):
-            said = "infinite: no stress is above the fatigue limit"
+            ratio_text = "infinite: no stress is above the fatigue limit"
         rows = self._layered()
-        return [("life over that of the reference", said), *rows, ("model", self.model)]
+        return [("life over that of the reference", ratio_text), *rows, ("model", self.model)]
 
 
 def _highest(values: Array) -> Array:
@@ -343,8 +345,8 @@ def _highest(values: Array) -> Array:
         raised = top - (right - left) ** 2 / (8 * bend)
     highest = np.maximum(np.maximum(left, right), top)
     inside = (bend < 0) & (np.abs(right - left) <= -2 * bend)
-    found: Array = np.where(inside, np.maximum(raised, highest), highest)
-    return found
+    maxima: Array = np.where(inside, np.maximum(raised, highest), highest)
+    return maxima
 
 
 def _nodes(first: float, last: float) -> tuple[Array, Array]:
@@ -369,23 +371,23 @@ def _ranges(
     names: list[int | str] = [*range(len(body.layers)), "substrate"]
     for layer in models:
         if layer not in names:
-            told = ", ".join(map(repr, names))
-            raise ValueError(f"model must have layers among {told}, got {layer!r}")
+            choices = ", ".join(map(repr, names))
+            raise ValueError(f"model must have layers among {choices}, got {layer!r}")
     materials = [*(layer.material for layer in body.layers), body.substrate]
-    found: list[tuple[Model, float, float]] = []
+    ranges: list[tuple[Model, float, float]] = []
     for k, name in enumerate(names):
         if (one := models.get(name)) is None:
             continue
         top, bottom = faces[k], faces[k + 1]
         if (
-            found
-            and (found[-1][0], found[-1][2]) == (one, top)
+            ranges
+            and (ranges[-1][0], ranges[-1][2]) == (one, top)
             and materials[k - 1] == materials[k]
             and body.layers[k - 1].interface == "bonded"
         ):
-            top = found.pop()[1]
-        found.append((one, top, bottom))
-    return found
+            top = ranges.pop()[1]
+        ranges.append((one, top, bottom))
+    return ranges
 
 
 def _half_width(solution: Solution) -> float:
@@ -574,7 +576,7 @@ def life_ratio(
         warnings.warn(text, core.NacreWarning, stacklevel=2)
         notes = (*notes, text)
     models = model.values() if isinstance(model, Mapping) else [model]
-    names = " and ".join(dict.fromkeys(type(found).__name__ for found in models))
+    names = " and ".join(dict.fromkeys(type(rule).__name__ for rule in models))
     return LifeRatio(
         ratio,
         one.slope,
@@ -610,11 +612,11 @@ def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float
     slope = next(iter(volumes.values())).slope
     total = changed = 0.0
     for r in range(2):
-        found = np.zeros((2, bearing.elements))
+        integrals = np.zeros((2, bearing.elements))
         for (j, ring), volume in volumes.items():
             if ring == r:
-                found[:, j] = volume.integral, volume.integral * (1 + volume.change)
-        rows = found.reshape(2, bearing.rows, bearing.count)
+                integrals[:, j] = volume.integral, volume.integral * (1 + volume.change)
+        rows = integrals.reshape(2, bearing.rows, bearing.count)
         turns = RINGS[r] == solution.rotating
         means = (rows ** (1 / slope)).mean(2) ** slope if turns else rows.mean(2)
         cycles = bearing.count * bearing.tracks[1 - r] / sum(bearing.tracks)

@@ -71,8 +71,8 @@ class _Rollers(Solvable):
         if not isinstance(self.profile, core.LogarithmicProfile | core.SampledProfile) and not (
             isinstance(self.profile, str | None) and self.profile in words
         ):
-            named = ", ".join(f'"{word}"' for word in words[:-1])
-            raise ValueError(f"profile must be a profile, {named} or None, got {self.profile!r}")
+            choices = ", ".join(f'"{word}"' for word in words[:-1])
+            raise ValueError(f"profile must be a profile, {choices} or None, got {self.profile!r}")
         for radius in self.raceway_crown:
             if radius is not None:
                 above("raceway_crown", radius, -math.inf)

@@ -13,14 +13,14 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import printable, symbol
-from nacre.bearing.geometry import RINGS, Bearing, Ring, decoded
+from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
 from nacre.bearing.laws import LAMINAE, bodies_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.results import display, files
 from nacre.results.base import Result
-from nacre.results.listed import Listed, Tabular
+from nacre.results.listed import TableResult, Tabular
 from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
 from nacre.results.values import encode, refusing
 
@@ -73,8 +73,8 @@ def edge_pressure(pressures: Array) -> Array:
 
 def carrying(loads: Array) -> npt.NDArray[np.bool_]:
     """Return which contacts carry more than rounding."""
-    found: npt.NDArray[np.bool_] = loads > ROUNDING * loads.sum()
-    return found
+    is_carrying: npt.NDArray[np.bool_] = loads > ROUNDING * loads.sum()
+    return is_carrying
 
 
 @dataclass(frozen=True, repr=False)
@@ -122,7 +122,7 @@ class BearingReport(Result):
 
 
 @dataclass(frozen=True, repr=False)
-class BearingLife(Listed):
+class BearingLife(TableResult):
     """Reference rating life of ISO/TS 16281: a model, at 90 % reliability.
 
     Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the
@@ -153,8 +153,8 @@ class BearingLife(Listed):
     model: str
     """Model in words."""
 
-    to_xarray = display.in_si(Listed.to_xarray)  # type: ignore[arg-type]
-    save = display.in_si(Listed.save)
+    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
+    save = display.in_si(TableResult.save)
 
     @display.in_si
     def _rows(self) -> list[tuple[str, str]]:
@@ -426,10 +426,10 @@ class BearingSolution(Tabular):
                 factors = edge_factors(LAMINAE)
             elif edge == "pressure":
                 factors = self.edge_factors()
-        found = reference_life(self.bearing, loads, factors, rotating)
+        reference = reference_life(self.bearing, loads, factors, rotating)
         capacity = float(self.bearing.capacity or 0.0)
         return BearingLife(
-            found.revolutions, found.equivalent_load, capacity, found.capacities, words
+            reference.revolutions, reference.equivalent_load, capacity, reference.capacities, words
         )
 
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
@@ -511,21 +511,21 @@ class BearingSolution(Tabular):
         return files.save(path, writers)
 
     def _comments(self) -> dict[str, Any]:
-        found = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
+        vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
         known = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        return {"model": self.model, **found, **known, **notes}
+        return {"model": self.model, **vectors, **known, **notes}
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""
         kinds = {row.name: row for row in BEARING}
-        found = [(kinds["angles"], "angle", self.angles)]
+        columns = [(kinds["angles"], "angle", self.angles)]
         for row in BEARING:
             if row.dims == PER_CONTACT and row.label:
                 for k, ring in enumerate(RINGS):
-                    found.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
-        return found
+                    columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
+        return columns
 
     def _file_rows(self) -> Iterable[Iterable[Any]]:
         columns = self._columns()
@@ -627,21 +627,21 @@ class BearingSolution(Tabular):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         with refusing(cls.__name__):
-            made = dict(state)
-            made["bearing"] = decoded(state["bearing"])
+            fields = dict(state)
+            fields["bearing"] = bearing_from(state["bearing"])
             if state.get("rotating") is None:  # states of 0.1.0, whose speed is that of the cage
-                made["rotating"] = "inner"
-                made["speed"] = state["speed"] / made["bearing"].cage_speed(1.0)
+                fields["rotating"] = "inner"
+                fields["speed"] = state["speed"] / fields["bearing"].cage_speed(1.0)
             for name in VECTORS:
-                made[name] = tuple(map(float, state[name]))
+                fields[name] = tuple(map(float, state[name]))
             for name in ARRAYS:
                 if state[name] is not None:
-                    made[name] = np.array(state[name], dtype=np.float64)
-            made["cells"] = None if state["cells"] is None else tuple(state["cells"])
+                    fields[name] = np.array(state[name], dtype=np.float64)
+            fields["cells"] = None if state["cells"] is None else tuple(state["cells"])
             report = BearingReport._restored(dict(state["report"]))
-            found = cls(**made | {"report": report})
-            found._check()
-            return found
+            solution = cls(**fields | {"report": report})
+            solution._check()
+            return solution
 
     def _check(self) -> None:
         """Raise a `ValueError` unless all fields fit each other."""

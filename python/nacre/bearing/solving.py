@@ -50,19 +50,19 @@ FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
 
-def _asked(
-    bearing: Bearing, given: Mapping[str, Any]
+def _conditions(
+    bearing: Bearing, keywords: Mapping[str, Any]
 ) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        numbers = (None,) * length if given[name] is None else given[name]
+        numbers = (None,) * length if keywords[name] is None else keywords[name]
         values[name] = core.vector(name, length, numbers)
         known = [value for value in values[name] if value is not None]
         if not all(map(math.isfinite, known)):
-            raise ValueError(f"{name} must be finite, got {given[name]!r}")
+            raise ValueError(f"{name} must be finite, got {keywords[name]!r}")
         if max(map(abs, known), default=0.0) > (most := _most(bearing, name)):
-            raise ValueError(f"{name} must be at most {most:.3g}, got {given[name]!r}")
+            raise ValueError(f"{name} must be at most {most:.3g}, got {keywords[name]!r}")
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
@@ -79,7 +79,7 @@ def _asked(
     if bearing.aligns and loads[3:] != [None, None]:
         raise ValueError(
             f"moment must be None or 0: a spherical roller bearing aligns itself and carries none, "
-            f"got {given['moment']!r}"
+            f"got {keywords['moment']!r}"
         )
     axial = not bearing.rolls or bearing.nominal_angle > 0
     if not axial:
@@ -127,8 +127,8 @@ def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: fl
         return
     angles = problem.kinematics.angles(problem.kinematics.motion @ state.ring, state.own)[:, 0]
     angles = np.repeat([1.0, -1.0][: bearing.rows], bearing.count) * angles
-    carried = carrying(state.reaction.force[..., 0])[:, 0]
-    least = float(angles[carried].min(initial=math.inf))
+    is_carrying = carrying(state.reaction.force[..., 0])[:, 0]
+    least = float(angles[is_carrying].min(initial=math.inf))
     if least <= tolerance:
         raise ValueError(
             f"force or displacement along z must be larger: an element bears at a contact angle "
@@ -140,32 +140,35 @@ def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: fl
         _check_cone(bearing, math.hypot(*total[:2]), float(total[2]) + slack)
 
 
-def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
+def solve_bearing(bearing: Bearing, keywords: Mapping[str, Any]) -> BearingSolution:
     """Return the solution of what a user asked of a bearing with these arguments of `solve`."""
-    loads, moved, free = _asked(bearing, given)
-    model, cells = given["model"], given["cells"]
-    given = {**given}
+    loads, moved, free = _conditions(bearing, keywords)
+    model, cells = keywords["model"], keywords["cells"]
+    keywords = {**keywords}
     for name in ("rotation", "speed"):
-        given[name] = above(name, given[name], -math.inf)
-    if not among(given["rotating"], RINGS):
-        raise ValueError(f'rotating must be "inner" or "outer", got {given["rotating"]!r}')
-    if abs(given["rotation"]) > TURNED:
-        raise ValueError(f"rotation must be at most {TURNED:g} rad, got {given['rotation']!r}")
-    if abs(bearing.cage_speed(given["speed"], given["rotating"])) * bearing.pitch / 2 > FASTEST:
+        keywords[name] = above(name, keywords[name], -math.inf)
+    if not among(keywords["rotating"], RINGS):
+        raise ValueError(f'rotating must be "inner" or "outer", got {keywords["rotating"]!r}')
+    if abs(keywords["rotation"]) > TURNED:
+        raise ValueError(f"rotation must be at most {TURNED:g} rad, got {keywords['rotation']!r}")
+    if (
+        abs(bearing.cage_speed(keywords["speed"], keywords["rotating"])) * bearing.pitch / 2
+        > FASTEST
+    ):
         raise ValueError(
             f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
-            f"got {given['speed']!r} rad/s"
+            f"got {keywords['speed']!r} rad/s"
         )
     for name in ("max_iterations", "threads"):
-        if name == "threads" and given[name] is None:
+        if name == "threads" and keywords[name] is None:
             continue
-        given[name] = core.integer(name, given[name])
-        if given[name] < 1:
-            raise ValueError(f"{name} must be at least 1, got {given[name]!r}")
+        keywords[name] = core.integer(name, keywords[name])
+        if keywords[name] < 1:
+            raise ValueError(f"{name} must be at least 1, got {keywords[name]!r}")
     if not among(model, ("solved", "iso16281")):
         raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
-    check_progress(given["progress"])
-    tolerance = above("tolerance", given["tolerance"])
+    check_progress(keywords["progress"])
+    tolerance = above("tolerance", keywords["tolerance"])
     if tolerance >= 1:
         raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
     if cells is None:
@@ -175,20 +178,20 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
     if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
         multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
         raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
-    angles = given["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
+    angles = keywords["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
     angles = np.tile(angles, bearing.rows)
     kinematics = kinematics_of(bearing, angles)
-    cage = bearing.cage_speed(given["speed"], given["rotating"])
+    cage = bearing.cage_speed(keywords["speed"], keywords["rotating"])
     centrifugal = bearing.mass * bearing.pitch / 2 * cage**2
     problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
     check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
-    limit = given["max_iterations"]
+    limit = keywords["max_iterations"]
     pressed = _pressed(problem.law, centrifugal)
     with lasting("bearing") as bar:
 
         def tell(done: int, balance: float) -> object:
-            if given["progress"] is not None:
-                return given["progress"](done, balance)
+            if keywords["progress"] is not None:
+                return keywords["progress"](done, balance)
             if bar is not None:
                 bar(f"step {done}, balance {balance:.0e}")
             return None
@@ -196,32 +199,32 @@ def solved(bearing: Bearing, given: Mapping[str, Any]) -> BearingSolution:
         first = None if model == "solved" else tell
         ring, own = problem.start(moved, pressed)
         rough = tolerance if first else min(1e-6, math.sqrt(tolerance))
-        state, done, ended = problem.solve(
+        state, done, ending = problem.solve(
             ring, own, rough, 10 * limit if first is None else limit, first
         )
-        if ended == "converged":
+        if ending == "converged":
             _check_sides(bearing, problem, state, rough)
         if model == "solved":
             lines = _lines(bearing, problem.law, state)
-            contacts = Solved(bearing, lines, cells, FINER * tolerance, given["threads"])
+            contacts = Solved(bearing, lines, cells, FINER * tolerance, keywords["threads"])
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
-            guess, steps = ended, limit if ended == "converged" else 0
-            state, done, ended = problem.solve(state.ring, state.own, tolerance, steps, tell)
-            if ended == "iteration limit" and guess != "converged":
-                ended = guess
-            if ended == "converged":
+            guess, steps = ending, limit if ending == "converged" else 0
+            state, done, ending = problem.solve(state.ring, state.own, tolerance, steps, tell)
+            if ending == "iteration limit" and guess != "converged":
+                ending = guess
+            if ending == "converged":
                 _check_sides(bearing, problem, state, tolerance)
-    found = _found(bearing, given, problem, state, angles, (done, ended), cells)
-    for message in found.report.warnings:
+    solution = _solution_of(bearing, keywords, problem, state, angles, (done, ending), cells)
+    for message in solution.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
-    if given["check"] and ended in REMEDIES:
+    if keywords["check"] and ending in REMEDIES:
         error = core.ConvergenceError(
             f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; "
-            f"{REMEDIES[ended]}"
+            f"{REMEDIES[ending]}"
         )
-        error.solution = found
+        error.solution = solution
         raise error
-    return found
+    return solution
 
 
 def _pressed(law: Any, force: float) -> float:
@@ -247,13 +250,13 @@ def _lines(bearing: Any, law: Any, state: State) -> Array:
     return lines
 
 
-def _found(
+def _solution_of(
     bearing: Bearing,
-    given: Mapping[str, Any],
+    keywords: Mapping[str, Any],
     problem: Problem,
     state: State,
     angles: Array,
-    ended: tuple[int, str],
+    ending: tuple[int, str],
     cells: tuple[int, int],
 ) -> BearingSolution:
     """Return the solution that a state is."""
@@ -285,21 +288,21 @@ def _found(
     kinematics = problem.kinematics
     normals = kinematics.angles(kinematics.motion @ state.ring, state.own)
     total = state.wanting + problem.loads
-    kept = {key: one for key, one in contacts.items() if carrying(loads)[key]}
+    loaded = {key: one for key, one in contacts.items() if carrying(loads)[key]}
     notes = (
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
-        *_notes(bearing, given["model"], kept),
+        *_notes(bearing, keywords["model"], loaded),
     )
     errors = None
     if isinstance(problem.law, Solved):
         errors = _discretisation(problem.law, contacts, peaks, edges)
     return BearingSolution(
         bearing=bearing,
-        model=given["model"],
-        rotation=given["rotation"],
-        speed=given["speed"],
-        rotating=given["rotating"],
+        model=keywords["model"],
+        rotation=keywords["rotation"],
+        speed=keywords["speed"],
+        rotating=keywords["rotating"],
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),
@@ -317,7 +320,7 @@ def _found(
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
         cells=None if sizes is None else cells,
-        report=BearingReport(ended[1], ended[0], state.balance, notes, errors),  # type: ignore[arg-type]
+        report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
         _contacts=dict(contacts),
     )
 

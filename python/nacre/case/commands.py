@@ -23,7 +23,7 @@ from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
 from nacre.results.display import SLIGHT, shown_in
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.outputs import ERROR, check_direction
 from nacre.results.quantities import BEARING
 from nacre.studies import default_threads
@@ -148,7 +148,7 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
         _check_ending(path)
     arguments = described.arguments()
     bearing, life_options = arguments.pop("bearing"), described.life()
-    added: dict[str, Listed] = {}
+    added: dict[str, TableResult] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
@@ -175,7 +175,7 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
         solution.save(path)
 
 
-def _in_units(state: dict[str, Any], added: dict[str, Listed], units: str) -> dict[str, Any]:
+def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
     """Return the state of a solved bearing, which is in SI, in the units of its case."""
     sizes = {unit: 1 / size for unit, size in sizes_of(units).items()}
     record = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}

@@ -14,7 +14,7 @@ from nacre._tools.extras import extra
 from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
 from nacre.results import display
-from nacre.results.listed import Listed
+from nacre.results.listed import TableResult
 from nacre.results.quantities import UNLOADING
 
 __all__ = ["OliverPharr", "oliver_pharr", "section"]
@@ -36,7 +36,7 @@ few per cent can bear."""
 
 
 @dataclass(frozen=True, repr=False)
-class OliverPharr(Listed):
+class OliverPharr(TableResult):
     """Hardness and modulus from an unloading curve.
 
     Errors are standard errors by the scatter about the power law alone: those of the tip's area,

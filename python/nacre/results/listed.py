@@ -68,7 +68,7 @@ class Tabular(Result, ABC, is_base=True):
         return {}
 
 
-class Listed(Tabular, Warned, is_base=True):
+class TableResult(Tabular, Warned, is_base=True):
     """Base of results whose table has a row for each of their quantities.
 
     The dataclass needs ``repr=False``, and `_QUANTITIES` and `_TITLE`.
