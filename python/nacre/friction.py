@@ -16,8 +16,8 @@ from nacre._tools.units import energy, symbol
 from nacre.contact import MOTION, Contact, solve
 from nacre.contact.friction import FrictionSolution, History
 from nacre.results.base import checked
-from nacre.results.listed import TableResult
 from nacre.results.quantities import CREEP
+from nacre.results.table_results import TableResult
 
 if TYPE_CHECKING:
     import xarray

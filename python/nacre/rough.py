@@ -21,9 +21,9 @@ from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.hertz import contact_modulus
 from nacre.results import display
-from nacre.results.listed import TableResult
-from nacre.results.patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre.results.patches import CURVE, crosses, patch_labels, surfaces
 from nacre.results.quantities import ROUGHNESS
+from nacre.results.table_results import TableResult
 
 if TYPE_CHECKING:
     import xarray
@@ -422,7 +422,7 @@ def corrected_area(solution: Solution) -> float:
     if solution.report.grid.is_line:
         raise ValueError("the grid of solution must have cells along x, got a line")
     dx, dy = solution.report.grid.spacing
-    along, across = sides(solution)
+    along, across = _sides(solution)
     perimeter = along * dx + across * dy
     return float(max(solution.contact_area - PERIMETER * perimeter * np.sqrt(dx * dy), 0.0))
 
@@ -615,3 +615,15 @@ def _topography(heights: Array, grid: core.Grid, name: str) -> Any:
     if grid.is_line:
         raise ValueError(f"the grid of {name} must have cells along x, got a line")
     return Topography(np.asarray(heights), tuple(grid.size), periodic=all(grid.periodic))
+
+
+def _sides(solution: Solution) -> tuple[int, int]:
+    """Return how many sides of cells along x and along y lie between contact and gap."""
+    contact, repeats = solution.in_contact, solution.report.grid.periodic
+    counts = []
+    for axis in (1, 0):
+        # Beyond the rim of a grid that does not repeat nothing touches.
+        last, none = np.take(contact, [-1], axis), np.zeros_like(np.take(contact, [0], axis))
+        closed = [last, contact] if repeats[axis] else [none, contact, none]
+        counts.append(int(np.sum(np.diff(np.concatenate(closed, axis), axis=axis))))
+    return counts[0], counts[1]

@@ -13,8 +13,8 @@ import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre import fatigue
 from nacre.indent import Adhesion, Curve, Fit, Indentation, OliverPharr, Tip, fit, oliver_pharr
-from nacre.results.listed import TableResult
 from nacre.results.quantities import AXIS, Quantity
+from nacre.results.table_results import TableResult
 
 DLC = nacre.Elastic(420e9, 0.25)
 LAYERED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
+from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, Solved
 from nacre.bearing.geometry import RINGS, laminae_of
-from nacre.bearing.laws import LAMINAE, Law, Reaction, Solved
 
 Array = npt.NDArray[np.float64]
 

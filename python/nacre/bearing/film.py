@@ -21,8 +21,8 @@ from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.hertz import contact_modulus
 from nacre.results import display
-from nacre.results.listed import TableResult
 from nacre.results.quantities import FILM, Quantity
+from nacre.results.table_results import TableResult
 
 SEPARATED = 3.0
 """Ratio λ of film and roughness from which surfaces count as separated: a convention."""

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, above, laminae_of
-from nacre.bearing.laws import LAMINAE
 
 Array = npt.NDArray[np.float64]
 Edge = Literal["standard", "pressure"] | None

@@ -30,8 +30,8 @@ from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.results import display
-from nacre.results.listed import TableResult
 from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
+from nacre.results.table_results import TableResult
 
 if TYPE_CHECKING:
     from nacre.contact.stresses import Stress

@@ -13,15 +13,15 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import printable, symbol
+from nacre.bearing.contact_laws import LAMINAE, bodies_of
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
-from nacre.bearing.laws import LAMINAE, bodies_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.results import display, files
 from nacre.results.base import Result
-from nacre.results.listed import TableResult, Tabular
 from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
+from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
 
 if TYPE_CHECKING:

@@ -15,10 +15,19 @@ import nacre._core as core
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import among
 from nacre.bearing.cone import check_carried
+from nacre.bearing.contact_laws import (
+    LAMINAE,
+    LINE,
+    STANDARD,
+    Hertzian,
+    Slices,
+    Solved,
+    binned,
+    law,
+)
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above
 from nacre.bearing.iso import hertz_pressures
-from nacre.bearing.laws import LAMINAE, LINE, STANDARD, Hertzian, Slices, Solved, binned, law
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
 

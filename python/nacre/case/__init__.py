@@ -50,7 +50,7 @@ from typing import Any
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre.results.outputs import Room, outputs_by_name
+from nacre.studies.outputs import CaseKind, outputs_by_name
 
 __all__ = ["Case", "CaseError"]
 
@@ -138,7 +138,7 @@ class Case:
         return isinstance(self._table, IndentCase)
 
     @property
-    def room(self) -> Room:
+    def kind(self) -> CaseKind:
         """What the case is: a contact, an indentation or a bearing."""
         if isinstance(self._table, BearingCase):
             return "bearing"
@@ -236,7 +236,7 @@ class Case:
         if sweep.outputs is not None:
             try:
                 with at("sweep"):
-                    outputs_by_name(sweep.outputs, self.room)
+                    outputs_by_name(sweep.outputs, self.kind)
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
             arguments["outputs"] = sweep.outputs

@@ -23,10 +23,10 @@ from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import tables
 from nacre.results.display import SLIGHT, shown_in
-from nacre.results.listed import TableResult
-from nacre.results.outputs import ERROR, check_direction
-from nacre.results.quantities import BEARING
+from nacre.results.quantities import BEARING, ERROR
+from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
+from nacre.studies.outputs import check_direction
 
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
@@ -105,7 +105,7 @@ def solve(
     described = _read_case(case, units)
     if described.is_indentation:
         raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
-    if described.room == "bearing":
+    if described.kind == "bearing":
         if initial is not None:
             raise CaseError(f"{case}: --initial must not be given for a bearing")
         _solve_bearing(case, described, save or [], as_json)
@@ -305,7 +305,7 @@ def indent(
 ) -> None:
     """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
     described = _read_case(case, units)
-    if described.room != "indent":
+    if described.kind != "indent":
         raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
     for path in save or []:
         if path.suffix.lower() not in (".nc", ".csv"):

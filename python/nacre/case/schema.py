@@ -38,7 +38,7 @@ from nacre.case.tables import (
     described,
     with_words,
 )
-from nacre.results.outputs import OUTPUTS
+from nacre.studies.outputs import OUTPUTS
 
 CONSTANTS = described(nacre.Elastic)
 LAYER = described(nacre.Layer)

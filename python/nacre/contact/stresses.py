@@ -17,8 +17,8 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
-from nacre.results.listed import Tabular
 from nacre.results.quantities import EXTREMES
+from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
     import xarray

@@ -18,8 +18,8 @@ from nacre._tools.typing import Direction
 from nacre._tools.units import symbol
 from nacre.contact.solution import Solution
 from nacre.design.optimise import Optimum, optimise
-from nacre.results.outputs import Output, check_direction
 from nacre.studies import ARGUMENTS, sweep
+from nacre.studies.outputs import Output, check_direction
 
 if TYPE_CHECKING:
     import xarray

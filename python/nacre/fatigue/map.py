@@ -32,8 +32,8 @@ from nacre.fatigue.summary import (
 )
 from nacre.results import display, files
 from nacre.results.base import Warned
-from nacre.results.listed import Tabular
 from nacre.results.quantities import SHAKEDOWN
+from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
     import xarray

@@ -22,8 +22,8 @@ from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
-from nacre.results.listed import Tabular
 from nacre.results.quantities import FATIGUE, PROFILE
+from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
     import xarray

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre.indent._system import System
+from nacre.indent._addressed import System
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]

@@ -21,7 +21,7 @@ from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import holds
 from nacre.results import display
-from nacre.results.listed import Tabular
+from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:

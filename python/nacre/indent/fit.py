@@ -14,11 +14,11 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import among
+from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
 from nacre.indent._residuals import Examination, examine, likeliest
 from nacre.indent._result import UNFIT, Fit
-from nacre.indent._system import System
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
 

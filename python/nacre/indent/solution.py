@@ -18,8 +18,8 @@ from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import printable, written
 from nacre.results import display
 from nacre.results.base import Fields, Warned
-from nacre.results.listed import Tabular
 from nacre.results.quantities import INDENT, units
+from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from nacre._tools.extras import extra
 from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
 from nacre.results import display
-from nacre.results.listed import TableResult
 from nacre.results.quantities import UNLOADING
+from nacre.results.table_results import TableResult
 
 __all__ = ["OliverPharr", "oliver_pharr", "section"]
 

@@ -12,8 +12,7 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
-from nacre.results.outputs import ERROR
-from nacre.results.quantities import PARAMETERS, units
+from nacre.results.quantities import ERROR, PARAMETERS, units
 
 with extra("plot"):
     from matplotlib.axes import Axes

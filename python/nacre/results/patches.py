@@ -5,16 +5,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
-
-if TYPE_CHECKING:
-    from nacre.contact.solution import Solution
 
 Labels = npt.NDArray[np.int64]
 
@@ -107,15 +103,3 @@ def crosses(cells: npt.NDArray[np.bool_], grid: core.Grid, axis: int) -> bool:
             step = next(s for b, s in neighbours[int(before[part])] if b == part)
             place[int(part)] = place[int(before[part])] + step
     return any(place[a] + step != place[b] for a in neighbours for b, step in neighbours[a])
-
-
-def sides(solution: Solution) -> tuple[int, int]:
-    """Return how many sides of cells along x and along y lie between contact and gap."""
-    contact, repeats = solution.in_contact, solution.report.grid.periodic
-    counts = []
-    for axis in (1, 0):
-        # Beyond the rim of a grid that does not repeat nothing touches.
-        last, none = np.take(contact, [-1], axis), np.zeros_like(np.take(contact, [0], axis))
-        closed = [last, contact] if repeats[axis] else [none, contact, none]
-        counts.append(int(np.sum(np.diff(np.concatenate(closed, axis), axis=axis))))
-    return counts[0], counts[1]

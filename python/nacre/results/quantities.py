@@ -19,6 +19,10 @@ CELLS, VECTOR = ("x", "y"), ("component", "x", "y")
 """Dimensions of a field, and of one with components along x and y."""
 
 
+ERROR = "_discretisation"
+"""Ending of the name under which such an error stands beside its output."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A row of the table."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +13,6 @@ import nacre._core as core
 from nacre._tools.extras import extra
 from nacre.results.quantities import VECTOR
 from nacre.results.tables import fields
-
-if TYPE_CHECKING:
-    from nacre.contact.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
@@ -52,7 +49,7 @@ def write_surface(result: Any, path: Path) -> None:
 
 
 def write_stress(
-    solution: Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+    solution: Any, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
 ) -> None:
     """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
 
@@ -79,7 +76,7 @@ def write_stress(
 
 
 def _planes(
-    solution: Solution, depths: Array, options: Mapping[str, Any]
+    solution: Any, depths: Array, options: Mapping[str, Any]
 ) -> tuple[Array, dict[str, Array]]:
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():

@@ -22,22 +22,22 @@ from nacre._tools.progress import case_progress
 from nacre.contact import roll, slide, solve
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
-from nacre.results.outputs import (
+from nacre.studies.dataset import assemble, failure_lines, layout
+from nacre.studies.identity import identity_of, key_of
+from nacre.studies.journal import Journal, Record
+from nacre.studies.outputs import (
     FATIGUES,
     MARGINS,
     STRESSES,
     USUAL,
+    CaseKind,
     Output,
-    Room,
     check_direction,
     output_values,
     outputs_by_name,
     plain,
     rolls,
 )
-from nacre.studies.dataset import assemble, failure_lines, layout
-from nacre.studies.identity import identity_of, key_of
-from nacre.studies.journal import Journal, Record
 
 if TYPE_CHECKING:
     import xarray
@@ -190,9 +190,9 @@ def sweep(
     coordinates, points = layout(parameters)
     if isinstance(case, Mapping):
         _check_paths(case, points)
-    room = _room(case, points) if outputs is None or isinstance(case, Mapping) else None
-    usual = [name for name in USUAL[room or "contact"] if name not in parameters]
-    checked_outputs = outputs_by_name(usual if outputs is None else outputs, room)
+    kind = _case_kind(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in USUAL[kind or "contact"] if name not in parameters]
+    checked_outputs = outputs_by_name(usual if outputs is None else outputs, kind)
     if clashes := set(checked_outputs) & set(parameters):
         raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in checked_outputs.values())
@@ -368,7 +368,7 @@ def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -
             raise ValueError(f"{wrong}; the nearest are {', '.join(known)}")
 
 
-def _room(case: Case, points: Sequence[Mapping[str, Any]]) -> Room:
+def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:
     """Return what the cases of a study are, as the first one that is a case."""
     names: set[str] = set()
     if isinstance(case, Mapping):

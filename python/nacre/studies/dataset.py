@@ -11,9 +11,10 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import SI, Within, symbol, system
 from nacre.results import quantities
-from nacre.results.outputs import (
+from nacre.results.quantities import ERROR, PARAMETERS
+from nacre.studies.journal import Record
+from nacre.studies.outputs import (
     AXES,
-    ERROR,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
     RING_AXES,
@@ -21,8 +22,6 @@ from nacre.results.outputs import (
     Output,
     errors,
 )
-from nacre.results.quantities import PARAMETERS
-from nacre.studies.journal import Record
 
 if TYPE_CHECKING:
     import xarray

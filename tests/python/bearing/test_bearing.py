@@ -24,7 +24,7 @@ from nacre.bearing import (
     TaperedRoller,
     rating,
 )
-from nacre.bearing.laws import Slices, Solved
+from nacre.bearing.contact_laws import Slices, Solved
 from nacre.bearing.solution import carrying
 
 STEEL = nacre.Elastic(young=206e9, poisson=0.3)

@@ -21,8 +21,8 @@ from nacre.bearing import (
     life_ratio,
     rating,
 )
+from nacre.bearing.contact_laws import Solved, binned
 from nacre.bearing.iso import reference_life
-from nacre.bearing.laws import Solved, binned
 
 SIZE: dict[str, Any] = {
     "count": 19,

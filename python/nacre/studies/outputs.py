@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from nacre.results.quantities import AXIS, BEARING, CONTACT, FRICTION, INDENT
+from nacre.results.quantities import AXIS, BEARING, CONTACT, ERROR, FRICTION, INDENT
 
 if TYPE_CHECKING:
     from nacre.bearing.solution import BearingSolution
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
-Room = Literal["contact", "indent", "bearing"]
+CaseKind = Literal["contact", "indent", "bearing"]
 """What a study solves."""
 
 OUTPUTS = (
@@ -35,7 +35,7 @@ INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 """Outputs of an indentation by default."""
 OF_RINGS = ("displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure")
 """Outputs of a bearing by default; its life is asked for, as it is a model."""
-USUAL: dict[Room, tuple[str, ...]] = {
+USUAL: dict[CaseKind, tuple[str, ...]] = {
     "contact": OUTPUTS,
     "indent": INDENTED,
     "bearing": OF_RINGS,
@@ -93,8 +93,6 @@ ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 ROLLING = {name: name for name in ("force", "torque", "creepage", "stick_share")}
 ROLLING |= {"dissipated": "power"}
 """Those of steady rolling, and the names of their errors; those of a pair are of its length."""
-ERROR = "_discretisation"
-"""Ending of the name under which such an error stands beside its output."""
 
 
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
@@ -104,7 +102,7 @@ def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
 
 
 def outputs_by_name(
-    outputs: Sequence[Output] | Mapping[str, Output], room: Room | None = None
+    outputs: Sequence[Output] | Mapping[str, Output], kind: CaseKind | None = None
 ) -> dict[str, Output]:
     """Return outputs by name, checked: those of what a study solves, or of any."""
     if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
@@ -113,7 +111,7 @@ def outputs_by_name(
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    choices: dict[Room, str] = {
+    choices: dict[CaseKind, str] = {
         "contact": "attributes of Solution that hold numbers "
         f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
         f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
@@ -123,12 +121,12 @@ def outputs_by_name(
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
         f"({', '.join(OF_BEARING)})",
     }
-    known: dict[Room, set[str]] = {
+    known: dict[CaseKind, set[str]] = {
         "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
         "indent": {*OF_INDENT},
         "bearing": {*OF_BEARING},
     }
-    kinds: list[Room] = ["indent", "contact", "bearing"] if room is None else [room]
+    kinds: list[CaseKind] = ["indent", "contact", "bearing"] if kind is None else [kind]
     for name, output in items:
         if not (any(output in known[kind] for kind in kinds) or callable(output)):
             all_choices = ", ".join(choices[kind] for kind in kinds)
