@@ -10,7 +10,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
 /// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
-/// positive. OutsideGrid a free end of the body, values are NaN; equal stresses have NaN at the same places.
+/// positive. Beyond a free end of the body, values are NaN; equal stresses have NaN at the same places.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Stress {

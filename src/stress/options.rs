@@ -22,7 +22,7 @@ pub enum Side {
     Below,
 }
 
-/// Points of each plane z = const at which fields are returned. OutsideGrid a free end of the body they are NaN.
+/// Points of each plane z = const at which fields are returned. Beyond a free end of the body they are NaN.
 ///
 /// Lines and points are interpolated between cell centres, and on the outer half of the grid's first and last cells
 /// extrapolated from two of them; on periodic grids the first cell follows the last. Between a free end and the cells

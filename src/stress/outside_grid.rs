@@ -2,7 +2,7 @@
 //!
 //! Where the largest value at a depth lies on the border of the grid, the plane is evaluated again on wider grids, each twice
 //! as wide as the last, until it lies within. Below layers that bend, a larger value may lie farther out than one within the
-//! grid: there wider grids are searched in any case, as far as the layers bend. OutsideGrid the grid, the load is far: its cells
+//! grid: there wider grids are searched in any case, as far as the layers bend. Beyond the grid, the load is far: its cells
 //! are taken as uniform, and merged into larger ones of the same force and moments. The method was derived here.
 
 use std::ops::ControlFlow;
@@ -94,9 +94,9 @@ impl<'a> OutsideGrid<'a> {
         Self { plan, friction, searched, most, axes: [false; 2], wider: Vec::new() }
     }
 
-    /// `peaks` at the last of `places`, or larger ones beyond the grid, and those beyond it alone. `of` has the values of a cell, from its stresses at
-    /// `places`, of which the `largest` matters; values that stay below the `best` of other depths do not. Where memory does
-    /// not suffice for a wider grid, the peaks found so far stand.
+    /// `peaks` at the last of `places`, or larger ones beyond the grid, and those beyond it alone. `of` has the values of a
+    /// cell, from its stresses at `places`, of which the `largest` matters; values that stay below the `best` of other
+    /// depths do not. Where memory does not suffice for a wider grid, the peaks so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
         &mut self,
         (mut peaks, largest, best): ([Extreme; N], f64, [f64; N]),

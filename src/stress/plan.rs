@@ -191,7 +191,7 @@ impl<'a> PressureSource<'a> {
 }
 
 impl StressPlan {
-    /// A plan for `body` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell. OutsideGrid the free ends of the
+    /// A plan for `body` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell. Beyond the free ends of the
     /// body, stresses are NaN. The plan works on `threads` threads; none: all of the machine's.
     ///
     /// [`Solution::stress_plan`](crate::Solution::stress_plan) makes that of a solved contact.

@@ -273,7 +273,7 @@ impl Refined<'_> {
         suspects
     }
 
-    /// The cells that count and those of a patch, without those beside a free end.
+    /// The windows of the cells that count and of the patch, cut so that neither reaches the margin at a free end.
     fn within_ends(&self, [mut core, mut window]: [Window; 2], half_width: f64) -> [Window; 2] {
         let (body, grid) = (self.source.body, self.solution.grid());
         let rows = Span::of(body, grid).rows;

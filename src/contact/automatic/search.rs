@@ -44,7 +44,7 @@ const ENLARGEMENTS: usize = 10;
 /// Reductions of the coarse grid around a contact that is small on it, by a factor of 4/3 at least.
 const REDUCTIONS: usize = 40;
 
-/// The search for the grid of one trial. It remembers the places that the grid must hold.
+/// The search for the grid of one contact. It remembers the places that the grid must hold.
 pub(super) struct Search<'a> {
     trial: Trial<'a>,
     options: Options,

@@ -96,6 +96,14 @@ def test_what_interrupts_it_carries_what_was_finished(error: type[BaseException]
     assert all(solution.report.converged for solution in finished)
 
 
+def test_stiffness_of_a_copy_without_its_plan_has_the_same_bits() -> None:
+    """A copy from data plans the free ends anew."""
+    body = nacre.HalfSpace(nacre.Elastic(210e9, 0.3), ends=(-9e-5, None))
+    solution = nacre.solve(BALL, body, load=10.0, grid=nacre.Grid((40, 32), (3e-4, 2e-4)))
+    copy = nacre.Solution.from_dict(solution.to_dict())
+    np.testing.assert_array_equal(copy.stiffness(), solution.stiffness())
+
+
 def test_stiffness_is_a_symmetric_array() -> None:
     solution = CONTACT.solve(BALL, load=10.0)
     stiffness = solution.stiffness()
