@@ -213,8 +213,7 @@ impl Refined<'_> {
             let Some(fine) = fine else { continue };
             let [core, _] = windows;
             cores.push(core);
-            let scope =
-                Scope { without: &cores, records: true, goes_beyond: false, ..Scope::of(&plan) };
+            let scope = Scope { without: &cores, records: true, ..Scope::of(&plan) };
             of_grid = request.evaluate(&plan, scope, &mut progress);
             if !(fine.finished && of_grid.finished) {
                 return Ok(StressSummary { finished: false, ..summary });
@@ -319,7 +318,6 @@ impl Refined<'_> {
                 beside: Some(beside),
                 half_width: whole.whole.half_width(),
                 contact: if patch.is_whole { &plan } else { whole },
-                goes_beyond: false,
                 ..Scope::of(&plan)
             };
             let fine = request.evaluate(&plan, scope, progress);

@@ -344,8 +344,6 @@ pub(super) struct Scope<'a> {
     pub(super) contact: &'a StressPlan,
     /// Whether the bounds of each cell are recorded.
     pub(super) records: bool,
-    /// Whether places beyond the grid count.
-    pub(super) goes_beyond: bool,
 }
 
 impl<'a> Scope<'a> {
@@ -357,7 +355,6 @@ impl<'a> Scope<'a> {
             half_width: plan.whole.half_width(),
             contact: plan,
             records: false,
-            goes_beyond: true,
         }
     }
 }
@@ -882,7 +879,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         places: &[Place; K],
         of: impl Fn(&[Tensor; K]) -> [f64; N],
     ) -> ControlFlow<(), [Extreme; N]> {
-        if !self.scope.goes_beyond {
+        // Places beyond the grid are those of its first evaluation, as a whole.
+        if self.scope.beside.is_some() || !self.scope.without.is_empty() {
             return ControlFlow::Continue(peaks);
         }
         let part = (self.done as f64 / self.planned as f64).min(1.0);
