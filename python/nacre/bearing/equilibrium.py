@@ -311,7 +311,7 @@ class Problem:
             np.einsum("zak,zab,zbl->kl", motion, tangent, motion),
             np.einsum("zak,za->k", motion, pull) - self.loads - self.thrust * AXIAL,
             (step, follow),
-            float((places.places[..., 0] + np.abs(places.places[..., 1]) * kinematics.half).max()),
+            float(self.depths(places.places).max()),
             energies,
         )  # fmt: skip
         state.balance, state.unsettled = self.mismatches(state)
@@ -407,14 +407,22 @@ class Problem:
     def limits(self, state: State, step: Array, beside: Array | float = 0.0) -> Array:
         """Return the shares of steps of elements that are not too long for them ``(Z,)``.
 
-        They are as long as twice the deflections or gaps of their contacts, and what the ring moves
-        `beside` them.
+        No contact gets deeper by more than twice its gap or the deepest deflection of its element,
+        and what the ring moves `beside` it: one that hardly touches has next to no stiffness.
         """
-        size = np.abs(step * self.kinematics.lengths).max(axis=1)
-        places = np.abs(state.places)
-        deep = (places[..., 0] + places[..., 1] * self.kinematics.half).max(axis=1)
-        share: Array = np.minimum(1.0, (FARTHEST * deep + beside) / np.where(size > 0, size, 1.0))
+        before = self.depths(state.places)
+        moved = self.kinematics.motion @ state.ring
+        deeper = self.depths(self.kinematics.places(moved, state.own + step).places) - before
+        sizes = np.maximum(np.abs(before), before.max(axis=1, keepdims=True))
+        allowed = FARTHEST * sizes + np.reshape(beside, (-1, 1))
+        shares = np.divide(allowed, deeper, out=np.ones(deeper.shape), where=deeper > allowed)
+        share: Array = shares.min(axis=1)
         return share
+
+    def depths(self, places: Array) -> Array:
+        """Return the deepest approaches of contacts ``(Z, 2)`` [m], at an end of a roller."""
+        depths: Array = places[..., 0] + np.abs(places[..., 1]) * self.kinematics.half
+        return depths
 
     def idle_midway(self, state: State) -> State:
         """Return the state with elements midway that touch nothing there: they carry rounding."""
@@ -422,8 +430,7 @@ class Problem:
             moved = self.kinematics.motion @ state.ring
             own = self.kinematics.neutral(moved, 0.0)
             places = self.kinematics.places(moved, own).places
-            deep = places[..., 0] + np.abs(places[..., 1]) * self.kinematics.half
-            idle = np.asarray((deep <= 0).all(axis=1))
+            idle = np.asarray((self.depths(places) <= 0).all(axis=1))
             state.reaction.force[idle] = 0.0
             state.own = np.where(idle[:, None], own, state.own)
             state.places = np.where(idle[:, None, None], places, state.places)

@@ -46,6 +46,9 @@ LARGEST = {
     "groove_radius": 20.0,
 }
 """Lengths that no bearing exceeds [m]: in mills elements have 0.2 m, slewing rings have 15 m."""
+WIDEST = 1000.0
+"""Pitch diameter over the diameter of an element that no bearing reaches, and that each has whose
+pitch diameter alone is typed in millimetres: slewing rings have some 200."""
 SMALLEST = 50e-6
 """Diameter below that of any element [m]: balls of micromachines have 0.28 mm."""
 SOFTEST, SOFTEST_LAYER, STIFFEST = 1e9, 1e6, 2e12
@@ -254,6 +257,11 @@ class Bearing(ABC):
                 f"pitch_diameter must be above the diameter of an element, "
                 f"{millimetres(diameter)}, for there is no room for an inner ring; "
                 f"got {millimetres(pitch)}"
+            )
+        if pitch >= WIDEST * diameter:
+            raise ValueError(
+                f"pitch_diameter must be below {WIDEST:g} diameters of an element, "
+                f"{millimetres(WIDEST * diameter)}: {_si()}; got {millimetres(pitch)}"
             )
         apart = pitch * math.sin(math.pi / self.count)
         if apart < (1.0 - ROUNDING) * diameter:

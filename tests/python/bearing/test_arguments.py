@@ -144,6 +144,11 @@ MILLIMETRES: list[tuple[str, dict[str, Any], str]] = [
         {"outer": nacre.HalfSpace(STEEL, [nacre.Layer(STEEL, 3.0)])},
         r"^outer\.layers\[0\] must be thinner than an element",
     ),
+    (
+        "deep groove",
+        {"diameter": 1.2e-3, "pitch_diameter": 7.2},
+        r"^pitch_diameter must be below 1000 diameters of an element, 1200 mm:.* got 7200 mm",
+    ),
 ]
 
 

@@ -18,7 +18,9 @@ from nacre.bearing import (
     DeepGrooveBall,
     SphericalRoller,
     TaperedRoller,
+    equilibrium,
 )
+from nacre.bearing.contact_laws import Solved
 
 SIZE: dict[str, Any] = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
 STANDARD: dict[str, Any] = {"model": "iso16281"}
@@ -86,6 +88,27 @@ def test_misaligned_crowned_bearings_converge(
     assert solution.report.balance <= 1e-9
     assert solution.report.iterations <= 10
     assert solution.force[0] == pytest.approx(load, rel=1e-8)
+
+
+def test_rollers_that_centrifugal_forces_press_alone_take_short_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # On deflections of nanometres contacts have next to no stiffness: steps were 10 000 times them.
+    states = []
+    problem = equilibrium.Problem
+    monkeypatch.setattr(
+        problem, "state", lambda *place, state=problem.state: states.append(place) or state(*place)
+    )
+    bearing = CylindricalRoller(
+        **SIZE | {"diameter": 14.3e-3, "length": 11e-3, "count": 10, "pitch_diameter": 203e-3},
+        clearance=41.6e-6,
+        raceway_crown=(50.0, 12.0),
+    )
+    load: dict[str, Any] = {"force": (-1538.0, -1129.0, None), "moment": (9.4, -7.0)}
+    solution = quiet(bearing.solve, **load, speed=4.6, rotating="outer", cells=(40, 16))
+    assert solution.report.converged
+    solved = sum(isinstance(place[0].law, Solved) for place in states)
+    assert solved <= 12
 
 
 def test_tilted_rollers_between_held_rings_are_in_equilibrium() -> None:
