@@ -35,17 +35,17 @@ test: test-rust test-python ## Rust tests and doctests, a crate that depends on 
 # With PYO3_PYTHON=none, the crate that depends on nacre builds only if nacre needs no Python.
 test-rust: $(BUILD)
 	@if cargo nextest --version >/dev/null 2>&1; \
-	then echo cargo nextest run --features serde; cargo nextest run --features serde; \
-	else echo cargo test --tests --examples --features serde; cargo test --tests --examples --features serde; fi
+	then set -x; cargo nextest run --features serde --run-ignored all; \
+	else set -x; cargo test --tests --examples --features serde -- --include-ignored; fi
 	cargo test --doc --features serde
 	PYO3_PYTHON=none cargo run --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 
 test-python: $(WHEEL) $(DEV)
 	$(BIN)/pytest -n 2
 
-# Unit tests of Rust, and Python without what takes seconds each: two minutes once built.
-quick: $(WHEEL) $(DEV) ## the tests of a daily edit: Rust unit tests, and those of Python that are fast
-	cargo test --lib --features serde
+# Without what takes more than half a second each in Rust, or seconds each in Python: two minutes once built.
+quick: $(WHEEL) $(DEV) ## the tests of a daily edit: those of Rust and Python that are fast
+	cargo test --tests --features serde
 	$(BIN)/pytest -q -n 2 -m "not slow"
 
 check: check-rust check-python ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
@@ -71,7 +71,7 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
 
 fuzz: $(WHEEL) $(DEV) ## random contacts, calls, files and indentations: CASES=1000 of each kind, more than ten thousand in all
-	NACRE_FUZZ=$(CASES) cargo test --test contacts fuzz
+	NACRE_FUZZ=$(CASES) cargo test --test contacts --test frictions fuzz -- --include-ignored
 	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/*/test_fuzz*.py
 
 # The other solvers are installed into a separate environment under target/peers.

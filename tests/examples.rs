@@ -6,6 +6,7 @@ mod foundation;
 mod roller;
 
 #[test]
+#[ignore = "slow"]
 fn roller_has_more_pressure_as_the_force_moves_off_its_centre() -> nacre::Result<()> {
     roller::main()?;
     let found = roller::peaks(&[0.0, -0.3, 0.3])?;
@@ -16,6 +17,7 @@ fn roller_has_more_pressure_as_the_force_moves_off_its_centre() -> nacre::Result
 }
 
 #[test]
+#[ignore = "slow"]
 fn foundations_carry_a_ball_as_their_closed_forms_say() -> nacre::Result<()> {
     foundation::main()?;
     let ratios = foundation::approaches(&[0.0, 0.3e-3])?;

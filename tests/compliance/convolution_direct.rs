@@ -30,6 +30,7 @@ fn check_random(shape: [usize; 2]) -> Result<f64> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn odd_even_prime_and_unequal_sizes_equal_the_double_sum() -> Result<()> {
     #[rustfmt::skip]
     let shapes = [

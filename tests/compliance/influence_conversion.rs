@@ -34,6 +34,7 @@ fn errors(body: &HalfSpace, grid: &Grid, method: Method) -> Result<Array2<f64>> 
 }
 
 #[test]
+#[ignore = "slow"]
 fn difference_and_image_err_as_the_reference_program_found() -> Result<()> {
     let mut compared = 0;
     for case in cases("influence_conversion.json") {
@@ -112,6 +113,7 @@ fn refinement_moves_the_periodic_images_away() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn only_image_serves_a_long_thin_domain() -> Result<()> {
     // The paper's roller: 26.8 x 0.16 mm, coating of 0.04 mm, E1/E2 = 4; lengths in mm.
     let grid = Grid::new([1024, 128], [26.8, 0.16])?;

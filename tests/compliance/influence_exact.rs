@@ -107,6 +107,7 @@ fn largest_error(file: &str) -> Result<(f64, usize)> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn coefficients_of_random_bodies_equal_hankel_quadrature() -> Result<()> {
     let (worst, compared) = largest_error("influence_random.json")?;
     assert!(compared > 1000, "{compared}");
@@ -123,6 +124,7 @@ fn coefficients_of_coatings_equal_those_of_a_second_program() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
     // Errors of C r/(dx dy), as the estimate's description says.
     let mut ratios = Vec::new();

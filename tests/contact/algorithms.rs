@@ -63,6 +63,7 @@ fn both(
 }
 
 #[test]
+#[ignore = "slow"]
 fn cascade_finds_the_solution_of_polonsky_and_keer() -> Result<()> {
     let steel = steel()?;
     let grid = Grid::new([72, 59], [4e-4, 3.28e-4])?;
@@ -172,6 +173,7 @@ fn a_hard_coating_on_a_polymer_needs_no_fallback() -> Result<()> {
 /// 12 to 14 cells: both algorithms find one solution, with one force, with moments and with a tilt. The error of
 /// the pressure is the residual times the condition of the problem, some 1e3 here.
 #[test]
+#[ignore = "slow"]
 fn algorithms_agree_on_hard_coatings() -> Result<()> {
     let shapes: [Box<dyn Surface>; 3] = [
         Box::new(Cylinder::new(5e-3)?),
@@ -208,6 +210,7 @@ fn algorithms_agree_on_hard_coatings() -> Result<()> {
 /// iteration comes to a stand at a residual of 5e-4, and the reference algorithm starts afresh. From that pressure it
 /// took six times its own iterations; the default may take half as many more.
 #[test]
+#[ignore = "slow"]
 fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
     let coat = [2e9 * 9645.085696111506, 0.22699389922019508, 0.342305015032e-6];
     let body = stack(Elastic::new(2e9, 0.4269278355736329)?, [coat])?;
@@ -231,6 +234,7 @@ fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
 /// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
 /// of that moment carries the load, and the report is that of a stopped solve.
 #[test]
+#[ignore = "slow"]
 fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
     let grid = Grid::new([128, 128], [4.0, 4.0])?;
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;

@@ -56,6 +56,7 @@ fn lands(ends: &[[f64; 2]], drops: &[f64]) -> Result<Roller> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn contacts_away_from_the_middle_of_the_shape_are_found() -> Result<()> {
     let tilted = |approach| Motion::approach(approach).with_tilt([Some(1e-3), None]);
     let crowned = Roller::new(5e-3, 10e-3, 1.0)?;
@@ -74,6 +75,7 @@ fn contacts_away_from_the_middle_of_the_shape_are_found() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn lands_that_touch_later_are_found() -> Result<()> {
     let shape = lands(&[[-5e-3, -4e-3], [-0.9e-3, 0.9e-3], [4e-3, 5e-3]], &[5e-7, 0.0, 5e-7])?;
     let grid = Grid::new([512, 128], [1.02e-2, 6e-4])?;
@@ -85,6 +87,7 @@ fn lands_that_touch_later_are_found() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_thin_incompressible_layer_gets_a_grid_that_holds_the_contact() -> Result<()> {
     let body = stack(nacre::Substrate::Rigid, [[2e6, 0.5, 3e-6]])?;
     let solution = solve(&Sphere::new(0.5)?, &body, &Motion::load(1000.0))?;
@@ -106,6 +109,7 @@ impl Surface for Rings {
 /// Each grid that holds one ring more misses the next one. The search ends all the same, and says that part of
 /// the contact is missing: the missing rings overlap by the approach less the displacement there.
 #[test]
+#[ignore = "slow"]
 fn a_contact_without_end_is_warned_of() -> Result<()> {
     let approach = 1e-6;
     let solution = solve(&Rings, steel()?, &Motion::approach(approach))?;
@@ -182,6 +186,7 @@ fn rectangle_below(shape: &dyn Surface, tilt: [f64; 2], level: f64) -> Result<Op
 /// Rollers with two to four rounded lands of random places and heights, tilted, and sums of a roller or a sphere and
 /// a paraboloid elsewhere, under loads and prescribed approaches.
 #[test]
+#[ignore = "slow"]
 fn random_shapes_are_held_as_a_whole() -> Result<()> {
     let numbers = uniform([9, 16], 22);
     for (case, r) in numbers.outer_iter().enumerate() {
@@ -221,6 +226,7 @@ fn random_shapes_are_held_as_a_whole() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn cells_are_divided_until_the_peak_is_resolved() -> Result<()> {
     // A logarithmic profile whose contact nearly reaches the ends, with narrow peaks there.
     let profile = LogarithmicProfile::new(2.2336e-7, 6.5038e-3, 0.0, 1.0)?;
@@ -240,6 +246,7 @@ fn cells_are_divided_until_the_peak_is_resolved() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn simple_contacts_keep_their_grids() -> Result<()> {
     let solution = solve(&Sphere::new(5e-3)?, steel()?, &Motion::load(10.0))?;
     assert_eq!(solution.grid().shape(), [104, 104]);
@@ -257,6 +264,7 @@ fn simple_contacts_keep_their_grids() -> Result<()> {
 /// A roller whose own grid has 160 000 cells: with fewer, results agree within the estimated errors of both, and where these
 /// are above 1 % of the peak, a warning says so.
 #[test]
+#[ignore = "slow"]
 fn a_cap_on_the_cells_is_kept() -> Result<()> {
     let body = Body::from(coated(steel()?, 2.0, 40e-6)?);
     let (roller, motion) = (Roller::new(5e-3, 1e-3, 1.0)?, Motion::load(20.0));

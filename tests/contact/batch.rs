@@ -19,6 +19,7 @@ fn contact(threads: usize) -> Result<Contact> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
     let spheres = [Sphere::new(50.0)?, Sphere::new(80.0)?];
     // Four cases of one sphere are adjacent. One of them has a prescribed approach, which
@@ -89,6 +90,7 @@ fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn each_solution_is_given_away_once() -> Result<()> {
     let (sphere, contact) = (Sphere::new(50.0)?, contact(2)?);
     let cases: Vec<Case> = (1..=200)

@@ -34,6 +34,7 @@ fn peak_error(estimate: Discretisation) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn estimates_are_of_the_size_of_the_errors() -> Result<()> {
     // The error depends on the position of the edge within a cell. In one contact, the error or its
     // estimate may be small by chance. The mean of the logarithm over many contacts must agree within a
@@ -78,6 +79,7 @@ fn solved(body: &HalfSpace, grid: Grid, shape: &dyn Surface, motion: &Motion) ->
 /// With p ~ s^(−1/2) at the edge, the peak has no limit, and no error is stated. Approach and load have one: of
 /// a whole punch, of one that tilts on a part of its edge, and of a strip.
 #[test]
+#[ignore = "slow"]
 fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
     let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let punch = FlatPunch::new(0.83)?.shifted(0.02, -0.013)?;
@@ -109,6 +111,7 @@ fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
 /// A nearly incompressible layer much thinner than the contact, on cells 2.5 times as long as it is thick: the
 /// coarser grids change little, and err like the finest one.
 #[test]
+#[ignore = "slow"]
 fn thin_incompressible_layers_are_seen_not_to_be_resolved() -> Result<()> {
     let cases = [
         (stack(Substrate::Rigid, [[2e6, 0.5, 3e-5]])?, 1e3, 7.2e-3),
@@ -197,18 +200,14 @@ fn count(numbers: std::ops::Range<u64>) -> Result<[usize; 2]> {
 
 /// Some of the random contacts of all shapes, bodies and controls. If 1 % of all are wrong, three or more of fifty
 /// are in 1.4 % of all draws.
+/// 150 contacts that are equal in every run, or 1800 others: with `NACRE_FUZZ`, in a quarter of an hour of one core.
 #[test]
-fn estimates_hold_for_random_contacts() -> Result<()> {
-    let [cases, wrong] = count(0..150)?;
-    assert!(cases >= 40 && wrong <= 2, "{wrong} of {cases}");
-    Ok(())
-}
-
-#[test]
-#[ignore = "a quarter of an hour of one core"]
-fn estimates_hold_for_99_of_100_random_contacts() -> Result<()> {
-    let [cases, wrong] = count(10_000..11_800)?;
-    assert!(cases >= 500 && 100 * wrong < cases, "{wrong} of {cases}");
+#[ignore = "slow"]
+fn fuzz_estimates_hold_for_99_of_100_random_contacts() -> Result<()> {
+    let fuzzed = std::env::var("NACRE_FUZZ").is_ok();
+    let [cases, wrong] = count(if fuzzed { 10_000..11_800 } else { 0..150 })?;
+    let allowed = if fuzzed { cases / 100 } else { 2 };
+    assert!(cases >= 40 && wrong <= allowed, "{wrong} of {cases}");
     Ok(())
 }
 
@@ -233,6 +232,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
 /// smaller, and is at most twenty times as large. The true one depends on where the rim lies in its cell, and may be small by
 /// chance: the largest on cells of nearly this length counts.
 #[test]
+#[ignore = "slow"]
 fn errors_of_coats_in_line_contact_have_their_size() -> Result<()> {
     let half_width = 1.94e-4;
     let shape = Cylinder::new(20e-3)?;

@@ -73,6 +73,7 @@ fn straight(bodies: [&HalfSpace; 2], motion: &Motion) -> Result<Solution> {
 
 /// Mirrored, shifted, scaled and exchanged contacts have the same pressure, to the tolerance.
 #[test]
+#[ignore = "slow"]
 fn symmetries() -> Result<()> {
     let motion = eccentric(LOAD, 1.5);
     let (free, low) = (unit(0.3, BOTH)?, unit(0.2, [Some(-HALF_LENGTH), None])?);
@@ -124,6 +125,7 @@ impl Surface for Scaled {
 /// Both algorithms, all controls and batches agree with each other to the tolerance, and the certificate is that of the
 /// whole operator.
 #[test]
+#[ignore = "slow"]
 fn controls_agree() -> Result<()> {
     let (free, low) = (unit(0.3, BOTH)?, unit(0.3, [Some(-HALF_LENGTH), None])?);
     let grid = Grid::new([160, 48], [2.0 * HALF_LENGTH, 6.0])?;
@@ -158,6 +160,7 @@ fn controls_agree() -> Result<()> {
 /// The tangent stiffness against central differences of load and moments: both err by 1e-6, the tolerance of the
 /// solutions, 1e-13, over the step of 1e-5. No cell enters or leaves the contact within such a step.
 #[test]
+#[ignore = "slow"]
 fn stiffness_is_that_of_differences() -> Result<()> {
     let (free, low) = (unit(0.3, BOTH)?, unit(0.3, [Some(-HALF_LENGTH), None])?);
     let grid = Grid::new([80, 32], [2.0 * HALF_LENGTH, 4.0])?;
@@ -170,6 +173,7 @@ fn stiffness_is_that_of_differences() -> Result<()> {
 /// A ball beside an end, in a window of the grid that begins behind the end: as by the reference algorithm, which knows
 /// no windows. The contact is softer towards the end, and the load moves away from it.
 #[test]
+#[ignore = "slow"]
 fn windows_keep_their_distance_from_the_end() -> Result<()> {
     let grid = Grid::new([128, 96], [8.0, 6.0])?;
     for ends in
@@ -192,6 +196,7 @@ fn windows_keep_their_distance_from_the_end() -> Result<()> {
 /// Contacts of three and four cells beside an end under given moments, some of which end by the active set, have no
 /// overlap anywhere and balance the load.
 #[test]
+#[ignore = "slow"]
 fn few_cells_beside_an_end() -> Result<()> {
     let grid = Grid::new([45, 64], [4.5e-4, 4.8e-4])?;
     let half = 0.5 * grid.size()[0];
@@ -225,6 +230,7 @@ fn few_cells_beside_an_end() -> Result<()> {
 
 /// The end may lie on any edge: the coarser grids, whose cells it may cut, change the iteration and not the solution.
 #[test]
+#[ignore = "slow"]
 fn an_end_on_any_edge() -> Result<()> {
     let (whole, free) = (unit(0.3, WHOLE)?, unit(0.3, [Some(-HALF_LENGTH), None])?);
     let mut pressures = Vec::new();

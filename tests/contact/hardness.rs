@@ -103,6 +103,7 @@ fn surfaces_that_do_not_yield_are_elastic_to_the_bit() -> Result<()> {
 /// Both bounds hold on open, line and periodic grids, for layers, a rigid base and two bodies, under load, eccentric
 /// load and approach, with each algorithm.
 #[test]
+#[ignore = "slow"]
 fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
     let soft = Elastic::new(1.0, 0.3)?;
     let coat = Layer::new(Elastic::new(5.0, 0.2)?, 0.2)?;
@@ -162,6 +163,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
 
 /// Random contacts of all shapes and bodies with random hardnesses, of which half differ from cell to cell.
 #[test]
+#[ignore = "slow"]
 fn random_contacts_keep_both_bounds() -> Result<()> {
     for number in 0..60 {
         let case = RandomContact::new(7000 + number)?;

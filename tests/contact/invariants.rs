@@ -255,6 +255,7 @@ fn gaps_of_coarser_grids_do_not_change_the_solution() -> Result<()> {
 /// Solutions do not depend on the number of threads, in a window of some cells and on so many cells that
 /// every pass is divided.
 #[test]
+#[ignore = "slow"]
 fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
     let small = (Grid::new([300, 256], [4.5e-4, 4.8e-4])?, 200.0);
     let large = (Grid::new([290, 270], [2e-4, 2e-4])?, 600.0);
@@ -313,6 +314,7 @@ proptest! {
     #![proptest_config(seeded(24))]
 
     #[test]
+    #[ignore = "slow"]
     fn rough_contacts_are_complementary_and_balanced(
         seed in any::<u64>(),
         log_load in 0.0..2.5,

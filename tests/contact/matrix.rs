@@ -195,6 +195,7 @@ fn assert_same(name: &str, kind: Kind, scene: &Scene, limit: f64) -> Result<()> 
 }
 
 #[test]
+#[ignore = "slow"]
 fn forces_balance() -> Result<()> {
     for (name, kind, load, eccentric, _) in KINDS {
         let solution = solve(kind, &FIRST)?;
@@ -212,6 +213,7 @@ fn forces_balance() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn mirror_images_have_mirrored_answers() -> Result<()> {
     for (name, kind, ..) in KINDS {
         assert_same(name, kind, &Scene { side: -1.0, ..FIRST }, SAME)?;
@@ -220,6 +222,7 @@ fn mirror_images_have_mirrored_answers() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn units_change_nothing() -> Result<()> {
     // Millimetres and newtons; inches and tonnes-force.
     for (metre, newton) in [(1e3, 1.0), (39.37, 1.0 / 9806.65)] {
@@ -231,6 +234,7 @@ fn units_change_nothing() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn layers_of_the_substrate_change_nothing() -> Result<()> {
     for (name, kind, ..) in KINDS {
         let limit = if name == "free end" { SAME_END } else { SAME };
@@ -240,6 +244,7 @@ fn layers_of_the_substrate_change_nothing() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn finer_grids_are_within_the_stated_error() -> Result<()> {
     for (name, kind, _, _, stated) in KINDS {
         let coarse = solve(kind, &FIRST)?;
@@ -258,6 +263,7 @@ fn finer_grids_are_within_the_stated_error() -> Result<()> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_pressure_of_a_solution_is_a_start_that_changes_nothing() -> Result<()> {
     for (name, kind, ..) in KINDS {
         let first = solve(kind, &FIRST)?;

@@ -40,6 +40,7 @@ fn map(grid: &Grid, height: impl Fn(f64, f64) -> f64) -> Result<HeightMap> {
 /// A wave of pressure on cells along one direction has the displacement Σ û/p̂ sinc over all waves that look the same on
 /// the cells. The terms alternate.
 #[test]
+#[ignore = "slow"]
 fn waves_have_the_displacement_of_their_aliases() -> Result<()> {
     let even = [1.0, 1.0];
     for (shape, spacing) in [([32, 32], even), ([32, 32], [20.0, 1.0]), ([30, 64], even)] {
@@ -121,6 +122,7 @@ fn a_spot_that_wraps_has_no_ends() -> Result<()> {
 /// Full contact of a wave h = Δ cos kx cos ky on any layers: p = p̄ + Δ/c11(√2 k) cos kx cos ky. The spectral method has it
 /// to rounding, the cells to the second order.
 #[test]
+#[ignore = "slow"]
 fn full_contact_of_crossed_waves() -> Result<()> {
     let (k, height) = (2.0 * PI / 10.0, 1e-3);
     for (number, body) in bodies(0.3)?.iter().enumerate() {
@@ -195,6 +197,7 @@ fn solved(body: &HalfSpace, shape: &dyn Surface, grid: Grid, motion: &Motion) ->
 /// A shift by whole cells along a direction that repeats shifts the pressure; so do approach and load, exchanged, give it
 /// back.
 #[test]
+#[ignore = "slow"]
 fn shifts_and_controls() -> Result<()> {
     let grid = Grid::new([64, 48], [1.0, 1.0])?.periodic([true; 2])?;
     let shape = rough(&grid)?;
@@ -284,6 +287,7 @@ fn random_stacks_in_full_contact() -> Result<()> {
 
 /// The operator of a mirrored pressure is mirrored, that of a shifted one shifted, and with x and y exchanged transposed.
 #[test]
+#[ignore = "slow"]
 fn the_operator_is_mirrored_shifted_and_transposed() -> Result<()> {
     let shape = [30, 18];
     let pressure = uniform(shape, 31);
@@ -323,6 +327,7 @@ fn the_operator_is_mirrored_shifted_and_transposed() -> Result<()> {
 
 /// One thread, two and four give the same bits, with a hardness as well.
 #[test]
+#[ignore = "slow"]
 fn threads_change_no_bit() -> Result<()> {
     let grid = Grid::new([128, 96], [1.0, 0.75])?.periodic([true; 2])?;
     let shape = rough(&grid)?;

@@ -61,6 +61,7 @@ fn coated() -> Result<HalfSpace> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn stiffness_is_that_of_central_differences() -> Result<()> {
     let bare: HalfSpace = Elastic::new(1.0, 0.3)?.into();
     let grid = Grid::new([60, 45], [2.4, 2.0])?;

@@ -119,6 +119,7 @@ fn extrapolated([coarse, middle, fine]: [f64; 3]) -> f64 {
 /// Partial slip: width of the stick zone and shift. The reference counts the shift with the datum of a half-space of
 /// width b; nacre with that of the grid.
 #[test]
+#[ignore = "slow"]
 fn partial_slip() -> Result<()> {
     each_pair("cattaneo", |lines, case| {
         let share = number(case, "Q_over_muP");
@@ -140,6 +141,7 @@ fn partial_slip() -> Result<()> {
 
 /// Rolling with full adhesion: force over creepage.
 #[test]
+#[ignore = "slow"]
 fn full_adhesion() -> Result<()> {
     each_pair("carter_full", |lines, case| {
         let bare = std::f64::consts::PI / (2.0 * (1.0 - POISSON));
@@ -154,6 +156,7 @@ fn full_adhesion() -> Result<()> {
 
 /// Rolling with partial slip: creepage for a force, of which the width of the contact is known to a part of a cell.
 #[test]
+#[ignore = "slow"]
 fn partial_slip_in_rolling() -> Result<()> {
     each_pair("carter_partial", |lines, case| {
         let share = number(case, "Q_over_muP");

@@ -113,6 +113,7 @@ proptest! {
     #![proptest_config(seeded(cases_to_try()))]
 
     #[test]
+    #[ignore = "slow"]
     fn fuzz_histories_keep_the_law(case in case()) {
         let contact = case.contact().expect("a contact");
         let options = precise(1e-7);

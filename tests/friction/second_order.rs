@@ -79,6 +79,7 @@ impl Ellipse {
 /// 58 cells across have errors of .1 % of forces and torques and .3 % of the power, 116 cells a third of it, where second
 /// order leaves a quarter. First order has ten times as much.
 #[test]
+#[ignore = "slow"]
 fn limits_of_two_programs() -> Result<()> {
     for (cells, part) in [(64, 1.0), (128, 1.0 / 3.0)] {
         for ellipse in Ellipse::all(cells) {
@@ -279,6 +280,7 @@ fn other_orders_are_refused() -> Result<()> {
 /// contact: hardly more on finer grids, as each starts from half the cells. Measured: 36, 34 and 67, and 10 % for
 /// rounding; first order takes 188, 642 and 1407 to 1e-8.
 #[test]
+#[ignore = "slow"]
 fn convolutions_hardly_grow() -> Result<()> {
     for (cells, most) in [(44, 40), (88, 38), (176, 74)] {
         let case = cases("friction/rolling.json").remove(2);

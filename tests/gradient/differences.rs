@@ -129,6 +129,7 @@ fn compare(case: &Case, outputs: &[Output], rounding: f64) -> Result<Option<[usi
 }
 
 #[test]
+#[ignore = "slow"]
 fn derivatives_equal_differences_of_solves() -> Result<()> {
     let (mut compared, mut left) = (0, 0);
     for number in 0..CASES {
@@ -176,6 +177,7 @@ fn a_solution_from_its_fields_has_the_same_derivatives() -> Result<()> {
 
 /// Grids that repeat along one direction or both: derivatives of a coated body in contact with a wavy surface.
 #[test]
+#[ignore = "slow"]
 fn derivatives_on_periodic_grids_equal_differences() -> Result<()> {
     for periodic in [[true, true], [true, false], [false, true]] {
         let grid = Grid::new([20, 22], [2.0, 2.2])?.periodic(periodic)?;

@@ -14,6 +14,7 @@ const EXACT: f64 = 1e-9;
 
 /// Σ w ṗ of the tangent equals the derivative of Σ w p of the adjoint, for every parameter.
 #[test]
+#[ignore = "slow"]
 fn adjoint_and_tangent_agree() -> Result<()> {
     let (mut compared, mut cases) = (0, 0);
     for number in 0..80 {
@@ -53,6 +54,7 @@ fn adjoint_and_tangent_agree() -> Result<()> {
 
 /// Σ dδ/dh = 1 under a load, and Σ dJ/dh = 0 for every J(p); Σ x ds_x/dh = 1 where the tilt is loaded.
 #[test]
+#[ignore = "slow"]
 fn fields_satisfy_the_sum_rules() -> Result<()> {
     let mut seen = [0, 0];
     for number in 0..100 {
@@ -84,6 +86,7 @@ fn fields_satisfy_the_sum_rules() -> Result<()> {
 
 /// Moduli and load scaled together leave the approach, and scale pressures: Σ E ∂/∂E + W ∂/∂W.
 #[test]
+#[ignore = "slow"]
 fn moduli_and_load_scale_together() -> Result<()> {
     let mut seen = 0;
     for number in 0..60 {

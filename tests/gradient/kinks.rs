@@ -18,6 +18,7 @@ fn cells(solution: &Solution) -> Result<usize> {
 
 /// Loads at which a cell joins the contact, by bisection.
 #[test]
+#[ignore = "slow"]
 fn fifty_kinks_are_told() -> Result<()> {
     let contact = plan(Elastic::new(1.0, 0.3)?, Grid::new([16, 16], [2.4, 2.4])?)?;
     let options = tolerance(1e-12);
@@ -47,6 +48,7 @@ fn fifty_kinks_are_told() -> Result<()> {
 
 /// Fewer than one per cent of contacts are told to be next to another.
 #[test]
+#[ignore = "slow"]
 fn random_contacts_are_not_told() -> Result<()> {
     let (mut told, mut seen) = (0, 0);
     for number in 0..200 {

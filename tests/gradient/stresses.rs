@@ -60,6 +60,7 @@ fn gradient(output: StressOutput) -> Result<nacre::gradient::Gradient> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
     let body = body()?;
     let at = [0.13, -0.21, 0.3];
@@ -120,6 +121,7 @@ fn soft(values: &[Array3<f64>], sharpness: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
     const SHARPNESS: f64 = 40.0;
     let body = body()?;

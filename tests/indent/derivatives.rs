@@ -79,6 +79,7 @@ type Numbers = [f64; 14];
 /// All numbers of a two-layer body with a slipping interface, an elastic counterbody, several tips and adhesions: derivatives
 /// equal differences of fourth order, of radius, load, approach, stiffness, pressure and displacement, whatever is held.
 #[test]
+#[ignore = "slow"]
 fn differences() -> Result<()> {
     #[rustfmt::skip]
     let forms: [fn(f64, f64) -> Form; 5] = [

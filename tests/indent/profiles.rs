@@ -158,6 +158,7 @@ fn loads_are_closed_forms() -> Result<()> {
 /// On layers P' = S δ' along the curve, of loads by moments and approaches at the edge, and 1.5 times as many nodes change neither
 /// by more than 1e-10; kinks lie at least 0.1 % from the edge, so that differences of eighth order do not pass them.
 #[test]
+#[ignore = "slow"]
 fn layers_below_profiles_that_are_not_smooth() -> Result<()> {
     for (ratio, h) in [(0.1, 1.0), (10.0, 0.3), (10.0, 0.05), (0.1, 0.015)] {
         let stack = Stack::plan(&[coated(ratio, h)?.into()])?;

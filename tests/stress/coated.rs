@@ -114,6 +114,7 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
 /// of the edge, some thousandths of a cell, or 1e-4 of the peak pressure. On a coating of four
 /// times the substrate's modulus that is half a per cent of the tension.
 #[test]
+#[ignore = "slow"]
 fn sphere_on_a_coating() -> Result<()> {
     for case in cases("stress_sphere.json") {
         let (coarse, fine) = (sphere_errors(&case, 65)?, sphere_errors(&case, 257)?);
@@ -134,6 +135,7 @@ fn sphere_on_a_coating() -> Result<()> {
 /// Stress on the axis and shear at the interface below a cylinder, on 151 and 601 strips over 3.2
 /// half-widths.
 #[test]
+#[ignore = "slow"]
 fn cylinder_on_a_coating() -> Result<()> {
     for case in cases("stress_line.json") {
         let thickness = number(&case, "h_over_bH");
@@ -172,6 +174,7 @@ fn cylinder_on_a_coating() -> Result<()> {
 
 /// Discs on pavements: KENPAVE's and AMADEUS' cases, and Burmister's.
 #[test]
+#[ignore = "slow"]
 fn disc_on_layers() -> Result<()> {
     const CUT: usize = 16;
     for case in cases("stress_disc.json") {

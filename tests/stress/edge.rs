@@ -144,6 +144,7 @@ fn mcewen(y: f64, z: f64) -> [f64; 6] {
 /// 32 cells to 128 errors should halve at least, as the root of the cell. They fall to 0.34 and
 /// 0.46; the bar is 0.6.
 #[test]
+#[ignore = "slow"]
 fn hertz_point_contact() -> Result<()> {
     for depth in [1.0, 1.4, 1.6, 2.0, 4.0, 8.0] {
         let [everywhere, _] = sphere_errors(128, depth)?;
@@ -208,6 +209,7 @@ fn surface_of_a_sliding_cylinder() -> Result<()> {
 /// very edge. Measured: 7e-3 less, which the place of the edge explains, as below the cylinder; the
 /// bar is 1.4 times that. The tension is found in the cell at the edge, or in the one beside it.
 #[test]
+#[ignore = "slow"]
 fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     const FRICTION: f64 = 0.5;
     let (solution, peak) = sphere(128)?;
@@ -288,6 +290,7 @@ fn points_between_strips() -> Result<()> {
 /// Behind a sliding sphere, with 48 and 64 cells across the contact and friction askew to the grid: Hamilton's tension
 /// (see above). Measured: at most 0.28 % less.
 #[test]
+#[ignore = "slow"]
 fn tension_at_the_edge_of_a_sliding_sphere() -> Result<()> {
     const FRICTION: f64 = 0.5;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
@@ -329,6 +332,7 @@ fn extremes_between_cells_are_within_their_error() -> Result<()> {
 /// A coating that equals its substrate changes nothing, and at the edge of a punch, where pressure has no end, no point is
 /// added.
 #[test]
+#[ignore = "slow"]
 fn equal_coatings_and_punches_at_the_edge() -> Result<()> {
     let options = sliding(0.4, [0.0, 1.0]);
     let strengths = nacre::stress::Strengths::default();
@@ -435,6 +439,7 @@ fn against_finer(coarse: Grid, shape: &dyn Surface, load: f64, depth: f64) -> Re
 /// An elliptical contact of oblong cells, 36 and 17 to its half-widths. Measured: 0.26, 0.06, 0.15
 /// and 0.34 of the errors with uniform cells; the bar is 1.2 times the largest.
 #[test]
+#[ignore = "slow"]
 fn smooth_contacts_gain() -> Result<()> {
     let grid = Grid::new([96, 64], [5.0, 2.6])?;
     let shape = Paraboloid::new(3e3, 1e3)?;
@@ -483,6 +488,7 @@ fn long_cells_are_evaluated() -> Result<()> {
 /// and with them their shares, each 1/24 of the change of pressure from cell to cell: 1e-4 of the
 /// peak on average.
 #[test]
+#[ignore = "slow"]
 fn sharp_and_rough_contacts_do_not_lose() -> Result<()> {
     let grid = Grid::new([64, 63], [3.0, 2.9])?;
     let shapes: [(&str, Box<dyn Surface>, f64); 4] = [

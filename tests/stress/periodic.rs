@@ -38,6 +38,7 @@ fn rolled(values: &Array2<f64>, by: [usize; 2]) -> Array2<f64> {
 /// transforms of 280 cells is left. The mean of σ_zz is minus that of the pressure at each depth, and that of the shear minus
 /// friction times it.
 #[test]
+#[ignore = "slow"]
 fn shifts_move_the_stress_and_each_depth_bears_the_load() -> Result<()> {
     let shape = [20, 14];
     let grid = Grid::new(shape, [20.0, 14.0])?.periodic([true; 2])?;
@@ -68,6 +69,7 @@ fn shifts_move_the_stress_and_each_depth_bears_the_load() -> Result<()> {
 
 /// Along a period, a pressure that does not vary is that of a line contact, under friction along it and across it.
 #[test]
+#[ignore = "slow"]
 fn strips_along_the_period_are_line_contacts() -> Result<()> {
     let body = coated()?;
     let profile: Vec<f64> =
@@ -103,6 +105,7 @@ fn strips_along_the_period_are_line_contacts() -> Result<()> {
 /// A wave along the period of a strip of cells does not feel whether far strips repeat: its stress falls off as
 /// e^{−q|x|}, q = 2π/6, which is 1e-8 at half of 36 cells.
 #[test]
+#[ignore = "slow"]
 fn waves_along_the_period_are_the_same_whether_the_other_direction_repeats() -> Result<()> {
     let body = coated()?;
     let shape = [36, 12];
@@ -171,6 +174,7 @@ fn summary(solution: &Solution, member: Member) -> Result<StressSummary> {
 /// cells; at points and on planes; and its summary. Pressures of both agree to the tolerance of 1e-11 times the
 /// condition of the cells, some 1e3.
 #[test]
+#[ignore = "slow"]
 fn the_seam_is_like_any_other_place() -> Result<()> {
     let (here, there) = (solved([0, 0], 2)?, solved([24, 20], 2)?);
     assert!(here.contact_area() < 0.5 * 30.0 && here.contact_area() > 0.05 * 30.0);
@@ -212,6 +216,7 @@ fn the_seam_is_like_any_other_place() -> Result<()> {
 
 /// One thread, two and four give the same bits.
 #[test]
+#[ignore = "slow"]
 fn threads_change_no_bit() -> Result<()> {
     let fields: Vec<Stress> = [1, 2, 4]
         .into_iter()

@@ -68,6 +68,7 @@ fn summary(plan: &StressPlan, options: &StressOptions) -> Result<StressSummary> 
 
 /// Friction comes between frictionless evaluations, so that what it plans is seen to change nothing.
 #[test]
+#[ignore = "slow"]
 fn a_plan_gives_the_bits_of_separate_calls() -> Result<()> {
     let solution = solution()?;
     for member in [Member::Body, Member::Counterbody] {
@@ -91,6 +92,7 @@ fn a_plan_gives_the_bits_of_separate_calls() -> Result<()> {
 /// rounding of 3654 cells. Between centres stresses are those of the point (`tests/stress/edge.rs`), and displacements are
 /// interpolated. At the border of the grid, in and beside the contact, where pressure within cells is felt.
 #[test]
+#[ignore = "slow"]
 fn a_point_has_the_stress_of_its_plane() -> Result<()> {
     const ROUNDING: f64 = 1e-12;
     let solution = solution()?;

@@ -33,6 +33,7 @@ fn options(threads: usize) -> StressOptions {
 /// Pressure within cells is felt at the surface and at a tenth of a cell, not at the interface and
 /// in the substrate.
 #[test]
+#[ignore = "slow"]
 fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
     const DEPTHS: [f64; 4] = [0.0, 0.002, 0.2, 0.7];
     let solution = solution()?;

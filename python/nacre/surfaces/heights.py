@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -426,6 +427,8 @@ def metres(unit: str) -> float | None:
 
 def without_sentinels(heights: Array) -> Array:
     """Return heights with NaN for numbers such as -25400 that are far from all others."""
+    if not {*extremes(heights)} & {*SENTINELS}:
+        return heights
     measured = np.isfinite(heights)
     known = measured & np.isin(heights, SENTINELS)
     rest = heights[measured & ~known]
@@ -433,6 +436,13 @@ def without_sentinels(heights: Array) -> Array:
         return heights
     away = np.maximum(rest.min() - heights, heights - rest.max())
     return np.where(known & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
+
+
+def extremes(heights: Array) -> tuple[float, float]:
+    """Return the smallest and the largest finite height, or inf and -inf where there is none."""
+    measured = np.isfinite(heights)
+    lowest = heights.min(initial=math.inf, where=measured)
+    return float(lowest), float(heights.max(initial=-math.inf, where=measured))
 
 
 def _fits(table: Table, counts: tuple[int, int]) -> int | None:
@@ -558,12 +568,12 @@ def _is_profile(headings: Sequence[Column], values: Array) -> bool:
         return True
     for table in (values.T, values):
         lines = table[1:] if len(table) == 3 and is_counter(table[0]) else table
-        ordered = [line for line in lines if _is_ordered(line)]
-        if len(lines) == 2 and lines.shape[1] >= 4 and ordered:
+        if len(lines) == 2 and lines.shape[1] >= 4 and any(map(_is_ordered, lines)):
             return True
-        strict = [line for line in lines if line.size > LEAST_ORDERED and is_strict(line)]
-        if 2 < len(lines) <= FEWEST_LINES and 1 < len(strict) < len(lines):
-            return True
+        if 2 < len(lines) <= FEWEST_LINES:
+            strict = [line for line in lines if line.size > LEAST_ORDERED and is_strict(line)]
+            if 1 < len(strict) < len(lines):
+                return True
     return False
 
 

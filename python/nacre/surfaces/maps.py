@@ -25,6 +25,8 @@ TALLEST = 10.0
 """Largest ratio of height to side of a map; surfaces have less than 1, and a wrong unit 1e3."""
 STEEPEST = 50.0
 """Largest median slope between neighbours along x and y; surfaces have less than 5."""
+SAMPLED_LINES = 256
+"""Lines along each axis whose slopes are looked at, at least; all of smaller maps."""
 FLATTEST, WIDEST = 1e-6, 0.5
 """Least ratio of height to side of a map that is wider than this [m]."""
 
@@ -106,18 +108,21 @@ def read_map(
     if transpose:
         heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
     factor = _metres(name, surface, unit)
+    is_known = unit is not None or surface.unit is not None
+    note = surface.note
+    del surface  # the map in the file's unit
     heights = heights * factor
     is_spacing_given = spacing is not None
     if spacing is None:
         if sides is None:
-            raise ValueError(f"spacing must be given: {name}{surface.note} does not have it")
+            raise ValueError(f"spacing must be given: {name}{note} does not have it")
         spacing = sides[0] * factor, sides[1] * factor
-    is_known = unit is not None or surface.unit is not None
     _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
     heights = _filled(name, heights, detrend, wraps)
     try:
-        return core.HeightMap(heights - _trend(heights, detrend), spacing, periodic=periodic)
+        heights -= _trend(heights, detrend)
+        return core.HeightMap(heights, spacing, periodic=periodic)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from error
 
@@ -183,7 +188,11 @@ def _check_size(
     sizes = f"heights would span {span:.4g} m on a map of {lx:.4g} m x {ly:.4g} m"
     if not is_known and span > TALLEST * side:
         raise ValueError(f"unit must be given: {name} names none, and in metres its {sizes}")
-    steps = [np.diff(heights, axis=0) / dx, np.diff(heights, axis=1) / dy]
+    every = [cells // SAMPLED_LINES or 1 for cells in heights.shape]
+    steps = [
+        np.diff(heights[:, :: every[1]], axis=0) / dx,
+        np.diff(heights[:: every[0]], axis=1) / dy,
+    ]
     slopes = [np.abs(step[np.isfinite(step)]) for step in steps]
     slope = min(float(np.median(one)) if one.size else 0.0 for one in slopes)
     is_flat = side > WIDEST and span < FLATTEST * side
@@ -198,8 +207,8 @@ def _check_size(
 
 
 def _span(heights: Array) -> float:
-    measured = heights[np.isfinite(heights)]
-    return float(np.ptp(measured)) if measured.size else 0.0
+    lowest, highest = _heights.extremes(heights)
+    return max(highest - lowest, 0.0)
 
 
 def _filled(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
@@ -230,14 +239,19 @@ def _trend(heights: Array, detrend: str) -> Array:
     """Return the mean, the plane or the paraboloid that fits measured heights best, or zeros."""
     if detrend == "none":
         return np.zeros_like(heights)
-    x, y = (np.linspace(-1, 1, cells) for cells in heights.shape)
-    x, y = np.broadcast_arrays(x[:, np.newaxis], y)
-    terms = [np.ones_like(x)]
-    if detrend in ("plane", "quadratic"):
-        terms += [x, y]
-    if detrend == "quadratic":
-        terms += [x**2, x * y, y**2]
-    basis = np.stack([term.ravel() for term in terms], axis=1)
-    measured = np.isfinite(heights).ravel()
-    best, *_ = np.linalg.lstsq(basis[measured], heights.ravel()[measured])
-    return (basis @ best).reshape(heights.shape)
+    degree = {"mean": 0, "plane": 1, "quadratic": 2}[detrend]
+    powers = [(k, n - k) for n in range(degree + 1) for k in range(n + 1)]
+    # The normal equations, whose sums over the map are products with powers of x and of y.
+    x, y = (np.vander(np.linspace(-1, 1, cells), 5, increasing=True) for cells in heights.shape)
+    moments, sums = np.outer(x.sum(axis=0), y.sum(axis=0)), x.T @ heights @ y
+    if not np.isfinite(sums).all():
+        measured = np.isfinite(heights)
+        moments, sums = x.T @ measured @ y, x.T @ np.where(measured, heights, 0.0) @ y
+    gram = [[moments[i + k, j + n] for k, n in powers] for i, j in powers]
+    # Terms that are equal on few lines share a coefficient.
+    best, *_ = np.linalg.lstsq(gram, [sums[power] for power in powers], rcond=1e-12)
+    coefficients = np.zeros((3, 3))
+    for power, value in zip(powers, best, strict=True):
+        coefficients[power] = value
+    trend: Array = x[:, :3] @ coefficients @ y[:, :3].T
+    return trend

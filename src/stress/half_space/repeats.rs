@@ -389,6 +389,7 @@ mod tests {
     /// none along the surface. Sums over images err by 1e-7 of the coefficient of the loaded cell, which is at most the
     /// pressure; the sums of aliases end where e^{−αz} is 1e-12.
     #[test]
+    #[ignore = "slow"]
     fn waves_along_one_direction_are_those_of_the_body() -> Result<()> {
         for (number, body) in bodies()?.iter().enumerate() {
             let deepest = match body.substrate() {
@@ -437,6 +438,7 @@ mod tests {
 
     /// Crossed waves are those of the body, too: σ_zz.
     #[test]
+    #[ignore = "slow"]
     fn crossed_waves_are_those_of_the_body() -> Result<()> {
         for body in &bodies()? {
             let depth = 1.3;
