@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre._tools.rounding import ceil, floor
 from nacre._tools.units import Scale
 from nacre.plot.sections import section
 from nacre.plot.style import COLOURMAP, WIDTH, extent, lengths, new_axes, outline, styled
@@ -110,19 +112,24 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     scale = Scale.of(solution.peak_pressure, "Pa")
     with styled():
         axes = axes or new_axes(0.7, 0.5)
-        corners = [
-            factor * np.linspace(low, high, cells + 1)
-            for factor, (low, high), cells in zip(
-                [length.factor for length in scales], ends, grid.shape, strict=True
-            )
-        ]
         highest = scale.factor * solution.peak_pressure or 1.0
-        loaded = np.where(solution.in_contact, scale.factor * solution.pressure, np.nan)
-        mesh = axes.pcolormesh(
-            *corners, loaded.T, cmap=COLOURMAP, vmin=0, vmax=highest, rasterized=True
+        cells, sides = _cells_within(window, ends, grid.spacing)
+        pressure = scale.factor * solution.pressure[cells]
+        loaded = np.where(solution.in_contact[cells], pressure, np.nan)
+        left, right, bottom, top = (
+            length.factor * end for length, pair in zip(scales, sides, strict=True) for end in pair
+        )
+        image = axes.imshow(
+            loaded.T,
+            extent=(left, right, bottom, top),
+            origin="lower",
+            aspect="auto",
+            cmap=COLOURMAP,
+            vmin=0,
+            vmax=highest,
         )
         axes.grid(visible=False)
-        colourbar: Any = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
+        colourbar: Any = axes.figure.colorbar(image, ax=axes, label=f"pressure [{scale.unit}]")
         colourbar.outline.set_linewidth(0.6)
         axes.set(
             xlabel=f"x [{scales[0].unit}]",
@@ -151,6 +158,18 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             title += "; x and y to different scales"
         axes.set_title(title)
     return axes
+
+
+def _cells_within(
+    window: npt.NDArray[np.float64], ends: Sequence[tuple[float, float]], spacing: Sequence[float]
+) -> tuple[tuple[slice, ...], list[tuple[float, float]]]:
+    """Return the cells of a grid within a window ``(2, 2)``, and the ends of their block [m]."""
+    cells, sides = [], []
+    for (low, high), (start, _), step in zip(window, ends, spacing, strict=True):
+        first, last = int(floor((low - start) / step)), int(ceil((high - start) / step))
+        cells.append(slice(first, last))
+        sides.append((start + first * step, start + last * step))
+    return tuple(cells), sides
 
 
 def _numbers(solution: Solution, axes: Axes) -> None:
