@@ -371,72 +371,58 @@ pub(super) fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
-/// Arguments of a call by name, as a Python function hands them over. `None` stands for what was not given.
-#[derive(Clone)]
-pub(super) struct Given<'py>(pub(super) Bound<'py, PyDict>);
+/// Argument that may be `None`.
+pub(super) type Optional<'py> = Option<Bound<'py, PyAny>>;
 
-impl<'a, 'py> FromPyObject<'a, 'py> for Given<'py> {
-    type Error = PyErr;
+/// Argument of type `T`, which `kind` describes in the error.
+pub(super) fn of_kind<'py, T: FromPyObjectOwned<'py>>(
+    name: &str,
+    kind: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<T> {
+    value
+        .extract()
+        .map_err(|_| PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(value))))
+}
 
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        Ok(Self(object.cast::<PyDict>()?.to_owned()))
+/// Truth value.
+pub(super) fn flag(name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    of_kind(name, "a bool", value)
+}
+
+/// Real number that may be missing.
+pub(super) fn optional_number(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<f64>> {
+    value.map(|value| number(name, value)).transpose()
+}
+
+/// Integer of at least `least`, which may be missing.
+pub(super) fn optional_count(
+    name: &str,
+    least: usize,
+    value: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<usize>> {
+    value.map(|value| count(name, least, value)).transpose()
+}
+
+/// Function, which may be missing.
+pub(super) fn callable(name: &str, value: Optional<'_>) -> PyResult<Option<Py<PyAny>>> {
+    match value {
+        Some(value) if !value.is_callable() => {
+            Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
+        }
+        value => Ok(value.map(Bound::unbind)),
     }
 }
 
-impl<'py> Given<'py> {
-    /// Argument that was given.
-    pub(super) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
-    }
-
-    /// Argument of type `T`, which `kind` describes in the error.
-    pub(super) fn of<T: FromPyObjectOwned<'py>>(&self, name: &str, kind: &str) -> PyResult<T> {
-        let none = || self.0.py().None().into_bound(self.0.py());
-        let value = self.0.get_item(name)?.unwrap_or_else(none);
-        value.extract().map_err(|_| {
-            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&value)))
-        })
-    }
-
-    /// Real number.
-    pub(super) fn real(&self, name: &str) -> PyResult<f64> {
-        Ok(self.of::<Real>(name, "a real number")?.0)
-    }
-
-    /// Real number that may be missing.
-    pub(super) fn number(&self, name: &str) -> PyResult<Option<f64>> {
-        self.get(name)?.map(|value| number(name, &value)).transpose()
-    }
-
-    /// Pair of numbers, each of which may be missing.
-    pub(super) fn pair(&self, name: &str) -> PyResult<[Option<f64>; 2]> {
-        pair(name, self.get(name)?.as_ref())
-    }
-
-    /// Truth value.
-    pub(super) fn flag(&self, name: &str) -> PyResult<bool> {
-        self.of(name, "a bool")
-    }
-
-    /// Value that a word stands for.
-    pub(super) fn word<T: DeserializeOwned>(&self, name: &str) -> PyResult<T> {
-        word(name, &self.of::<String>(name, "a str")?)
-    }
-
-    /// Integer of at least `least`, which may be missing.
-    pub(super) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
-        self.get(name)?.map(|value| count(name, least, &value)).transpose()
-    }
-
-    /// Function, which may be missing.
-    pub(super) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
-        match self.get(name)? {
-            Some(value) if !value.is_callable() => {
-                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
-            }
-            value => Ok(value.map(Bound::unbind)),
-        }
-    }
+/// Value that a word stands for, of an argument.
+pub(super) fn word_argument<T: DeserializeOwned>(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+) -> PyResult<T> {
+    word(name, &of_kind::<String>(name, "a str", value)?)
 }
 
 /// Value of the argument `name` that a word stands for.

@@ -5,26 +5,35 @@ from __future__ import annotations
 import copyreg
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, Unpack, overload
 
-import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
+from nacre.contact.arguments import (
+    MOTION,
+    STEP,
+    FrictionOptions,
+    FrictionStep,
+    Motion,
+    PlannedRollKeywords,
+    PlannedSlideKeywords,
+    Rolling,
+    RollingDirection,
+    RollKeywords,
+    Setup,
+    SlideKeywords,
+    SolveOptions,
+    StepProgress,
+)
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 
-MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
-"""Keywords of the motion along z."""
-STEP = (*MOTION, "friction", "shift", "force", "twist", "torque")
-"""Keywords of a step of a history."""
 MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""
 Progress = Callable[[Report], object]
-StepProgress = Callable[[int, FrictionReport], object]
-"""Function that is told the number of a step and its report."""
 
 
 def solve(
@@ -145,7 +154,33 @@ def solve(
     >>> round(solution.eccentricity[0], 8)
     0.00287
     """
-    return _solved(locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    start, tell = _start(initial), _report_teller(progress)
+    options = SolveOptions(hardness, tolerance, max_iterations, algorithm, start, tell, check)
+    return _solved(shape, motion, options, setup)
+
+
+@overload
+def slide(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    steps: None = None,
+    **keywords: Unpack[PlannedSlideKeywords],
+) -> FrictionSolution: ...
+
+
+@overload
+def slide(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    steps: Iterable[Mapping[str, Any]],
+    **keywords: Unpack[PlannedSlideKeywords],
+) -> History: ...
 
 
 def slide(
@@ -173,7 +208,7 @@ def slide(
     initial: FrictionSolution | History | None = None,
     progress: StepProgress | None = None,
     check: bool = True,
-) -> Any:
+) -> FrictionSolution | History:
     """Press a shape into a body and move it tangentially, with friction, in one call.
 
     It chooses a grid where none is given, plans, and solves.
@@ -261,7 +296,34 @@ def slide(
     >>> [round(solution.force[0], 6) for solution in loop], loop[2].dissipated > 0
     ([2.0, -2.0, 2.0], True)
     """
-    return _steps(core.slide, locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    step = FrictionStep(motion, friction, shift, force, twist, torque)
+    start, tell = _last_solved(initial), _step_teller(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
+    return _slid(shape, step, steps, options, setup)
+
+
+@overload
+def roll(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    cells: None = None,
+    **keywords: Unpack[PlannedRollKeywords],
+) -> FrictionSolution: ...
+
+
+@overload
+def roll(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    cells: int,
+    **keywords: Unpack[PlannedRollKeywords],
+) -> History: ...
 
 
 def roll(
@@ -281,7 +343,7 @@ def roll(
     creepage: Along | None = None,
     force: Along | None = None,
     spin: float = 0.0,
-    direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+    direction: RollingDirection | None = None,
     cells: int | None = None,
     order: Literal[1, 2] = 2,
     tolerance: float = 1e-8,
@@ -290,7 +352,7 @@ def roll(
     initial: FrictionSolution | History | None = None,
     progress: StepProgress | None = None,
     check: bool = True,
-) -> Any:
+) -> FrictionSolution | History:
     """Press a shape into a body, which rolls, in one call.
 
     It chooses a grid where none is given, plans, and solves.
@@ -365,7 +427,12 @@ def roll(
     >>> round(wheel.force[0], 6), wheel.creepage[0] > 0
     (1.5, True)
     """
-    return _steps(core.roll, locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
+    start, tell = _last_solved(initial), _step_teller(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
+    return _rolled(shape, rolling, options, setup)
 
 
 class Contact:
@@ -501,7 +568,10 @@ class Contact:
         >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
         0.0
         """
-        return _solved(locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        start, tell = _start(initial), _report_teller(progress)
+        options = SolveOptions(hardness, tolerance, max_iterations, algorithm, start, tell, check)
+        return _solved(shape, motion, options, self._plan)
 
     def solve_many(
         self,
@@ -561,17 +631,19 @@ class Contact:
         >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
         [5.0, 10.0]
         """
-        keywords = locals()
-        case_keywords = _mappings(
-            ("a case", "cases", "solve", "in case"), cases, ("shape", *MOTION)
+        words = ("a case", "cases", "solve", "in case")
+        mappings = _mappings(words, cases, ("shape", *MOTION))
+        shape_motions = [(case["shape"], Motion.of(case)) for case in mappings]
+        options = SolveOptions(
+            hardness, tolerance, max_iterations, algorithm, None, progress, check
         )
-        outcomes, failure = self._plan.solve_many(case_keywords, keywords)
+        outcomes, failure = self._plan.solve_many(shape_motions, options)
         solutions: list[Any] = []
-        for number, (case, outcome) in enumerate(zip(case_keywords, outcomes, strict=True)):
+        for number, ((shape, _), outcome) in enumerate(zip(shape_motions, outcomes, strict=True)):
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
-                    solution = _checked_solution(outcome, case["shape"], check, stacklevel=3)
+                    solution = _checked_solution(outcome, shape, check, stacklevel=3)
                 except Exception as error:  # of the tolerance, or a warning that is one
                     error.add_note(f"in case {number}")
                     outcome, solution = error, getattr(error, "solution", None)
@@ -582,6 +654,18 @@ class Contact:
             failure.solutions = solutions  # type: ignore[attr-defined]
             raise failure
         return solutions
+
+    @overload
+    def slide(
+        self, shape: core.Shape, steps: None = None, **keywords: Unpack[SlideKeywords]
+    ) -> FrictionSolution: ...
+    @overload
+    def slide(
+        self,
+        shape: core.Shape,
+        steps: Iterable[Mapping[str, Any]],
+        **keywords: Unpack[SlideKeywords],
+    ) -> History: ...
 
     def slide(
         self,
@@ -604,7 +688,7 @@ class Contact:
         initial: FrictionSolution | History | None = None,
         progress: StepProgress | None = None,
         check: bool = True,
-    ) -> Any:
+    ) -> FrictionSolution | History:
         """Press a shape into the body and move it tangentially, with friction.
 
         Parameters
@@ -638,7 +722,20 @@ class Contact:
         >>> round(ball.force[0], 6), ball.report.full_slip
         (1.5, False)
         """
-        return _steps(core.slide, locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        step = FrictionStep(motion, friction, shift, force, twist, torque)
+        start, tell = _last_solved(initial), _step_teller(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
+        return _slid(shape, step, steps, options, self._plan)
+
+    @overload
+    def roll(
+        self, shape: core.Shape, *, cells: None = None, **keywords: Unpack[RollKeywords]
+    ) -> FrictionSolution: ...
+    @overload
+    def roll(
+        self, shape: core.Shape, *, cells: int, **keywords: Unpack[RollKeywords]
+    ) -> History: ...
 
     def roll(
         self,
@@ -653,7 +750,7 @@ class Contact:
         creepage: Along | None = None,
         force: Along | None = None,
         spin: float = 0.0,
-        direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+        direction: RollingDirection | None = None,
         cells: int | None = None,
         order: Literal[1, 2] = 2,
         tolerance: float = 1e-8,
@@ -662,7 +759,7 @@ class Contact:
         initial: FrictionSolution | History | None = None,
         progress: StepProgress | None = None,
         check: bool = True,
-    ) -> Any:
+    ) -> FrictionSolution | History:
         """Press a shape into the body, which rolls steadily, or cell by cell from a given state.
 
         Parameters
@@ -697,7 +794,11 @@ class Contact:
         >>> wheel.report.full_slip, round(wheel.force[0], 3)
         (True, 3.0)
         """
-        return _steps(core.roll, locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
+        start, tell = _last_solved(initial), _step_teller(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
+        return _rolled(shape, rolling, options, self._plan)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""
@@ -722,19 +823,41 @@ class Contact:
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
 
 
-def _solved(keywords: dict[str, Any], plan: core.Plan | None = None) -> Solution:
-    """Return the solution of what a user asked for with these arguments."""
-    _check_cells(keywords)
-    initial, progress = keywords["initial"], keywords["progress"]
+def _start(initial: Any) -> core.Solved | Matrix | None:
+    """Return what the compiled module starts a solve from."""
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
-    is_solved = isinstance(initial, Solution)
-    keywords["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
-    if callable(progress):
-        keywords["progress"] = lambda *parts: progress(Report._of(parts))
-    return _checked_solution(
-        core.solve(keywords, plan), keywords["shape"], keywords["check"], stacklevel=4
+    return (
+        initial._solved if isinstance(initial, Solution) else getattr(initial, "pressure", initial)
     )
+
+
+def _last_solved(initial: Any) -> core.FrictionSolved | None:
+    """Return the state of the compiled module from which a contact with friction goes on."""
+    last = initial[-1] if isinstance(initial, History) and initial else initial
+    return last._solved if isinstance(last, FrictionSolution) else last
+
+
+def _report_teller(progress: Progress | None) -> Callable[..., object] | None:
+    """Return a function that is called with the parts of a report; the module refuses others."""
+    if not callable(progress):
+        return progress
+    return lambda *parts: progress(Report._of(parts))
+
+
+def _step_teller(progress: StepProgress | None) -> Callable[[int, str], object] | None:
+    """Return a function that is called with the report of a step as JSON text, likewise."""
+    if not callable(progress):
+        return progress
+    return lambda number, text: progress(number, FrictionReport._from_text(text))
+
+
+def _solved(
+    shape: core.Shape, motion: Motion, options: SolveOptions, on: Setup | core.Plan
+) -> Solution:
+    """Return the solution of what a user asked for."""
+    solved = core.solve(shape, motion, options, on)
+    return _checked_solution(solved, shape, options.check, stacklevel=4)
 
 
 def _checked_solution(
@@ -749,12 +872,6 @@ def _checked_solution(
         error.solution = solution
         raise error
     return solution
-
-
-def _check_cells(keywords: Mapping[str, Any]) -> None:
-    """Raise a `ValueError` if a grid is given, and how many cells one may have that is chosen."""
-    if keywords.get("max_cells") is not None and keywords["grid"] is not None:
-        raise ValueError("max_cells must not be given beside grid: it limits a grid that is chosen")
 
 
 def _mappings(
@@ -785,54 +902,52 @@ def _mappings(
     return [dict(item) for item in mappings]
 
 
-def _steps(
-    begin: Callable[..., core.FrictionSteps],
-    keywords: dict[str, Any],
-    plan: core.Plan | None = None,
-) -> Any:
-    """Return the solutions of a function or method that a user called with these arguments.
+def _slid(
+    shape: core.Shape,
+    step: FrictionStep,
+    steps: Iterable[Mapping[str, Any]] | None,
+    options: FrictionOptions,
+    on: Setup | core.Plan,
+) -> FrictionSolution | History:
+    """Return the solution of a step, or the history of steps, that a user asked for."""
+    if steps is None:
+        return _taken(core.slide(shape, step, None, options, on), 1, options)
+    words = ("a step", "steps", "slide", "step")
+    own = [FrictionStep.of(mapping) for mapping in _mappings(words, steps, STEP)]
+    return _taken(core.slide(shape, step, own, options, on), len(own), options)
+
+
+def _rolled(
+    shape: core.Shape, rolling: Rolling, options: FrictionOptions, on: Setup | core.Plan
+) -> FrictionSolution | History:
+    """Return the solution of steady rolling, or the history of the cells, that a user asked for."""
+    return _taken(core.roll(shape, rolling, options, on), rolling.cells or 1, options)
+
+
+def _taken(
+    steps: core.FrictionSteps, count: int, options: FrictionOptions
+) -> FrictionSolution | History:
+    """Return the solutions of so many steps, or that of the only one.
 
     Steps are solved one after another, and warn of what they find; an exception carries those that
     are finished.
     """
-    _check_cells(keywords)
-    progress = keywords["progress"]
-    if callable(progress):
-        keywords["progress"] = lambda number, text: progress(
-            number, FrictionReport._from_text(text)
-        )
-    if isinstance(keywords["initial"], History) and keywords["initial"]:
-        keywords["initial"] = keywords["initial"][-1]
-    if isinstance(keywords["initial"], FrictionSolution):
-        keywords["initial"] = keywords["initial"]._solved
-    step_keywords = None
-    if keywords.get("steps") is not None:
-        words = ("a step", "steps", "slide", "step")
-        step_keywords = _mappings(words, keywords["steps"], STEP)
-    for step in (keywords, *(step_keywords or ())):
-        if np.asarray(friction := step.get("friction")).dtype.kind == "b":
-            raise TypeError(f"friction must be a number, or one for each cell, got {friction!r}")
-    if step_keywords is not None:
-        steps = core.slide(keywords, step_keywords, plan)
-    else:
-        steps = begin(keywords, plan=plan)
-    count = len(step_keywords) if step_keywords else keywords.get("cells") or 1
     solutions: list[FrictionSolution] = []
     try:
-        with lasting("steps", progress) as tell:
+        with lasting("steps", options.progress) as tell:
             for solved in steps:
                 solution = FrictionSolution._of(solved)
                 termination = solution.report.termination
                 for warning in solution.normal.report.warnings if termination != "stopped" else []:
-                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
-                if keywords["check"] and termination == "iteration limit":
+                    warnings.warn(warning, core.NacreWarning, stacklevel=4)
+                if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution
                     raise error
                 solutions.append(solution)
                 if termination == "stopped":
                     break
-                if progress is None and tell is not None:
+                if options.progress is None and tell is not None:
                     tell(len(solutions) / count)
     except BaseException as error:
         if steps.several:
