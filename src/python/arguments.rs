@@ -371,58 +371,70 @@ pub(super) fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
-/// Argument that may be `None`.
-pub(super) type Optional<'py> = Option<Bound<'py, PyAny>>;
+/// A keyword of a call, which `None` stands for where it was not given.
+#[derive(FromPyObject)]
+pub(super) struct Argument<'py>(pub(super) Bound<'py, PyAny>);
 
-/// Argument of type `T`, which `kind` describes in the error.
-pub(super) fn of_kind<'py, T: FromPyObjectOwned<'py>>(
-    name: &str,
-    kind: &str,
-    value: &Bound<'py, PyAny>,
-) -> PyResult<T> {
-    value
-        .extract()
-        .map_err(|_| PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(value))))
-}
-
-/// Truth value.
-pub(super) fn flag(name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
-    of_kind(name, "a bool", value)
-}
-
-/// Real number that may be missing.
-pub(super) fn optional_number(
-    name: &str,
-    value: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Option<f64>> {
-    value.map(|value| number(name, value)).transpose()
-}
-
-/// Integer of at least `least`, which may be missing.
-pub(super) fn optional_count(
-    name: &str,
-    least: usize,
-    value: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Option<usize>> {
-    value.map(|value| count(name, least, value)).transpose()
-}
-
-/// Function, which may be missing.
-pub(super) fn callable(name: &str, value: Optional<'_>) -> PyResult<Option<Py<PyAny>>> {
-    match value {
-        Some(value) if !value.is_callable() => {
-            Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
-        }
-        value => Ok(value.map(Bound::unbind)),
+impl<'py> Argument<'py> {
+    /// Argument that was given.
+    pub(super) fn get(&self) -> Option<&Bound<'py, PyAny>> {
+        Some(&self.0).filter(|value| !value.is_none())
     }
-}
 
-/// Value that a word stands for, of an argument.
-pub(super) fn word_argument<T: DeserializeOwned>(
-    name: &str,
-    value: &Bound<'_, PyAny>,
-) -> PyResult<T> {
-    word(name, &of_kind::<String>(name, "a str", value)?)
+    /// Argument of type `T`, which `kind` describes in the error.
+    pub(super) fn of<T: FromPyObjectOwned<'py>>(&self, name: &str, kind: &str) -> PyResult<T> {
+        self.0.extract().map_err(|_| {
+            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&self.0)))
+        })
+    }
+
+    /// Argument that `read` reads where it was given.
+    pub(super) fn map<T>(
+        &self,
+        read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> PyResult<Option<T>> {
+        self.get().map(read).transpose()
+    }
+
+    /// Real number.
+    pub(super) fn real(&self, name: &str) -> PyResult<f64> {
+        number(name, &self.0)
+    }
+
+    /// Real number that may be missing.
+    pub(super) fn number(&self, name: &str) -> PyResult<Option<f64>> {
+        self.map(|value| number(name, value))
+    }
+
+    /// Pair of numbers, each of which may be missing.
+    pub(super) fn pair(&self, name: &str) -> PyResult<[Option<f64>; 2]> {
+        pair(name, self.get())
+    }
+
+    /// Truth value.
+    pub(super) fn flag(&self, name: &str) -> PyResult<bool> {
+        self.of(name, "a bool")
+    }
+
+    /// Value that a word stands for.
+    pub(super) fn word<T: DeserializeOwned>(&self, name: &str) -> PyResult<T> {
+        word(name, &self.of::<String>(name, "a str")?)
+    }
+
+    /// Integer of at least `least`, which may be missing.
+    pub(super) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
+        self.map(|value| count(name, least, value))
+    }
+
+    /// Function, which may be missing.
+    pub(super) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
+        self.map(|value| match value.is_callable() {
+            true => Ok(value.clone().unbind()),
+            false => {
+                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(value))))
+            }
+        })
+    }
 }
 
 /// Value of the argument `name` that a word stands for.

@@ -6,10 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use super::arguments::{
-    Optional, callable, count, flag, number, of_kind, optional_count, optional_number, pair,
-    read_only, real_matrix, word_argument,
-};
+use super::arguments::{Argument, count, read_only, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::{PyBody, body};
 use super::grid::PyGrid;
@@ -170,21 +167,21 @@ pub(super) fn shape_of(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
 /// `nacre.contact.arguments.Motion`.
 #[derive(FromPyObject)]
 pub(super) struct PyMotion<'py> {
-    load: Optional<'py>,
-    approach: Optional<'py>,
-    eccentricity: Optional<'py>,
-    moment: Optional<'py>,
-    tilt: Optional<'py>,
+    load: Argument<'py>,
+    approach: Argument<'py>,
+    eccentricity: Argument<'py>,
+    moment: Argument<'py>,
+    tilt: Argument<'py>,
 }
 
 impl PyMotion<'_> {
     pub(super) fn read(&self) -> PyResult<Motion> {
         Ok(Motion {
-            load: optional_number("load", self.load.as_ref())?,
-            approach: optional_number("approach", self.approach.as_ref())?,
-            eccentricity: pair("eccentricity", self.eccentricity.as_ref())?,
-            moment: pair("moment", self.moment.as_ref())?,
-            tilt: pair("tilt", self.tilt.as_ref())?,
+            load: self.load.number("load")?,
+            approach: self.approach.number("approach")?,
+            eccentricity: self.eccentricity.pair("eccentricity")?,
+            moment: self.moment.pair("moment")?,
+            tilt: self.tilt.pair("tilt")?,
         })
     }
 }
@@ -192,55 +189,55 @@ impl PyMotion<'_> {
 /// `nacre.contact.arguments.SolveOptions`.
 #[derive(FromPyObject)]
 pub(super) struct PySolveOptions<'py> {
-    hardness: Optional<'py>,
-    tolerance: Bound<'py, PyAny>,
-    max_iterations: Optional<'py>,
-    algorithm: Bound<'py, PyAny>,
-    initial: Optional<'py>,
-    progress: Optional<'py>,
-    check: Bound<'py, PyAny>,
+    hardness: Argument<'py>,
+    tolerance: Argument<'py>,
+    max_iterations: Argument<'py>,
+    algorithm: Argument<'py>,
+    initial: Argument<'py>,
+    progress: Argument<'py>,
+    check: Argument<'py>,
 }
 
 impl PySolveOptions<'_> {
     /// Options of a solve from a uniform pressure, and its callback.
-    fn read(self) -> PyResult<(Options, Option<Py<PyAny>>)> {
+    fn read(&self) -> PyResult<(Options, Option<Py<PyAny>>)> {
         let options = Options {
-            tolerance: number("tolerance", &self.tolerance)?,
-            max_iterations: optional_count("max_iterations", 0, self.max_iterations.as_ref())?,
-            algorithm: word_argument("algorithm", &self.algorithm)?,
-            hardness: self.hardness.as_ref().map(hardness).transpose()?,
+            tolerance: self.tolerance.real("tolerance")?,
+            max_iterations: self.max_iterations.count("max_iterations", 0)?,
+            algorithm: self.algorithm.word("algorithm")?,
+            hardness: self.hardness.map(hardness)?,
             ..Options::default()
         };
-        flag("check", &self.check)?;
-        Ok((options, callable("progress", self.progress)?))
+        self.check.flag("check")?;
+        Ok((options, self.progress.callable("progress")?))
     }
 }
 
 /// `nacre.contact.arguments.Setup`.
 #[derive(FromPyObject)]
 pub(super) struct PySetup<'py> {
-    body: Bound<'py, PyAny>,
-    counterbody: Optional<'py>,
-    grid: Bound<'py, PyAny>,
-    max_cells: Optional<'py>,
-    threads: Optional<'py>,
+    body: Argument<'py>,
+    counterbody: Argument<'py>,
+    grid: Argument<'py>,
+    max_cells: Argument<'py>,
+    threads: Argument<'py>,
 }
 
 impl PySetup<'_> {
     /// Bodies, and the grid where one is given.
     pub(super) fn read(&self) -> PyResult<(Body, Setup, Option<Grid>)> {
-        let grid: Option<PyGrid> = of_kind("grid", "a nacre.Grid", &self.grid)?;
+        let grid: Option<PyGrid> = self.grid.of("grid", "a nacre.Grid")?;
         let setup = Setup {
-            counterbody: self.counterbody.as_ref().map(body).transpose()?,
+            counterbody: self.counterbody.map(body)?,
             coefficients: None,
-            threads: optional_count("threads", 1, self.threads.as_ref())?,
+            threads: self.threads.count("threads", 1)?,
         };
-        Ok((body(&self.body)?, setup, grid.map(|grid| grid.0)))
+        Ok((body(&self.body.0)?, setup, grid.map(|grid| grid.0)))
     }
 
     /// Largest number of cells of a grid that is chosen.
     pub(super) fn max_cells(&self) -> PyResult<Option<usize>> {
-        optional_count("max_cells", SMALLEST_GRID, self.max_cells.as_ref())
+        self.max_cells.count("max_cells", SMALLEST_GRID)
     }
 }
 
@@ -266,7 +263,7 @@ pub(super) fn solve(
     options: PySolveOptions<'_>,
     on: PyOn<'_>,
 ) -> PyResult<PySolved> {
-    let (shape, motion, initial) = (shape_of(shape)?, motion.read()?, options.initial.clone());
+    let (shape, motion, initial) = (shape_of(shape)?, motion.read()?, options.initial.get());
     let (mut options, progress) = options.read()?;
     let (mut first, mut dented) = (None, None);
     if let Some(initial) = initial {
@@ -277,7 +274,7 @@ pub(super) fn solve(
             first = Some(*before.grid());
             dented = before.indentation.as_ref().map(|_| Arc::clone(before));
         } else {
-            options.initial = Some(real_matrix("initial", &initial)?);
+            options.initial = Some(real_matrix("initial", initial)?);
         }
     }
     let on = match on {

@@ -7,10 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::arguments::{
-    Optional, Pair, callable, count, flag, number, of_kind, optional_count, optional_number, pair,
-    read_only, real_array, real_matrix, word,
-};
+use super::arguments::{Argument, Pair, count, read_only, real_array, real_matrix, word};
 use super::background::{self, Caller};
 use super::bodies::half_space;
 use super::contact::{PyMotion, PyOn, PySetup, shape_of};
@@ -241,11 +238,11 @@ impl PyFrictionSteps {
 #[derive(FromPyObject)]
 pub(super) struct PyFrictionStep<'py> {
     motion: PyMotion<'py>,
-    friction: Optional<'py>,
-    shift: Optional<'py>,
-    force: Optional<'py>,
-    twist: Optional<'py>,
-    torque: Optional<'py>,
+    friction: Argument<'py>,
+    shift: Argument<'py>,
+    force: Argument<'py>,
+    twist: Argument<'py>,
+    torque: Argument<'py>,
 }
 
 impl PyFrictionStep<'_> {
@@ -254,11 +251,11 @@ impl PyFrictionStep<'_> {
         let motion = self.motion.read()?;
         Ok(Step {
             motion: (motion != Motion::default()).then_some(motion),
-            friction: self.friction.as_ref().map(coefficient).transpose()?,
-            shift: pair("shift", self.shift.as_ref())?,
-            force: pair("force", self.force.as_ref())?,
-            twist: optional_number("twist", self.twist.as_ref())?,
-            torque: optional_number("torque", self.torque.as_ref())?,
+            friction: self.friction.map(coefficient)?,
+            shift: self.shift.pair("shift")?,
+            force: self.force.pair("force")?,
+            twist: self.twist.number("twist")?,
+            torque: self.torque.number("torque")?,
         })
     }
 }
@@ -267,22 +264,22 @@ impl PyFrictionStep<'_> {
 #[derive(FromPyObject)]
 pub(super) struct PyRolling<'py> {
     motion: PyMotion<'py>,
-    friction: Optional<'py>,
-    creepage: Optional<'py>,
-    force: Optional<'py>,
-    spin: Bound<'py, PyAny>,
-    direction: Bound<'py, PyAny>,
-    cells: Optional<'py>,
-    order: Optional<'py>,
+    friction: Argument<'py>,
+    creepage: Argument<'py>,
+    force: Argument<'py>,
+    spin: Argument<'py>,
+    direction: Argument<'py>,
+    cells: Argument<'py>,
+    order: Argument<'py>,
 }
 
 impl PyRolling<'_> {
     /// Rolling of a shape, which says in which direction if it rolls in one alone.
     fn read(&self, shape: &Shape) -> PyResult<Rolling> {
-        let friction = self.friction.as_ref().map(coefficient).transpose()?;
+        let friction = self.friction.map(coefficient)?;
         let friction =
             friction.ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
-        let direction: Option<String> = of_kind("direction", "a str", &self.direction)?;
+        let direction: Option<String> = self.direction.of("direction", "a str")?;
         let direction = match (direction, shape.rolling_direction()) {
             (Some(direction), _) => word("direction", &direction)?,
             (None, Some([x, _])) if x.abs() < 0.5 => RollingDirection::PlusY,
@@ -294,9 +291,9 @@ impl PyRolling<'_> {
             }
         };
         Ok(Rolling {
-            creepage: pair("creepage", self.creepage.as_ref())?,
-            force: pair("force", self.force.as_ref())?,
-            spin: number("spin", &self.spin)?,
+            creepage: self.creepage.pair("creepage")?,
+            force: self.force.pair("force")?,
+            spin: self.spin.real("spin")?,
             ..Rolling::new(self.motion.read()?, friction, direction)
         })
     }
@@ -305,12 +302,12 @@ impl PyRolling<'_> {
 /// `nacre.contact.arguments.FrictionOptions`.
 #[derive(FromPyObject)]
 pub(super) struct PyFrictionOptions<'py> {
-    tolerance: Bound<'py, PyAny>,
-    max_convolutions: Optional<'py>,
-    coupling: Bound<'py, PyAny>,
-    initial: Bound<'py, PyAny>,
-    progress: Optional<'py>,
-    check: Bound<'py, PyAny>,
+    tolerance: Argument<'py>,
+    max_convolutions: Argument<'py>,
+    coupling: Argument<'py>,
+    initial: Argument<'py>,
+    progress: Argument<'py>,
+    check: Argument<'py>,
 }
 
 /// Steps of sliding: one step, or those of a history.
@@ -340,14 +337,14 @@ pub(super) fn roll(
     options: PyFrictionOptions<'_>,
     on: PyOn<'_>,
 ) -> PyResult<PyFrictionSteps> {
-    let cells = optional_count("cells", 1, rolling.cells.as_ref())?;
-    if cells.is_none() && !options.initial.is_none() {
+    let cells = rolling.cells.count("cells", 1)?;
+    if cells.is_none() && options.initial.get().is_some() {
         return Err(PyValueError::new_err(
             "initial must be given with cells: the steady state does not depend on it",
         ));
     }
     friction_steps(py, shape, options, on, |shape, options| {
-        if let Some(order) = optional_count("order", 1, rolling.order.as_ref())? {
+        if let Some(order) = rolling.order.count("order", 1)? {
             options.order = order;
         }
         let rolling = rolling.read(shape)?;
@@ -362,23 +359,23 @@ pub(super) fn roll(
 fn friction_steps(
     py: Python<'_>,
     shape: &Bound<'_, PyAny>,
-    asked: PyFrictionOptions<'_>,
+    keywords: PyFrictionOptions<'_>,
     on: PyOn<'_>,
     moves: impl FnOnce(&Shape, &mut FrictionOptions) -> PyResult<(Moves, bool)>,
 ) -> PyResult<PyFrictionSteps> {
     let last: Option<Bound<'_, PyFrictionSolved>> =
-        of_kind("initial", "a nacre.types.FrictionSolution", &asked.initial)?;
+        keywords.initial.of("initial", "a nacre.types.FrictionSolution")?;
     let last = last.map(|last| Arc::clone(&last.get().0));
     let default = FrictionOptions::default();
-    let most = optional_count("max_convolutions", 1, asked.max_convolutions.as_ref())?;
+    let most = keywords.max_convolutions.count("max_convolutions", 1)?;
     let mut options = FrictionOptions {
-        tolerance: number("tolerance", &asked.tolerance)?,
+        tolerance: keywords.tolerance.real("tolerance")?,
         max_convolutions: most.unwrap_or(default.max_convolutions),
-        coupling: flag("coupling", &asked.coupling)?,
+        coupling: keywords.coupling.flag("coupling")?,
         ..default
     };
-    let progress = callable("progress", asked.progress)?;
-    flag("check", &asked.check)?;
+    let progress = keywords.progress.callable("progress")?;
+    keywords.check.flag("check")?;
     let shape = shape_of(shape)?;
     let (moves, several) = moves(&shape, &mut options)?;
     let contact = match on {
@@ -419,25 +416,25 @@ fn planned(
 }
 
 /// Steps of a history. The first one moves along z, and has the friction, as the call says where it does not say it.
-fn history(py: Python<'_>, call: Step, later: &[PyFrictionStep<'_>]) -> PyResult<Vec<Step>> {
+fn history(py: Python<'_>, call: Step, steps: &[PyFrictionStep<'_>]) -> PyResult<Vec<Step>> {
     let plain = Step { motion: call.motion, friction: call.friction.clone(), ..Step::default() };
     if plain != call {
         return Err(PyValueError::new_err(
             "shift, force, twist and torque must be given in the steps, where there are steps",
         ));
     }
-    let mut steps = Vec::new();
-    for (number, step) in later.iter().enumerate() {
-        steps.push(step.read().inspect_err(|error| {
+    let mut history = Vec::new();
+    for (number, step) in steps.iter().enumerate() {
+        history.push(step.read().inspect_err(|error| {
             let _ = error.add_note(py, format!("step {number}"));
         })?);
     }
-    let Some(first) = steps.first_mut() else {
+    let Some(first) = history.first_mut() else {
         return Err(PyValueError::new_err("steps must hold a step at least"));
     };
     first.motion = first.motion.or(call.motion);
     first.friction = first.friction.take().or(call.friction);
-    Ok(steps)
+    Ok(history)
 }
 
 fn cells(value: &Bound<'_, PyAny>) -> PyResult<usize> {

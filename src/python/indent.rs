@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arguments::{Optional, Real, read_only, real_array, shaped, word};
+use super::arguments::{Real, read_only, real_array, shaped, word};
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, half_space};
 use crate::Result;
@@ -158,9 +158,9 @@ impl PyIndentation {
         &self,
         py: Python<'_>,
         branch: &str,
-        load: Optional<'_>,
-        approach: Optional<'_>,
-        radius: Optional<'_>,
+        load: Option<Bound<'_, PyAny>>,
+        approach: Option<Bound<'_, PyAny>>,
+        radius: Option<Bound<'_, PyAny>>,
     ) -> PyResult<PyIndentStates> {
         let branch: Branch = word("branch", branch)?;
         let all = [

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::arguments::{Optional, read_only, real_array, real_matrix};
+use super::arguments::{read_only, real_array, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::PyBody;
 use super::data::{read, text};
@@ -188,17 +188,17 @@ impl PySolved {
     fn new(
         position: &str,
         report: ReportParts,
-        pressure: Optional<'_>,
-        gap: Optional<'_>,
-        displacement: Optional<'_>,
-        hardness: Optional<'_>,
-        indentation: Optional<'_>,
-        coefficients: Optional<'_>,
+        pressure: Option<Bound<'_, PyAny>>,
+        gap: Option<Bound<'_, PyAny>>,
+        displacement: Option<Bound<'_, PyAny>>,
+        hardness: Option<Bound<'_, PyAny>>,
+        indentation: Option<Bound<'_, PyAny>>,
+        coefficients: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let field = |name: &str, value: Optional<'_>| -> PyResult<_> {
+        let field = |name: &str, value: Option<Bound<'_, PyAny>>| -> PyResult<_> {
             value.map(|value| real_matrix(name, &value)).transpose()
         };
-        let needed = |name: &str, value: Optional<'_>| {
+        let needed = |name: &str, value: Option<Bound<'_, PyAny>>| {
             let missing = || PyValueError::new_err(format!("{name} must be an array, got None"));
             field(name, value)?.ok_or_else(missing)
         };

@@ -8,10 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arguments::{
-    Optional, Pair, Real, Repr, callable, count, flag, listed, number, of_kind, optional_count,
-    optional_number, real_array, real_matrix, word_argument,
-};
+use super::arguments::{Argument, Pair, Real, Repr, count, listed, real_array, real_matrix};
 use super::background;
 use super::bodies::{PyHalfSpace, half_space};
 use super::data::summary_text;
@@ -55,13 +52,13 @@ pub(super) enum Of {
 
 impl Of {
     /// The body that is meant, and its layers; a plan is of one body.
-    fn body(&self, member: &Bound<'_, PyAny>) -> PyResult<(Member, HalfSpace)> {
+    fn body(&self, member: &Argument<'_>) -> PyResult<(Member, HalfSpace)> {
         let solution = match self {
             Self::Plan(plan) => return Ok((Member::Body, plan.get().0.body().clone())),
             Self::Solved(solved) => &*solved.get().0,
             Self::Friction(solved) => &solved.get().0.normal,
         };
-        let member = word_argument("body", member)?;
+        let member = member.word("body")?;
         Ok((member, solution.member(member)?.clone()))
     }
 }
@@ -69,52 +66,52 @@ impl Of {
 /// `nacre.contact.stresses.StressOptions`.
 #[derive(FromPyObject)]
 pub(super) struct PyStressOptions<'py> {
-    body: Bound<'py, PyAny>,
-    friction: Bound<'py, PyAny>,
-    direction: Bound<'py, PyAny>,
-    residual: Optional<'py>,
-    threads: Optional<'py>,
-    progress: Optional<'py>,
+    body: Argument<'py>,
+    friction: Argument<'py>,
+    direction: Argument<'py>,
+    residual: Argument<'py>,
+    threads: Argument<'py>,
+    progress: Argument<'py>,
 }
 
 impl PyStressOptions<'_> {
     /// Options with friction, residual stress and threads, and the callback.
-    fn read(self, body: &HalfSpace) -> PyResult<(StressOptions, Option<Py<PyAny>>)> {
-        let direction: Option<Pair> = of_kind("direction", "a pair of numbers", &self.direction)?;
-        let residual = by_layer("residual", self.residual, body)?;
+    fn read(&self, body: &HalfSpace) -> PyResult<(StressOptions, Option<Py<PyAny>>)> {
+        let direction: Option<Pair> = self.direction.of("direction", "a pair of numbers")?;
+        let residual = by_layer("residual", &self.residual, body)?;
         let options = StressOptions {
-            friction: number("friction", &self.friction)?,
+            friction: self.friction.real("friction")?,
             direction: direction.map(|direction| direction.0),
             residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
-            threads: optional_count("threads", 1, self.threads.as_ref())?,
+            threads: self.threads.count("threads", 1)?,
             ..StressOptions::default()
         };
-        Ok((options, callable("progress", self.progress)?))
+        Ok((options, self.progress.callable("progress")?))
     }
 }
 
 /// `nacre.contact.stresses.StressFields`.
 #[derive(FromPyObject)]
 pub(super) struct PyStressFields<'py> {
-    side: Bound<'py, PyAny>,
-    x: Optional<'py>,
-    y: Optional<'py>,
-    displacement: Bound<'py, PyAny>,
+    side: Argument<'py>,
+    x: Argument<'py>,
+    y: Argument<'py>,
+    displacement: Argument<'py>,
 }
 
 impl PyStressFields<'_> {
     /// Puts section, side and displacement into the options; returns whether x and y were given.
     fn read(&self, options: &mut StressOptions) -> PyResult<[bool; 2]> {
-        options.side = word_argument("side", &self.side)?;
-        let x = optional_number("x", self.x.as_ref())?;
-        let y = optional_number("y", self.y.as_ref())?;
+        options.side = self.side.word("side")?;
+        let x = self.x.number("x")?;
+        let y = self.y.number("y")?;
         options.section = match (x, y) {
             (None, None) => Section::Plane,
             (Some(x), None) => Section::X(x),
             (None, Some(y)) => Section::Y(y),
             (Some(x), Some(y)) => Section::Axis([x, y]),
         };
-        options.displacement = flag("displacement", &self.displacement)?;
+        options.displacement = self.displacement.flag("displacement")?;
         Ok([x.is_some(), y.is_some()])
     }
 }
@@ -122,9 +119,9 @@ impl PyStressFields<'_> {
 /// `nacre.contact.stresses.StressLimits`.
 #[derive(FromPyObject)]
 pub(super) struct PyStressLimits<'py> {
-    yield_stress: Optional<'py>,
-    strength: Optional<'py>,
-    refine: Optional<'py>,
+    yield_stress: Argument<'py>,
+    strength: Argument<'py>,
+    refine: Argument<'py>,
 }
 
 /// Fields of the stress at the depths `z`, for `nacre.types.Stress`.
@@ -136,7 +133,7 @@ pub(super) fn stress<'py>(
     options: PyStressOptions<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (member, body) = of.body(&options.body)?;
-    evaluated(z, &fields, options, &body, move |depths, options| match of {
+    evaluated(z, &fields, &options, &body, move |depths, options| match of {
         Of::Solved(solved) => solved.get().0.stress(depths, member, options),
         Of::Friction(solved) => solved.get().0.stress(depths, member, options),
         Of::Plan(plan) => plan.get().0.stress(depths, options),
@@ -155,7 +152,7 @@ pub(super) fn stress_under<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let pressure = real_matrix("pressure", pressure)?;
     let loaded = body.clone();
-    evaluated(z, &fields, options, &body, move |depths, options| {
+    evaluated(z, &fields, &options, &body, move |depths, options| {
         crate::stress::stress(&loaded, &grid.0, &pressure, depths, options)
     })
 }
@@ -163,7 +160,7 @@ pub(super) fn stress_under<'py>(
 fn evaluated<'py>(
     z: &Bound<'py, PyAny>,
     fields: &PyStressFields<'_>,
-    options: PyStressOptions<'_>,
+    options: &PyStressOptions<'_>,
     body: &HalfSpace,
     evaluate: impl FnOnce(&[f64], WatchedStress) -> crate::Result<Stress> + Send + 'static,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -185,11 +182,11 @@ pub(super) fn stress_summary(
 ) -> PyResult<String> {
     let (member, body) = of.body(&options.body)?;
     let strengths = Strengths {
-        yield_stress: by_layer("yield_stress", limits.yield_stress, &body)?,
-        strength: by_layer("strength", limits.strength, &body)?,
+        yield_stress: by_layer("yield_stress", &limits.yield_stress, &body)?,
+        strength: by_layer("strength", &limits.strength, &body)?,
     };
     let (mut options, progress) = options.read(&body)?;
-    options.refine = optional_number("refine", limits.refine.as_ref())?;
+    options.refine = limits.refine.number("refine")?;
     let summary = watched(py, progress, move |progress| {
         let options = options.watched(progress);
         match of {
@@ -206,11 +203,11 @@ pub(super) fn stress_summary(
 pub(super) fn stress_plan(
     py: Python<'_>,
     of: Of,
-    body: &Bound<'_, PyAny>,
-    threads: Option<&Bound<'_, PyAny>>,
+    body: Argument<'_>,
+    threads: Argument<'_>,
 ) -> PyResult<PyStressPlan> {
-    let (member, _) = of.body(body)?;
-    let options = StressOptions::with_threads(optional_count("threads", 1, threads)?);
+    let (member, _) = of.body(&body)?;
+    let options = StressOptions::with_threads(threads.count("threads", 1)?);
     let plan = watched(py, None, move |progress| {
         let options = options.watched(progress);
         Ok(match of {
@@ -227,16 +224,16 @@ pub(super) fn stress_plan(
 pub(super) fn layer_values(
     body: &PyHalfSpace,
     name: &str,
-    values: Option<Bound<'_, PyAny>>,
+    values: Argument<'_>,
 ) -> PyResult<Vec<Option<f64>>> {
-    by_layer(name, values, &body.0)
+    by_layer(name, &values, &body.0)
 }
 
 /// Values of some layers, from the surface down and the substrate last. They are a sequence of
 /// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
 /// have it.
-fn by_layer(name: &str, values: Optional<'_>, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
-    let Some(mut object) = values else {
+fn by_layer(name: &str, values: &Argument<'_>, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
+    let Some(mut object) = values.get().cloned() else {
         return Ok(Vec::new());
     };
     // A Series names the layers by its index.

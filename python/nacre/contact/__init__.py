@@ -156,9 +156,10 @@ def solve(
     """
     setup = Setup(body, counterbody, grid, max_cells, threads)
     motion = Motion(load, approach, eccentricity, moment, tilt)
-    start, tell = _start(initial), _report_teller(progress)
-    options = SolveOptions(hardness, tolerance, max_iterations, algorithm, start, tell, check)
-    return _solved(shape, motion, options, setup)
+    state, callback = _initial_state(initial), _report_callback(progress)
+    options = SolveOptions(hardness, tolerance, max_iterations, algorithm, state, callback, check)
+    solved = core.solve(shape, motion, options, setup)
+    return _checked_solution(solved, shape, check)
 
 
 @overload
@@ -299,9 +300,11 @@ def slide(
     setup = Setup(body, counterbody, grid, max_cells, threads)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     step = FrictionStep(motion, friction, shift, force, twist, torque)
-    start, tell = _last_solved(initial), _step_teller(progress)
-    options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
-    return _slid(shape, step, steps, options, setup)
+    state, callback = _last_state(initial), _step_callback(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+    history = _history_steps(steps)
+    moves = core.slide(shape, step, history, options, setup)
+    return _solve_steps(moves, len(history or [step]), options)
 
 
 @overload
@@ -430,9 +433,10 @@ def roll(
     setup = Setup(body, counterbody, grid, max_cells, threads)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
-    start, tell = _last_solved(initial), _step_teller(progress)
-    options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
-    return _rolled(shape, rolling, options, setup)
+    state, callback = _last_state(initial), _step_callback(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+    moves = core.roll(shape, rolling, options, setup)
+    return _solve_steps(moves, cells or 1, options)
 
 
 class Contact:
@@ -569,9 +573,12 @@ class Contact:
         0.0
         """
         motion = Motion(load, approach, eccentricity, moment, tilt)
-        start, tell = _start(initial), _report_teller(progress)
-        options = SolveOptions(hardness, tolerance, max_iterations, algorithm, start, tell, check)
-        return _solved(shape, motion, options, self._plan)
+        state, callback = _initial_state(initial), _report_callback(progress)
+        options = SolveOptions(
+            hardness, tolerance, max_iterations, algorithm, state, callback, check
+        )
+        solved = core.solve(shape, motion, options, self._plan)
+        return _checked_solution(solved, shape, check)
 
     def solve_many(
         self,
@@ -643,7 +650,7 @@ class Contact:
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
-                    solution = _checked_solution(outcome, shape, check, stacklevel=3)
+                    solution = _checked_solution(outcome, shape, check)
                 except Exception as error:  # of the tolerance, or a warning that is one
                     error.add_note(f"in case {number}")
                     outcome, solution = error, getattr(error, "solution", None)
@@ -724,9 +731,11 @@ class Contact:
         """
         motion = Motion(load, approach, eccentricity, moment, tilt)
         step = FrictionStep(motion, friction, shift, force, twist, torque)
-        start, tell = _last_solved(initial), _step_teller(progress)
-        options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
-        return _slid(shape, step, steps, options, self._plan)
+        state, callback = _last_state(initial), _step_callback(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+        history = _history_steps(steps)
+        moves = core.slide(shape, step, history, options, self._plan)
+        return _solve_steps(moves, len(history or [step]), options)
 
     @overload
     def roll(
@@ -796,9 +805,10 @@ class Contact:
         """
         motion = Motion(load, approach, eccentricity, moment, tilt)
         rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
-        start, tell = _last_solved(initial), _step_teller(progress)
-        options = FrictionOptions(tolerance, max_convolutions, coupling, start, tell, check)
-        return _rolled(shape, rolling, options, self._plan)
+        state, callback = _last_state(initial), _step_callback(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+        moves = core.roll(shape, rolling, options, self._plan)
+        return _solve_steps(moves, cells or 1, options)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""
@@ -823,7 +833,7 @@ class Contact:
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
 
 
-def _start(initial: Any) -> core.Solved | Matrix | None:
+def _initial_state(initial: Any) -> core.Solved | Matrix | None:
     """Return what the compiled module starts a solve from."""
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
@@ -832,40 +842,30 @@ def _start(initial: Any) -> core.Solved | Matrix | None:
     )
 
 
-def _last_solved(initial: Any) -> core.FrictionSolved | None:
+def _last_state(initial: Any) -> core.FrictionSolved | None:
     """Return the state of the compiled module from which a contact with friction goes on."""
     last = initial[-1] if isinstance(initial, History) and initial else initial
     return last._solved if isinstance(last, FrictionSolution) else last
 
 
-def _report_teller(progress: Progress | None) -> Callable[..., object] | None:
+def _report_callback(progress: Progress | None) -> Callable[..., object] | None:
     """Return a function that is called with the parts of a report; the module refuses others."""
     if not callable(progress):
         return progress
     return lambda *parts: progress(Report._of(parts))
 
 
-def _step_teller(progress: StepProgress | None) -> Callable[[int, str], object] | None:
+def _step_callback(progress: StepProgress | None) -> Callable[[int, str], object] | None:
     """Return a function that is called with the report of a step as JSON text, likewise."""
     if not callable(progress):
         return progress
     return lambda number, text: progress(number, FrictionReport._from_text(text))
 
 
-def _solved(
-    shape: core.Shape, motion: Motion, options: SolveOptions, on: Setup | core.Plan
-) -> Solution:
-    """Return the solution of what a user asked for."""
-    solved = core.solve(shape, motion, options, on)
-    return _checked_solution(solved, shape, options.check, stacklevel=4)
-
-
-def _checked_solution(
-    solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int
-) -> Solution:
+def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
     """Issue the warnings of a solution, and return it if its tolerance was met."""
     for message in solved.warnings():
-        warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
+        warnings.warn(message, core.NacreWarning, stacklevel=3)
     solution = Solution._of(solved, shape)
     if check and (missed := solved.not_converged()) is not None:
         error = core.ConvergenceError(missed)
@@ -902,29 +902,15 @@ def _mappings(
     return [dict(item) for item in mappings]
 
 
-def _slid(
-    shape: core.Shape,
-    step: FrictionStep,
-    steps: Iterable[Mapping[str, Any]] | None,
-    options: FrictionOptions,
-    on: Setup | core.Plan,
-) -> FrictionSolution | History:
-    """Return the solution of a step, or the history of steps, that a user asked for."""
+def _history_steps(steps: Iterable[Mapping[str, Any]] | None) -> list[FrictionStep] | None:
+    """Return the steps of a history, where there is one."""
     if steps is None:
-        return _taken(core.slide(shape, step, None, options, on), 1, options)
+        return None
     words = ("a step", "steps", "slide", "step")
-    own = [FrictionStep.of(mapping) for mapping in _mappings(words, steps, STEP)]
-    return _taken(core.slide(shape, step, own, options, on), len(own), options)
+    return [FrictionStep.of(mapping) for mapping in _mappings(words, steps, STEP)]
 
 
-def _rolled(
-    shape: core.Shape, rolling: Rolling, options: FrictionOptions, on: Setup | core.Plan
-) -> FrictionSolution | History:
-    """Return the solution of steady rolling, or the history of the cells, that a user asked for."""
-    return _taken(core.roll(shape, rolling, options, on), rolling.cells or 1, options)
-
-
-def _taken(
+def _solve_steps(
     steps: core.FrictionSteps, count: int, options: FrictionOptions
 ) -> FrictionSolution | History:
     """Return the solutions of so many steps, or that of the only one.
@@ -939,7 +925,7 @@ def _taken(
                 solution = FrictionSolution._of(solved)
                 termination = solution.report.termination
                 for warning in solution.normal.report.warnings if termination != "stopped" else []:
-                    warnings.warn(warning, core.NacreWarning, stacklevel=4)
+                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
                 if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution
