@@ -53,7 +53,7 @@ def solve(
     tolerance: float = 1e-8,
     max_iterations: int | None = None,
     algorithm: Algorithm = "cascade",
-    initial: Solution | Matrix | None = None,
+    initial: Solution | FrictionSolution | Matrix | None = None,
     progress: Progress | None = None,
     check: bool = True,
 ) -> Solution:
@@ -115,7 +115,7 @@ def solve(
     algorithm : {"cascade", "polonsky-keer"}, optional
         Preconditioned conjugate gradients on nested grids, in a window around the contact; or the
         method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference.
-    initial : Solution or array_like, optional
+    initial : Solution, FrictionSolution or array_like, optional
         Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution close to the one sought,
         on the same grid, such as the previous one of a series. The result does not depend on it,
         except that the surfaces keep the permanent indentation of a solution: a history of loads
@@ -532,7 +532,7 @@ class Contact:
         tolerance: float = 1e-8,
         max_iterations: int | None = None,
         algorithm: Algorithm = "cascade",
-        initial: Solution | Matrix | None = None,
+        initial: Solution | FrictionSolution | Matrix | None = None,
         progress: Progress | None = None,
         check: bool = True,
     ) -> Solution:
