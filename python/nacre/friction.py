@@ -13,7 +13,8 @@ import nacre._core as core
 from nacre._tools.extras import extra
 from nacre._tools.progress import lasting
 from nacre._tools.units import energy, symbol
-from nacre.contact import MOTION, Contact, solve
+from nacre.contact import Contact, solve
+from nacre.contact.arguments import MOTION
 from nacre.contact.friction import FrictionSolution, History
 from nacre.results.base import checked
 from nacre.results.quantities import CREEP

@@ -371,46 +371,44 @@ pub(super) fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
-/// Arguments of a call by name, as a Python function hands them over. `None` stands for what was not given.
-#[derive(Clone)]
-pub(super) struct Given<'py>(pub(super) Bound<'py, PyDict>);
+/// A keyword of a call, which `None` stands for where it was not given.
+#[derive(FromPyObject)]
+pub(super) struct Argument<'py>(pub(super) Bound<'py, PyAny>);
 
-impl<'a, 'py> FromPyObject<'a, 'py> for Given<'py> {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        Ok(Self(object.cast::<PyDict>()?.to_owned()))
-    }
-}
-
-impl<'py> Given<'py> {
+impl<'py> Argument<'py> {
     /// Argument that was given.
-    pub(super) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
+    pub(super) fn get(&self) -> Option<&Bound<'py, PyAny>> {
+        Some(&self.0).filter(|value| !value.is_none())
     }
 
     /// Argument of type `T`, which `kind` describes in the error.
     pub(super) fn of<T: FromPyObjectOwned<'py>>(&self, name: &str, kind: &str) -> PyResult<T> {
-        let none = || self.0.py().None().into_bound(self.0.py());
-        let value = self.0.get_item(name)?.unwrap_or_else(none);
-        value.extract().map_err(|_| {
-            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&value)))
+        self.0.extract().map_err(|_| {
+            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&self.0)))
         })
+    }
+
+    /// Argument that `read` reads where it was given.
+    pub(super) fn map<T>(
+        &self,
+        read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> PyResult<Option<T>> {
+        self.get().map(read).transpose()
     }
 
     /// Real number.
     pub(super) fn real(&self, name: &str) -> PyResult<f64> {
-        Ok(self.of::<Real>(name, "a real number")?.0)
+        number(name, &self.0)
     }
 
     /// Real number that may be missing.
     pub(super) fn number(&self, name: &str) -> PyResult<Option<f64>> {
-        self.get(name)?.map(|value| number(name, &value)).transpose()
+        self.map(|value| number(name, value))
     }
 
     /// Pair of numbers, each of which may be missing.
     pub(super) fn pair(&self, name: &str) -> PyResult<[Option<f64>; 2]> {
-        pair(name, self.get(name)?.as_ref())
+        pair(name, self.get())
     }
 
     /// Truth value.
@@ -425,17 +423,17 @@ impl<'py> Given<'py> {
 
     /// Integer of at least `least`, which may be missing.
     pub(super) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
-        self.get(name)?.map(|value| count(name, least, &value)).transpose()
+        self.map(|value| count(name, least, value))
     }
 
     /// Function, which may be missing.
     pub(super) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
-        match self.get(name)? {
-            Some(value) if !value.is_callable() => {
-                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
+        self.map(|value| match value.is_callable() {
+            true => Ok(value.clone().unbind()),
+            false => {
+                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(value))))
             }
-            value => Ok(value.map(Bound::unbind)),
-        }
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use super::arguments::{Given, count, read_only, real_matrix};
+use super::arguments::{Argument, count, read_only, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::{PyBody, body};
 use super::grid::PyGrid;
@@ -77,20 +77,18 @@ impl PyPlan {
         (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
     }
 
-    /// Solutions of cases, each a shape and its motion by name: of each the solution, an error, or `None` where it was
-    /// not finished; and the error that interrupted it.
+    /// Solutions of cases, each a shape and its motion: of each the solution, an error, or `None` where it was not
+    /// finished; and the error that interrupted it.
     fn solve_many<'py>(
         &self,
         py: Python<'py>,
-        cases: Vec<Given<'py>>,
-        given: Given<'py>,
+        cases: Vec<(Bound<'py, PyAny>, PyMotion<'py>)>,
+        options: PySolveOptions<'py>,
     ) -> PyResult<Outcomes<'py>> {
-        let options = options(&given)?;
-        let progress = given.callable("progress")?;
-        given.flag("check")?;
+        let (options, progress) = options.read()?;
         let mut parsed = Vec::new();
-        for (number, case) in cases.iter().enumerate() {
-            let parts = shape_of(case).and_then(|shape| Ok((shape, motion(case)?)));
+        for (number, (shape, motion)) in cases.iter().enumerate() {
+            let parts = shape_of(shape).and_then(|shape| Ok((shape, motion.read()?)));
             parsed.push(parts.map_err(|error| of_case(py, error, number))?);
         }
         let finished: Finished = Arc::default();
@@ -162,45 +160,92 @@ fn solve_each(
 }
 
 /// Shape that is pressed in.
-pub(super) fn shape_of(arguments: &Given) -> PyResult<Shape> {
-    let object = arguments.of::<Bound<PyAny>>("shape", "a nacre.Shape")?;
-    Ok(shape(&object)?.get().0.clone())
+pub(super) fn shape_of(object: &Bound<'_, PyAny>) -> PyResult<Shape> {
+    Ok(shape(object)?.get().0.clone())
 }
 
-/// Rigid motion that is asked.
-pub(super) fn motion(arguments: &Given) -> PyResult<Motion> {
-    Ok(Motion {
-        load: arguments.number("load")?,
-        approach: arguments.number("approach")?,
-        eccentricity: arguments.pair("eccentricity")?,
-        moment: arguments.pair("moment")?,
-        tilt: arguments.pair("tilt")?,
-    })
+/// `nacre.contact.arguments.Motion`.
+#[derive(FromPyObject)]
+pub(super) struct PyMotion<'py> {
+    load: Argument<'py>,
+    approach: Argument<'py>,
+    eccentricity: Argument<'py>,
+    moment: Argument<'py>,
+    tilt: Argument<'py>,
 }
 
-/// Way in which a solution is found, from a uniform pressure.
-fn options(arguments: &Given) -> PyResult<Options> {
-    Ok(Options {
-        tolerance: arguments.real("tolerance")?,
-        max_iterations: arguments.count("max_iterations", 0)?,
-        algorithm: arguments.word("algorithm")?,
-        initial: None,
-        hardness: arguments.get("hardness")?.map(|value| hardness(&value)).transpose()?,
-        indentation: None,
-        cells: arguments.count("max_cells", SMALLEST_GRID)?,
-    })
+impl PyMotion<'_> {
+    pub(super) fn read(&self) -> PyResult<Motion> {
+        Ok(Motion {
+            load: self.load.number("load")?,
+            approach: self.approach.number("approach")?,
+            eccentricity: self.eccentricity.pair("eccentricity")?,
+            moment: self.moment.pair("moment")?,
+            tilt: self.tilt.pair("tilt")?,
+        })
+    }
 }
 
-/// Bodies and grid of a call that plans, where one is given.
-pub(super) fn planning(arguments: &Given) -> PyResult<(Body, Setup, Option<Grid>)> {
-    let grid: Option<PyGrid> = arguments.of("grid", "a nacre.Grid")?;
-    let setup = Setup {
-        counterbody: arguments.get("counterbody")?.as_ref().map(body).transpose()?,
-        coefficients: None,
-        threads: arguments.count("threads", 1)?,
-    };
-    let body = body(&arguments.of::<Bound<PyAny>>("body", "a body")?)?;
-    Ok((body, setup, grid.map(|grid| grid.0)))
+/// `nacre.contact.arguments.SolveOptions`.
+#[derive(FromPyObject)]
+pub(super) struct PySolveOptions<'py> {
+    hardness: Argument<'py>,
+    tolerance: Argument<'py>,
+    max_iterations: Argument<'py>,
+    algorithm: Argument<'py>,
+    initial: Argument<'py>,
+    progress: Argument<'py>,
+    check: Argument<'py>,
+}
+
+impl PySolveOptions<'_> {
+    /// Options of a solve from a uniform pressure, and its callback.
+    fn read(&self) -> PyResult<(Options, Option<Py<PyAny>>)> {
+        let options = Options {
+            tolerance: self.tolerance.real("tolerance")?,
+            max_iterations: self.max_iterations.count("max_iterations", 0)?,
+            algorithm: self.algorithm.word("algorithm")?,
+            hardness: self.hardness.map(hardness)?,
+            ..Options::default()
+        };
+        self.check.flag("check")?;
+        Ok((options, self.progress.callable("progress")?))
+    }
+}
+
+/// `nacre.contact.arguments.Setup`.
+#[derive(FromPyObject)]
+pub(super) struct PySetup<'py> {
+    body: Argument<'py>,
+    counterbody: Argument<'py>,
+    grid: Argument<'py>,
+    max_cells: Argument<'py>,
+    threads: Argument<'py>,
+}
+
+impl PySetup<'_> {
+    /// Bodies, and the grid where one is given.
+    pub(super) fn read(&self) -> PyResult<(Body, Setup, Option<Grid>)> {
+        let grid: Option<PyGrid> = self.grid.of("grid", "a nacre.Grid")?;
+        let setup = Setup {
+            counterbody: self.counterbody.map(body)?,
+            coefficients: None,
+            threads: self.threads.count("threads", 1)?,
+        };
+        Ok((body(&self.body.0)?, setup, grid.map(|grid| grid.0)))
+    }
+
+    /// Largest number of cells of a grid that is chosen.
+    pub(super) fn max_cells(&self) -> PyResult<Option<usize>> {
+        self.max_cells.count("max_cells", SMALLEST_GRID)
+    }
+}
+
+/// What a contact is solved on.
+#[derive(FromPyObject)]
+pub(super) enum PyOn<'py> {
+    Plan(Bound<'py, PyPlan>),
+    Setup(PySetup<'py>),
 }
 
 /// Where a contact is solved: on a plan, or on one that is made.
@@ -209,17 +254,19 @@ enum On {
     Bodies(Body, Setup, Option<Grid>),
 }
 
-/// Solution of what a call asks for, on `plan` or on one that is made for it.
+/// Solution of a shape that is pressed in, on a plan or on one that is made for it.
 #[pyfunction]
-#[pyo3(signature = (given, plan=None))]
 pub(super) fn solve(
     py: Python<'_>,
-    given: Given<'_>,
-    plan: Option<&Bound<'_, PyPlan>>,
+    shape: &Bound<'_, PyAny>,
+    motion: PyMotion<'_>,
+    options: PySolveOptions<'_>,
+    on: PyOn<'_>,
 ) -> PyResult<PySolved> {
-    let (shape, motion, mut options) = (shape_of(&given)?, motion(&given)?, options(&given)?);
+    let (shape, motion, initial) = (shape_of(shape)?, motion.read()?, options.initial.get());
+    let (mut options, progress) = options.read()?;
     let (mut first, mut dented) = (None, None);
-    if let Some(initial) = given.get("initial")? {
+    if let Some(initial) = initial {
         if let Ok(before) = initial.cast::<PySolved>() {
             let before = &before.get().0;
             options.initial = Some(before.pressure.clone());
@@ -227,13 +274,14 @@ pub(super) fn solve(
             first = Some(*before.grid());
             dented = before.indentation.as_ref().map(|_| Arc::clone(before));
         } else {
-            options.initial = Some(real_matrix("initial", &initial)?);
+            options.initial = Some(real_matrix("initial", initial)?);
         }
     }
-    let on = match plan {
-        Some(plan) => On::Plan(Arc::clone(&plan.get().0)),
-        None => {
-            let (body, setup, grid) = planning(&given)?;
+    let on = match on {
+        PyOn::Plan(plan) => On::Plan(Arc::clone(&plan.get().0)),
+        PyOn::Setup(setup) => {
+            options.cells = setup.max_cells()?;
+            let (body, setup, grid) = setup.read()?;
             // A permanent indentation lies on its grid.
             let grid = grid.or_else(|| dented.as_ref().map(|before| *before.grid()));
             On::Bodies(body, setup, grid)
@@ -246,8 +294,6 @@ pub(super) fn solve(
         };
         before.report.check_bodies(body, setup.counterbody.as_ref())?;
     }
-    let progress = given.callable("progress")?;
-    given.flag("check")?;
     let solution = background::run(py, progress, move |caller: &mut Caller<ReportParts>| {
         let tell = &mut |report: &Report| caller.ask(|| report_parts(report));
         let watched = options.watched(tell);

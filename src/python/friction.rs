@@ -7,15 +7,15 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::arguments::{Given, Pair, count, read_only, real_array, real_matrix, word};
+use super::arguments::{Argument, Pair, count, read_only, real_array, real_matrix, word};
 use super::background::{self, Caller};
 use super::bodies::half_space;
-use super::contact::{PyPlan, motion, planning, shape_of};
+use super::contact::{PyMotion, PyOn, PySetup, shape_of};
 use super::data::{read, text};
 use super::shapes::Shape;
 use super::solved::PySolved;
 use crate::compliance::response::Body;
-use crate::contact::{Contact, Motion, Options, SMALLEST_GRID, Solution, choose_grid};
+use crate::contact::{Contact, Motion, Options, Solution, choose_grid};
 use crate::friction::{
     Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Rolling,
     RollingDirection, Step, TangentialMotion,
@@ -234,39 +234,120 @@ impl PyFrictionSteps {
     }
 }
 
-/// Steps of sliding, as the arguments of `nacre.slide` or of `Contact.slide` say: one step, or those of a history.
+/// `nacre.contact.arguments.FrictionStep`.
+#[derive(FromPyObject)]
+pub(super) struct PyFrictionStep<'py> {
+    motion: PyMotion<'py>,
+    friction: Argument<'py>,
+    shift: Argument<'py>,
+    force: Argument<'py>,
+    twist: Argument<'py>,
+    torque: Argument<'py>,
+}
+
+impl PyFrictionStep<'_> {
+    /// The step. Along z it moves where the motion says anything.
+    fn read(&self) -> PyResult<Step> {
+        let motion = self.motion.read()?;
+        Ok(Step {
+            motion: (motion != Motion::default()).then_some(motion),
+            friction: self.friction.map(coefficient)?,
+            shift: self.shift.pair("shift")?,
+            force: self.force.pair("force")?,
+            twist: self.twist.number("twist")?,
+            torque: self.torque.number("torque")?,
+        })
+    }
+}
+
+/// `nacre.contact.arguments.Rolling`.
+#[derive(FromPyObject)]
+pub(super) struct PyRolling<'py> {
+    motion: PyMotion<'py>,
+    friction: Argument<'py>,
+    creepage: Argument<'py>,
+    force: Argument<'py>,
+    spin: Argument<'py>,
+    direction: Argument<'py>,
+    cells: Argument<'py>,
+    order: Argument<'py>,
+}
+
+impl PyRolling<'_> {
+    /// Rolling of a shape, which says in which direction if it rolls in one alone.
+    fn read(&self, shape: &Shape) -> PyResult<Rolling> {
+        let friction = self.friction.map(coefficient)?;
+        let friction =
+            friction.ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
+        let direction: Option<String> = self.direction.of("direction", "a str")?;
+        let direction = match (direction, shape.rolling_direction()) {
+            (Some(direction), _) => word("direction", &direction)?,
+            (None, Some([x, _])) if x.abs() < 0.5 => RollingDirection::PlusY,
+            (None, Some(_)) => RollingDirection::PlusX,
+            (None, None) => {
+                return Err(PyValueError::new_err(
+                    "direction must be \"+x\", \"-x\", \"+y\" or \"-y\" for a shape that rolls in any direction",
+                ));
+            }
+        };
+        Ok(Rolling {
+            creepage: self.creepage.pair("creepage")?,
+            force: self.force.pair("force")?,
+            spin: self.spin.real("spin")?,
+            ..Rolling::new(self.motion.read()?, friction, direction)
+        })
+    }
+}
+
+/// `nacre.contact.arguments.FrictionOptions`.
+#[derive(FromPyObject)]
+pub(super) struct PyFrictionOptions<'py> {
+    tolerance: Argument<'py>,
+    max_convolutions: Argument<'py>,
+    coupling: Argument<'py>,
+    initial: Argument<'py>,
+    progress: Argument<'py>,
+    check: Argument<'py>,
+}
+
+/// Steps of sliding: one step, or those of a history.
 #[pyfunction]
-#[pyo3(signature = (given, steps=None, plan=None))]
 pub(super) fn slide(
     py: Python<'_>,
-    given: Given<'_>,
-    steps: Option<Vec<Given<'_>>>,
-    plan: Option<&Bound<'_, PyPlan>>,
+    shape: &Bound<'_, PyAny>,
+    step: PyFrictionStep<'_>,
+    steps: Option<Vec<PyFrictionStep<'_>>>,
+    options: PyFrictionOptions<'_>,
+    on: PyOn<'_>,
 ) -> PyResult<PyFrictionSteps> {
-    let (first, several) = (step(&given)?, steps.is_some());
+    let (first, several) = (step.read()?, steps.is_some());
     let steps = match steps {
         Some(steps) => history(py, first, &steps)?,
         None => vec![first],
     };
-    friction_steps(py, &given, plan, |_| Ok((Moves::Slide(steps), several)))
+    friction_steps(py, shape, options, on, |_, _| Ok((Moves::Slide(steps), several)))
 }
 
-/// Steps of rolling, as the arguments of `nacre.roll` or of `Contact.roll` say.
+/// Steps of rolling: one step, or one for each cell that is rolled.
 #[pyfunction]
-#[pyo3(signature = (given, plan=None))]
 pub(super) fn roll(
     py: Python<'_>,
-    given: Given<'_>,
-    plan: Option<&Bound<'_, PyPlan>>,
+    shape: &Bound<'_, PyAny>,
+    rolling: PyRolling<'_>,
+    options: PyFrictionOptions<'_>,
+    on: PyOn<'_>,
 ) -> PyResult<PyFrictionSteps> {
-    let cells = given.count("cells", 1)?;
-    if cells.is_none() && given.get("initial")?.is_some() {
+    let cells = rolling.cells.count("cells", 1)?;
+    if cells.is_none() && options.initial.get().is_some() {
         return Err(PyValueError::new_err(
             "initial must be given with cells: the steady state does not depend on it",
         ));
     }
-    friction_steps(py, &given, plan, |shape| {
-        let rolling = rolling(shape, &given)?;
+    friction_steps(py, shape, options, on, |shape, options| {
+        if let Some(order) = rolling.order.count("order", 1)? {
+            options.order = order;
+        }
+        let rolling = rolling.read(shape)?;
         Ok(match cells {
             Some(cells) => (Moves::RollCells(rolling, cells), true),
             None => (Moves::RollSteadily(rolling), false),
@@ -274,31 +355,32 @@ pub(super) fn roll(
     })
 }
 
-/// The steps of the moves of a shape, on `plan` or on one that is made for it.
+/// The steps of the moves of a shape, on a plan or on one that is made for it.
 fn friction_steps(
     py: Python<'_>,
-    arguments: &Given,
-    plan: Option<&Bound<'_, PyPlan>>,
-    moves: impl FnOnce(&Shape) -> PyResult<(Moves, bool)>,
+    shape: &Bound<'_, PyAny>,
+    keywords: PyFrictionOptions<'_>,
+    on: PyOn<'_>,
+    moves: impl FnOnce(&Shape, &mut FrictionOptions) -> PyResult<(Moves, bool)>,
 ) -> PyResult<PyFrictionSteps> {
     let last: Option<Bound<'_, PyFrictionSolved>> =
-        arguments.of("initial", "a nacre.types.FrictionSolution")?;
+        keywords.initial.of("initial", "a nacre.types.FrictionSolution")?;
     let last = last.map(|last| Arc::clone(&last.get().0));
     let default = FrictionOptions::default();
-    let most = arguments.count("max_convolutions", 1)?;
-    let options = FrictionOptions {
-        tolerance: arguments.real("tolerance")?,
+    let most = keywords.max_convolutions.count("max_convolutions", 1)?;
+    let mut options = FrictionOptions {
+        tolerance: keywords.tolerance.real("tolerance")?,
         max_convolutions: most.unwrap_or(default.max_convolutions),
-        coupling: arguments.flag("coupling")?,
-        order: arguments.count("order", 1)?.unwrap_or(default.order),
+        coupling: keywords.coupling.flag("coupling")?,
+        ..default
     };
-    let progress = arguments.callable("progress")?;
-    arguments.flag("check")?;
-    let shape = shape_of(arguments)?;
-    let (moves, several) = moves(&shape)?;
-    let contact = match plan {
-        Some(plan) => Arc::clone(&plan.get().0),
-        None => planned(py, arguments, &shape, moves.widest(), last.as_deref())?,
+    let progress = keywords.progress.callable("progress")?;
+    keywords.check.flag("check")?;
+    let shape = shape_of(shape)?;
+    let (moves, several) = moves(&shape, &mut options)?;
+    let contact = match on {
+        PyOn::Plan(plan) => Arc::clone(&plan.get().0),
+        PyOn::Setup(setup) => planned(py, &setup, &shape, moves.widest(), last.as_deref())?,
     };
     let problem = Arc::new(Problem { contact, shape, moves, options });
     Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
@@ -307,13 +389,12 @@ fn friction_steps(
 /// A contact of the given bodies: on the given grid, on that of the step before, or on one that fits the shape.
 fn planned(
     py: Python<'_>,
-    arguments: &Given,
+    setup: &PySetup<'_>,
     shape: &Shape,
     motion: Option<Motion>,
     last: Option<&FrictionSolution>,
 ) -> PyResult<Arc<Contact>> {
-    let (body, setup, grid) = planning(arguments)?;
-    let cells = arguments.count("max_cells", SMALLEST_GRID)?;
+    let (cells, (body, setup, grid)) = (setup.max_cells()?, setup.read()?);
     let grid = grid.or_else(|| last.map(|last| *last.grid()));
     if motion.is_none() && last.is_none() {
         let message = "load or approach must be given, in the call or in the first step";
@@ -334,66 +415,26 @@ fn planned(
     Ok(Arc::new(contact))
 }
 
-/// One step. Along z it moves as `arguments` say, if they say anything.
-fn step(arguments: &Given) -> PyResult<Step> {
-    let motion = motion(arguments)?;
-    Ok(Step {
-        motion: (motion != Motion::default()).then_some(motion),
-        friction: friction(arguments)?,
-        shift: arguments.pair("shift")?,
-        force: arguments.pair("force")?,
-        twist: arguments.number("twist")?,
-        torque: arguments.number("torque")?,
-    })
-}
-
 /// Steps of a history. The first one moves along z, and has the friction, as the call says where it does not say it.
-fn history(py: Python<'_>, call: Step, arguments: &[Given]) -> PyResult<Vec<Step>> {
+fn history(py: Python<'_>, call: Step, steps: &[PyFrictionStep<'_>]) -> PyResult<Vec<Step>> {
     let plain = Step { motion: call.motion, friction: call.friction.clone(), ..Step::default() };
     if plain != call {
         return Err(PyValueError::new_err(
             "shift, force, twist and torque must be given in the steps, where there are steps",
         ));
     }
-    let mut steps = Vec::new();
-    for (number, of_step) in arguments.iter().enumerate() {
-        steps.push(step(of_step).inspect_err(|error| {
+    let mut history = Vec::new();
+    for (number, step) in steps.iter().enumerate() {
+        history.push(step.read().inspect_err(|error| {
             let _ = error.add_note(py, format!("step {number}"));
         })?);
     }
-    let Some(first) = steps.first_mut() else {
+    let Some(first) = history.first_mut() else {
         return Err(PyValueError::new_err("steps must hold a step at least"));
     };
     first.motion = first.motion.or(call.motion);
     first.friction = first.friction.take().or(call.friction);
-    Ok(steps)
-}
-
-/// Rolling of a shape; it says in which direction if it rolls in one alone.
-fn rolling(shape: &Shape, arguments: &Given) -> PyResult<Rolling> {
-    let friction = friction(arguments)?
-        .ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
-    let direction: Option<String> = arguments.of("direction", "a str")?;
-    let direction = match (direction, shape.rolling_direction()) {
-        (Some(direction), _) => word("direction", &direction)?,
-        (None, Some([x, _])) if x.abs() < 0.5 => RollingDirection::PlusY,
-        (None, Some(_)) => RollingDirection::PlusX,
-        (None, None) => {
-            return Err(PyValueError::new_err(
-                "direction must be \"+x\", \"-x\", \"+y\" or \"-y\" for a shape that rolls in any direction",
-            ));
-        }
-    };
-    Ok(Rolling {
-        creepage: arguments.pair("creepage")?,
-        force: arguments.pair("force")?,
-        spin: arguments.real("spin")?,
-        ..Rolling::new(motion(arguments)?, friction, direction)
-    })
-}
-
-fn friction(arguments: &Given) -> PyResult<Option<Friction>> {
-    arguments.get("friction")?.map(|value| coefficient(&value)).transpose()
+    Ok(history)
 }
 
 fn cells(value: &Bound<'_, PyAny>) -> PyResult<usize> {

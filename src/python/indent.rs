@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arguments::{Given, Real, read_only, real_array, shaped, word};
+use super::arguments::{Real, read_only, real_array, shaped, word};
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, half_space};
 use crate::Result;
@@ -153,12 +153,24 @@ impl PyIndentation {
     }
 
     /// Contacts by load, approach or radius, whichever is given.
-    fn at(&self, py: Python<'_>, given: Given<'_>, branch: &str) -> PyResult<PyIndentStates> {
+    #[pyo3(signature = (branch, *, load=None, approach=None, radius=None))]
+    fn at(
+        &self,
+        py: Python<'_>,
+        branch: &str,
+        load: Option<Bound<'_, PyAny>>,
+        approach: Option<Bound<'_, PyAny>>,
+        radius: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<PyIndentStates> {
         let branch: Branch = word("branch", branch)?;
-        let all = [("load", Held::Load), ("approach", Held::Approach), ("radius", Held::Radius)];
+        let all = [
+            ("load", load, Held::Load),
+            ("approach", approach, Held::Approach),
+            ("radius", radius, Held::Radius),
+        ];
         let mut conditions = Vec::new();
-        for (name, held) in all {
-            if let Some(value) = given.get(name)? {
+        for (name, value, held) in all {
+            if let Some(value) = value {
                 conditions.push((held, real_array(name, &value)?));
             }
         }

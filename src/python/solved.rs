@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::arguments::{Given, read_only, real_array, real_matrix};
+use super::arguments::{read_only, real_array, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::PyBody;
 use super::data::{read, text};
@@ -179,24 +179,41 @@ pub(super) fn hardness(value: &Bound<'_, PyAny>) -> PyResult<Hardness> {
 
 #[pymethods]
 impl PySolved {
-    /// Solution with these fields by name, JSON text of its position, and the parts of its report.
+    /// Solution with JSON text of its position, the parts of its report, and its fields.
     #[new]
-    fn new(fields: Given, position: &str, report: ReportParts) -> PyResult<Self> {
-        let field = |name: &str| -> PyResult<_> {
-            fields.get(name)?.map(|value| real_matrix(name, &value)).transpose()
+    #[pyo3(signature = (
+        position, report, *, pressure, gap, displacement, hardness=None, indentation=None, coefficients=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "one for each field of a state")]
+    fn new(
+        position: &str,
+        report: ReportParts,
+        pressure: Option<Bound<'_, PyAny>>,
+        gap: Option<Bound<'_, PyAny>>,
+        displacement: Option<Bound<'_, PyAny>>,
+        hardness: Option<Bound<'_, PyAny>>,
+        indentation: Option<Bound<'_, PyAny>>,
+        coefficients: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let field = |name: &str, value: Option<Bound<'_, PyAny>>| -> PyResult<_> {
+            value.map(|value| real_matrix(name, &value)).transpose()
         };
-        let needed = |name: &str| {
+        let needed = |name: &str, value: Option<Bound<'_, PyAny>>| {
             let missing = || PyValueError::new_err(format!("{name} must be an array, got None"));
-            field(name)?.ok_or_else(missing)
+            field(name, value)?.ok_or_else(missing)
         };
         let Position { approach, tilt } = read("Solution", position)?;
-        let arrays = [needed("pressure")?, needed("gap")?, needed("displacement")?];
+        let arrays = [
+            needed("pressure", pressure)?,
+            needed("gap", gap)?,
+            needed("displacement", displacement)?,
+        ];
         let mut solution = Solution::from_fields(arrays, approach, tilt, report_of(report)?)?;
-        if let Some(coefficients) = field("coefficients")? {
+        if let Some(coefficients) = field("coefficients", coefficients)? {
             solution = solution.with_coefficients(coefficients)?;
         }
-        let hardness = fields.get("hardness")?.map(|value| hardness(&value)).transpose()?;
-        Ok(solution.yielding(hardness, field("indentation")?)?.into())
+        let hardness = hardness.map(|value| self::hardness(&value)).transpose()?;
+        Ok(solution.yielding(hardness, field("indentation", indentation)?)?.into())
     }
 
     fn numbers(&self) -> Numbers {

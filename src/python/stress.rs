@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arguments::{Given, Pair, Real, Repr, count, listed, real_array, real_matrix};
+use super::arguments::{Argument, Pair, Real, Repr, count, listed, real_array, real_matrix};
 use super::background;
 use super::bodies::{PyHalfSpace, half_space};
 use super::data::summary_text;
@@ -51,16 +51,77 @@ pub(super) enum Of {
 }
 
 impl Of {
-    /// The body that `arguments` name, and its layers.
-    fn body(&self, arguments: &Given) -> PyResult<(Member, HalfSpace)> {
+    /// The body that is meant, and its layers; a plan is of one body.
+    fn body(&self, member: &Argument<'_>) -> PyResult<(Member, HalfSpace)> {
         let solution = match self {
             Self::Plan(plan) => return Ok((Member::Body, plan.get().0.body().clone())),
             Self::Solved(solved) => &*solved.get().0,
             Self::Friction(solved) => &solved.get().0.normal,
         };
-        let member = arguments.word("body")?;
+        let member = member.word("body")?;
         Ok((member, solution.member(member)?.clone()))
     }
+}
+
+/// `nacre.contact.stresses.StressOptions`.
+#[derive(FromPyObject)]
+pub(super) struct PyStressOptions<'py> {
+    body: Argument<'py>,
+    friction: Argument<'py>,
+    direction: Argument<'py>,
+    residual: Argument<'py>,
+    threads: Argument<'py>,
+    progress: Argument<'py>,
+}
+
+impl PyStressOptions<'_> {
+    /// Options with friction, residual stress and threads, and the callback.
+    fn read(&self, body: &HalfSpace) -> PyResult<(StressOptions, Option<Py<PyAny>>)> {
+        let direction: Option<Pair> = self.direction.of("direction", "a pair of numbers")?;
+        let residual = by_layer("residual", &self.residual, body)?;
+        let options = StressOptions {
+            friction: self.friction.real("friction")?,
+            direction: direction.map(|direction| direction.0),
+            residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
+            threads: self.threads.count("threads", 1)?,
+            ..StressOptions::default()
+        };
+        Ok((options, self.progress.callable("progress")?))
+    }
+}
+
+/// `nacre.contact.stresses.StressFields`.
+#[derive(FromPyObject)]
+pub(super) struct PyStressFields<'py> {
+    side: Argument<'py>,
+    x: Argument<'py>,
+    y: Argument<'py>,
+    displacement: Argument<'py>,
+}
+
+impl PyStressFields<'_> {
+    /// Puts section, side and displacement into the options; returns whether x and y were given.
+    fn read(&self, options: &mut StressOptions) -> PyResult<[bool; 2]> {
+        options.side = self.side.word("side")?;
+        let x = self.x.number("x")?;
+        let y = self.y.number("y")?;
+        options.section = match (x, y) {
+            (None, None) => Section::Plane,
+            (Some(x), None) => Section::X(x),
+            (None, Some(y)) => Section::Y(y),
+            (Some(x), Some(y)) => Section::Axis([x, y]),
+        };
+        options.displacement = self.displacement.flag("displacement")?;
+        Ok([x.is_some(), y.is_some()])
+    }
+}
+
+/// `nacre.contact.stresses.StressLimits`.
+#[derive(FromPyObject)]
+pub(super) struct PyStressLimits<'py> {
+    yield_stress: Argument<'py>,
+    strength: Argument<'py>,
+    refine: Argument<'py>,
 }
 
 /// Fields of the stress at the depths `z`, for `nacre.types.Stress`.
@@ -68,10 +129,11 @@ impl Of {
 pub(super) fn stress<'py>(
     of: Of,
     z: &Bound<'py, PyAny>,
-    given: Given<'py>,
+    fields: PyStressFields<'py>,
+    options: PyStressOptions<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (member, body) = of.body(&given)?;
-    evaluated(z, &given, &body, move |depths, options| match of {
+    let (member, body) = of.body(&options.body)?;
+    evaluated(z, &fields, &options, &body, move |depths, options| match of {
         Of::Solved(solved) => solved.get().0.stress(depths, member, options),
         Of::Friction(solved) => solved.get().0.stress(depths, member, options),
         Of::Plan(plan) => plan.get().0.stress(depths, options),
@@ -85,41 +147,47 @@ pub(super) fn stress_under<'py>(
     grid: PyGrid,
     pressure: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
-    given: Given<'py>,
+    fields: PyStressFields<'py>,
+    options: PyStressOptions<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let pressure = real_matrix("pressure", pressure)?;
     let loaded = body.clone();
-    evaluated(z, &given, &body, move |depths, options| {
+    evaluated(z, &fields, &options, &body, move |depths, options| {
         crate::stress::stress(&loaded, &grid.0, &pressure, depths, options)
     })
 }
 
 fn evaluated<'py>(
     z: &Bound<'py, PyAny>,
-    arguments: &Given,
+    fields: &PyStressFields<'_>,
+    options: &PyStressOptions<'_>,
     body: &HalfSpace,
     evaluate: impl FnOnce(&[f64], WatchedStress) -> crate::Result<Stress> + Send + 'static,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (depths, one) = depths(z)?;
-    let mut options = options(arguments, body)?;
-    let [x, y] = section(arguments, &mut options)?;
-    let stress = watched(z.py(), arguments.callable("progress")?, move |progress| {
-        evaluate(&depths, options.watched(progress))
-    })?;
+    let (mut options, progress) = options.read(body)?;
+    let [x, y] = fields.read(&mut options)?;
+    let stress =
+        watched(z.py(), progress, move |progress| evaluate(&depths, options.watched(progress)))?;
     field::fields(z.py(), stress, [one, x, y])
 }
 
 /// JSON text of the summary of the stress.
 #[pyfunction]
-pub(super) fn stress_summary(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<String> {
-    let (member, body) = of.body(&given)?;
+pub(super) fn stress_summary(
+    py: Python<'_>,
+    of: Of,
+    limits: PyStressLimits<'_>,
+    options: PyStressOptions<'_>,
+) -> PyResult<String> {
+    let (member, body) = of.body(&options.body)?;
     let strengths = Strengths {
-        yield_stress: by_layer(&given, "yield_stress", &body)?,
-        strength: by_layer(&given, "strength", &body)?,
+        yield_stress: by_layer("yield_stress", &limits.yield_stress, &body)?,
+        strength: by_layer("strength", &limits.strength, &body)?,
     };
-    let mut options = options(&given, &body)?;
-    options.refine = given.number("refine")?;
-    let summary = watched(py, given.callable("progress")?, move |progress| {
+    let (mut options, progress) = options.read(&body)?;
+    options.refine = limits.refine.number("refine")?;
+    let summary = watched(py, progress, move |progress| {
         let options = options.watched(progress);
         match of {
             Of::Solved(solved) => solved.get().0.stress_summary(member, &strengths, options),
@@ -132,9 +200,14 @@ pub(super) fn stress_summary(py: Python<'_>, of: Of, given: Given<'_>) -> PyResu
 
 /// Plan of the stress in a body of a solved contact.
 #[pyfunction]
-pub(super) fn stress_plan(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<PyStressPlan> {
-    let (member, _) = of.body(&given)?;
-    let options = StressOptions::with_threads(given.count("threads", 1)?);
+pub(super) fn stress_plan(
+    py: Python<'_>,
+    of: Of,
+    body: Argument<'_>,
+    threads: Argument<'_>,
+) -> PyResult<PyStressPlan> {
+    let (member, _) = of.body(&body)?;
+    let options = StressOptions::with_threads(threads.count("threads", 1)?);
     let plan = watched(py, None, move |progress| {
         let options = options.watched(progress);
         Ok(match of {
@@ -146,48 +219,21 @@ pub(super) fn stress_plan(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<
     Ok(PyStressPlan(plan))
 }
 
-/// Puts section, side and displacement into the options; returns whether x and y were given.
-fn section(arguments: &Given, options: &mut StressOptions) -> PyResult<[bool; 2]> {
-    options.side = arguments.word("side")?;
-    let (x, y) = (arguments.number("x")?, arguments.number("y")?);
-    options.section = match (x, y) {
-        (None, None) => Section::Plane,
-        (Some(x), None) => Section::X(x),
-        (None, Some(y)) => Section::Y(y),
-        (Some(x), Some(y)) => Section::Axis([x, y]),
-    };
-    options.displacement = arguments.flag("displacement")?;
-    Ok([x.is_some(), y.is_some()])
-}
-
-/// Options with friction, residual stress and threads.
-fn options(arguments: &Given, body: &HalfSpace) -> PyResult<StressOptions> {
-    let direction: Option<Pair> = arguments.of("direction", "a pair of numbers")?;
-    let residual = by_layer(arguments, "residual", body)?;
-    Ok(StressOptions {
-        friction: arguments.real("friction")?,
-        direction: direction.map(|direction| direction.0),
-        residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
-        threads: arguments.count("threads", 1)?,
-        ..StressOptions::default()
-    })
-}
-
-/// Values of the layers of a body, as [`by_layer`] reads them from the argument with this name.
+/// Values of the layers of a body, as [`by_layer`] reads them.
 #[pyfunction]
 pub(super) fn layer_values(
     body: &PyHalfSpace,
     name: &str,
-    given: Given<'_>,
+    values: Argument<'_>,
 ) -> PyResult<Vec<Option<f64>>> {
-    by_layer(&given, name, &body.0)
+    by_layer(name, &values, &body.0)
 }
 
-/// Values of some layers, from the surface down and the substrate last. The argument is a sequence of
+/// Values of some layers, from the surface down and the substrate last. They are a sequence of
 /// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
 /// have it.
-fn by_layer(arguments: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
-    let Some(mut object) = arguments.get(name)? else {
+fn by_layer(name: &str, values: &Argument<'_>, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
+    let Some(mut object) = values.get().cloned() else {
         return Ok(Vec::new());
     };
     // A Series names the layers by its index.

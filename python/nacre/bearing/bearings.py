@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 from nacre.bearing.geometry import Bearing, Ring
 from nacre.bearing.iso import rating
-from nacre.bearing.solution import BearingSolution
-from nacre.bearing.solving import solve_bearing
-
-Along = Sequence[float | None] | None
+from nacre.bearing.solution import BearingSolution, Model
+from nacre.bearing.solving import (
+    CELLS,
+    Along,
+    BearingOptions,
+    Operation,
+    RingConditions,
+    solve_bearing,
+)
 
 
 class Solvable(Bearing):
@@ -31,7 +35,7 @@ class Solvable(Bearing):
         rotation: float = 0.0,
         speed: float = 0.0,
         rotating: Ring = "inner",
-        model: Literal["solved", "iso16281"] = "solved",
+        model: Model = "solved",
         cells: tuple[int, int] | None = None,
         tolerance: float = 1e-9,
         max_iterations: int = 50,
@@ -107,4 +111,8 @@ class Solvable(Bearing):
         >>> round(float(standard.loads.max()))
         1929
         """
-        return solve_bearing(self, locals())
+        ring = RingConditions(force, displacement, moment, tilt)
+        operation = Operation(rotation, speed, rotating)
+        cells = CELLS[self.rolls] if cells is None else cells
+        options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
+        return solve_bearing(self, ring, operation, options)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,12 +27,13 @@ from nacre.bearing.contact_laws import (
     law,
 )
 from nacre.bearing.equilibrium import Problem, State, kinematics_of
-from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, above
+from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
 
 Array = npt.NDArray[np.float64]
+Along = Sequence[float | None] | None
 
 CELLS = {True: (3 * LAMINAE, 48), False: (96, 96)}
 """Cells of contacts of rollers and of balls by default.
@@ -59,19 +61,93 @@ FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
 
 
+@dataclass(frozen=True)
+class RingConditions:
+    """Loads and displacements of the inner ring."""
+
+    force: Along
+    displacement: Along
+    moment: Along
+    tilt: Along
+
+
+@dataclass(frozen=True)
+class Operation:
+    """Where the elements are, and how fast they move."""
+
+    rotation: float
+    speed: float
+    rotating: Ring
+
+    def checked(self, bearing: Bearing) -> Operation:
+        """Return the operation with Python's numbers, or raise an error."""
+        rotation = above("rotation", self.rotation, -math.inf)
+        speed, rotating = above("speed", self.speed, -math.inf), self.rotating
+        if not among(rotating, RINGS):
+            raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
+        if abs(rotation) > TURNED:
+            raise ValueError(f"rotation must be at most {TURNED:g} rad, got {rotation!r}")
+        if abs(bearing.cage_speed(speed, rotating)) * bearing.pitch / 2 > FASTEST:
+            raise ValueError(
+                f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
+                f"got {speed!r} rad/s"
+            )
+        return Operation(rotation, speed, rotating)
+
+
+@dataclass(frozen=True)
+class BearingOptions:
+    """How a bearing is solved."""
+
+    model: Model
+    cells: tuple[int, int]
+    tolerance: float
+    max_iterations: int
+    threads: int | None
+    progress: Callable[[int, float], object] | None
+    check: bool
+
+    def checked(self, bearing: Bearing) -> BearingOptions:
+        """Return the options with Python's numbers, or raise an error."""
+        max_iterations = _positive("max_iterations", self.max_iterations)
+        threads = None if self.threads is None else _positive("threads", self.threads)
+        if not among(self.model, ("solved", "iso16281")):
+            raise ValueError(f'model must be "solved" or "iso16281", got {self.model!r}')
+        check_progress(self.progress)
+        tolerance = above("tolerance", self.tolerance)
+        if tolerance >= 1:
+            raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
+        one, other = core.vector("cells", 2, self.cells)
+        cells = core.integer("cells", one), core.integer("cells", other)
+        if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
+            multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
+            raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
+        return replace(
+            self, cells=cells, tolerance=tolerance, max_iterations=max_iterations, threads=threads
+        )
+
+
+def _positive(name: str, value: Any) -> int:
+    """Return an integer of at least 1, or raise an error."""
+    number = core.integer(name, value)
+    if number < 1:
+        raise ValueError(f"{name} must be at least 1, got {number!r}")
+    return number
+
+
 def _conditions(
-    bearing: Bearing, keywords: Mapping[str, Any]
+    bearing: Bearing, ring: RingConditions
 ) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Return loads, displacements, and which of the five directions are loaded, checked."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
-        numbers = (None,) * length if keywords[name] is None else keywords[name]
-        values[name] = core.vector(name, length, numbers)
+        numbers = getattr(ring, name)
+        values[name] = core.vector(name, length, (None,) * length if numbers is None else numbers)
         known = [value for value in values[name] if value is not None]
         if not all(map(math.isfinite, known)):
-            raise ValueError(f"{name} must be finite, got {keywords[name]!r}")
+            raise ValueError(f"{name} must be finite, got {numbers!r}")
         if max(map(abs, known), default=0.0) > (most := _most(bearing, name)):
-            raise ValueError(f"{name} must be at most {most:.3g}, got {keywords[name]!r}")
+            raise ValueError(f"{name} must be at most {most:.3g}, got {numbers!r}")
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
@@ -88,7 +164,7 @@ def _conditions(
     if bearing.aligns and loads[3:] != [None, None]:
         raise ValueError(
             f"moment must be None or 0: a spherical roller bearing aligns itself and carries none, "
-            f"got {keywords['moment']!r}"
+            f"got {ring.moment!r}"
         )
     axial = not bearing.rolls or bearing.nominal_angle > 0
     if not axial:
@@ -149,73 +225,42 @@ def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: fl
         _check_cone(bearing, math.hypot(*total[:2]), float(total[2]) + slack)
 
 
-def solve_bearing(bearing: Bearing, keywords: Mapping[str, Any]) -> BearingSolution:
-    """Return the solution of what a user asked of a bearing with these arguments of `solve`."""
-    loads, moved, free = _conditions(bearing, keywords)
-    model, cells = keywords["model"], keywords["cells"]
-    keywords = {**keywords}
-    for name in ("rotation", "speed"):
-        keywords[name] = above(name, keywords[name], -math.inf)
-    if not among(keywords["rotating"], RINGS):
-        raise ValueError(f'rotating must be "inner" or "outer", got {keywords["rotating"]!r}')
-    if abs(keywords["rotation"]) > TURNED:
-        raise ValueError(f"rotation must be at most {TURNED:g} rad, got {keywords['rotation']!r}")
-    if (
-        abs(bearing.cage_speed(keywords["speed"], keywords["rotating"])) * bearing.pitch / 2
-        > FASTEST
-    ):
-        raise ValueError(
-            f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
-            f"got {keywords['speed']!r} rad/s"
-        )
-    for name in ("max_iterations", "threads"):
-        if name == "threads" and keywords[name] is None:
-            continue
-        keywords[name] = core.integer(name, keywords[name])
-        if keywords[name] < 1:
-            raise ValueError(f"{name} must be at least 1, got {keywords[name]!r}")
-    if not among(model, ("solved", "iso16281")):
-        raise ValueError(f'model must be "solved" or "iso16281", got {model!r}')
-    check_progress(keywords["progress"])
-    tolerance = above("tolerance", keywords["tolerance"])
-    if tolerance >= 1:
-        raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
-    if cells is None:
-        cells = CELLS[bearing.rolls]
-    one, other = core.vector("cells", 2, cells)
-    cells = core.integer("cells", one), core.integer("cells", other)
-    if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
-        multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
-        raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
-    angles = keywords["rotation"] + 2 * math.pi * np.arange(bearing.count) / bearing.count
+def solve_bearing(
+    bearing: Bearing, ring: RingConditions, operation: Operation, options: BearingOptions
+) -> BearingSolution:
+    """Return the solution of what a user asked of a bearing."""
+    loads, moved, free = _conditions(bearing, ring)
+    operation, options = operation.checked(bearing), options.checked(bearing)
+    model, tolerance, progress = options.model, options.tolerance, options.progress
+    angles = operation.rotation + 2 * math.pi * np.arange(bearing.count) / bearing.count
     angles = np.tile(angles, bearing.rows)
     kinematics = kinematics_of(bearing, angles)
-    cage = bearing.cage_speed(keywords["speed"], keywords["rotating"])
+    cage = bearing.cage_speed(operation.speed, operation.rotating)
     centrifugal = bearing.mass * bearing.pitch / 2 * cage**2
     problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
     check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
-    limit = keywords["max_iterations"]
+    limit = options.max_iterations
     pressed = _pressed(problem.law, centrifugal)
     with lasting("bearing") as bar:
 
         def tell(done: int, balance: float) -> object:
-            if keywords["progress"] is not None:
-                return keywords["progress"](done, balance)
+            if progress is not None:
+                return progress(done, balance)
             if bar is not None:
                 bar(f"step {done}, balance {balance:.0e}")
             return None
 
         first = None if model == "solved" else tell
-        ring, own = problem.start(moved, pressed)
+        start, own = problem.start(moved, pressed)
         rough = tolerance if first else min(1e-6, math.sqrt(tolerance))
         state, done, ending = problem.solve(
-            ring, own, rough, 10 * limit if first is None else limit, first
+            start, own, rough, 10 * limit if first is None else limit, first
         )
         if ending == "converged":
             _check_sides(bearing, problem, state, rough)
         if model == "solved":
             lines = _lines(bearing, problem.law, state)
-            contacts = Solved(bearing, lines, cells, FINER * tolerance, keywords["threads"])
+            contacts = Solved(bearing, lines, options.cells, FINER * tolerance, options.threads)
             problem = Problem(kinematics, contacts, loads, free, centrifugal)
             guess, steps = ending, limit if ending == "converged" else 0
             state, done, ending = problem.solve(state.ring, state.own, tolerance, steps, tell)
@@ -223,10 +268,10 @@ def solve_bearing(bearing: Bearing, keywords: Mapping[str, Any]) -> BearingSolut
                 ending = guess
             if ending == "converged":
                 _check_sides(bearing, problem, state, tolerance)
-    solution = _solution_of(bearing, keywords, problem, state, angles, (done, ending), cells)
+    solution = _solution_of(bearing, operation, options, problem, state, angles, (done, ending))
     for message in solution.report.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
-    if keywords["check"] and ending in REMEDIES:
+    if options.check and ending in REMEDIES:
         error = core.ConvergenceError(
             f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; "
             f"{REMEDIES[ending]}"
@@ -261,12 +306,12 @@ def _lines(bearing: Any, law: Any, state: State) -> Array:
 
 def _solution_of(
     bearing: Bearing,
-    keywords: Mapping[str, Any],
+    operation: Operation,
+    options: BearingOptions,
     problem: Problem,
     state: State,
     angles: Array,
     ending: tuple[int, str],
-    cells: tuple[int, int],
 ) -> BearingSolution:
     """Return the solution that a state is."""
     places, force = state.places, state.reaction.force
@@ -301,17 +346,17 @@ def _solution_of(
     notes = (
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
-        *_notes(bearing, keywords["model"], loaded),
+        *_notes(bearing, options.model, loaded),
     )
     errors = None
     if isinstance(problem.law, Solved):
         errors = _discretisation(problem.law, contacts, peaks, edges)
     return BearingSolution(
         bearing=bearing,
-        model=keywords["model"],
-        rotation=keywords["rotation"],
-        speed=keywords["speed"],
-        rotating=keywords["rotating"],
+        model=options.model,
+        rotation=operation.rotation,
+        speed=operation.speed,
+        rotating=operation.rotating,
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),
@@ -328,7 +373,7 @@ def _solution_of(
         lamina_pressures=pressures,
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
-        cells=None if sizes is None else cells,
+        cells=None if sizes is None else options.cells,
         report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
         _contacts=dict(contacts),
     )

@@ -5,26 +5,35 @@ from __future__ import annotations
 import copyreg
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, Unpack, overload
 
-import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
+from nacre.contact.arguments import (
+    MOTION,
+    STEP,
+    FrictionOptions,
+    FrictionStep,
+    Motion,
+    PlannedRollKeywords,
+    PlannedSlideKeywords,
+    Rolling,
+    RollingDirection,
+    RollKeywords,
+    Setup,
+    SlideKeywords,
+    SolveOptions,
+    StepProgress,
+)
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 
-MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
-"""Keywords of the motion along z."""
-STEP = (*MOTION, "friction", "shift", "force", "twist", "torque")
-"""Keywords of a step of a history."""
 MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""
 Progress = Callable[[Report], object]
-StepProgress = Callable[[int, FrictionReport], object]
-"""Function that is told the number of a step and its report."""
 
 
 def solve(
@@ -44,7 +53,7 @@ def solve(
     tolerance: float = 1e-8,
     max_iterations: int | None = None,
     algorithm: Algorithm = "cascade",
-    initial: Solution | Matrix | None = None,
+    initial: Solution | FrictionSolution | Matrix | None = None,
     progress: Progress | None = None,
     check: bool = True,
 ) -> Solution:
@@ -106,7 +115,7 @@ def solve(
     algorithm : {"cascade", "polonsky-keer"}, optional
         Preconditioned conjugate gradients on nested grids, in a window around the contact; or the
         method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference.
-    initial : Solution or array_like, optional
+    initial : Solution, FrictionSolution or array_like, optional
         Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution close to the one sought,
         on the same grid, such as the previous one of a series. The result does not depend on it,
         except that the surfaces keep the permanent indentation of a solution: a history of loads
@@ -145,7 +154,34 @@ def solve(
     >>> round(solution.eccentricity[0], 8)
     0.00287
     """
-    return _solved(locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    state, callback = _initial_state(initial), _report_callback(progress)
+    options = SolveOptions(hardness, tolerance, max_iterations, algorithm, state, callback, check)
+    solved = core.solve(shape, motion, options, setup)
+    return _checked_solution(solved, shape, check)
+
+
+@overload
+def slide(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    steps: None = None,
+    **keywords: Unpack[PlannedSlideKeywords],
+) -> FrictionSolution: ...
+
+
+@overload
+def slide(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    steps: Iterable[Mapping[str, Any]],
+    **keywords: Unpack[PlannedSlideKeywords],
+) -> History: ...
 
 
 def slide(
@@ -173,7 +209,7 @@ def slide(
     initial: FrictionSolution | History | None = None,
     progress: StepProgress | None = None,
     check: bool = True,
-) -> Any:
+) -> FrictionSolution | History:
     """Press a shape into a body and move it tangentially, with friction, in one call.
 
     It chooses a grid where none is given, plans, and solves.
@@ -261,7 +297,36 @@ def slide(
     >>> [round(solution.force[0], 6) for solution in loop], loop[2].dissipated > 0
     ([2.0, -2.0, 2.0], True)
     """
-    return _steps(core.slide, locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    step = FrictionStep(motion, friction, shift, force, twist, torque)
+    state, callback = _last_state(initial), _step_callback(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+    history = _history_steps(steps)
+    moves = core.slide(shape, step, history, options, setup)
+    return _solve_steps(moves, len(history or [step]), options)
+
+
+@overload
+def roll(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    cells: None = None,
+    **keywords: Unpack[PlannedRollKeywords],
+) -> FrictionSolution: ...
+
+
+@overload
+def roll(
+    shape: core.Shape,
+    body: Layers,
+    counterbody: Layers | None = None,
+    *,
+    cells: int,
+    **keywords: Unpack[PlannedRollKeywords],
+) -> History: ...
 
 
 def roll(
@@ -281,7 +346,7 @@ def roll(
     creepage: Along | None = None,
     force: Along | None = None,
     spin: float = 0.0,
-    direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+    direction: RollingDirection | None = None,
     cells: int | None = None,
     order: Literal[1, 2] = 2,
     tolerance: float = 1e-8,
@@ -290,7 +355,7 @@ def roll(
     initial: FrictionSolution | History | None = None,
     progress: StepProgress | None = None,
     check: bool = True,
-) -> Any:
+) -> FrictionSolution | History:
     """Press a shape into a body, which rolls, in one call.
 
     It chooses a grid where none is given, plans, and solves.
@@ -365,7 +430,13 @@ def roll(
     >>> round(wheel.force[0], 6), wheel.creepage[0] > 0
     (1.5, True)
     """
-    return _steps(core.roll, locals())
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
+    state, callback = _last_state(initial), _step_callback(progress)
+    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+    moves = core.roll(shape, rolling, options, setup)
+    return _solve_steps(moves, cells or 1, options)
 
 
 class Contact:
@@ -461,7 +532,7 @@ class Contact:
         tolerance: float = 1e-8,
         max_iterations: int | None = None,
         algorithm: Algorithm = "cascade",
-        initial: Solution | Matrix | None = None,
+        initial: Solution | FrictionSolution | Matrix | None = None,
         progress: Progress | None = None,
         check: bool = True,
     ) -> Solution:
@@ -501,7 +572,13 @@ class Contact:
         >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
         0.0
         """
-        return _solved(locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        state, callback = _initial_state(initial), _report_callback(progress)
+        options = SolveOptions(
+            hardness, tolerance, max_iterations, algorithm, state, callback, check
+        )
+        solved = core.solve(shape, motion, options, self._plan)
+        return _checked_solution(solved, shape, check)
 
     def solve_many(
         self,
@@ -561,17 +638,19 @@ class Contact:
         >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
         [5.0, 10.0]
         """
-        keywords = locals()
-        case_keywords = _mappings(
-            ("a case", "cases", "solve", "in case"), cases, ("shape", *MOTION)
+        words = ("a case", "cases", "solve", "in case")
+        mappings = _mappings(words, cases, ("shape", *MOTION))
+        shape_motions = [(case["shape"], Motion.of(case)) for case in mappings]
+        options = SolveOptions(
+            hardness, tolerance, max_iterations, algorithm, None, progress, check
         )
-        outcomes, failure = self._plan.solve_many(case_keywords, keywords)
+        outcomes, failure = self._plan.solve_many(shape_motions, options)
         solutions: list[Any] = []
-        for number, (case, outcome) in enumerate(zip(case_keywords, outcomes, strict=True)):
+        for number, ((shape, _), outcome) in enumerate(zip(shape_motions, outcomes, strict=True)):
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
-                    solution = _checked_solution(outcome, case["shape"], check, stacklevel=3)
+                    solution = _checked_solution(outcome, shape, check)
                 except Exception as error:  # of the tolerance, or a warning that is one
                     error.add_note(f"in case {number}")
                     outcome, solution = error, getattr(error, "solution", None)
@@ -582,6 +661,18 @@ class Contact:
             failure.solutions = solutions  # type: ignore[attr-defined]
             raise failure
         return solutions
+
+    @overload
+    def slide(
+        self, shape: core.Shape, steps: None = None, **keywords: Unpack[SlideKeywords]
+    ) -> FrictionSolution: ...
+    @overload
+    def slide(
+        self,
+        shape: core.Shape,
+        steps: Iterable[Mapping[str, Any]],
+        **keywords: Unpack[SlideKeywords],
+    ) -> History: ...
 
     def slide(
         self,
@@ -604,7 +695,7 @@ class Contact:
         initial: FrictionSolution | History | None = None,
         progress: StepProgress | None = None,
         check: bool = True,
-    ) -> Any:
+    ) -> FrictionSolution | History:
         """Press a shape into the body and move it tangentially, with friction.
 
         Parameters
@@ -638,7 +729,22 @@ class Contact:
         >>> round(ball.force[0], 6), ball.report.full_slip
         (1.5, False)
         """
-        return _steps(core.slide, locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        step = FrictionStep(motion, friction, shift, force, twist, torque)
+        state, callback = _last_state(initial), _step_callback(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+        history = _history_steps(steps)
+        moves = core.slide(shape, step, history, options, self._plan)
+        return _solve_steps(moves, len(history or [step]), options)
+
+    @overload
+    def roll(
+        self, shape: core.Shape, *, cells: None = None, **keywords: Unpack[RollKeywords]
+    ) -> FrictionSolution: ...
+    @overload
+    def roll(
+        self, shape: core.Shape, *, cells: int, **keywords: Unpack[RollKeywords]
+    ) -> History: ...
 
     def roll(
         self,
@@ -653,7 +759,7 @@ class Contact:
         creepage: Along | None = None,
         force: Along | None = None,
         spin: float = 0.0,
-        direction: Literal["+x", "-x", "+y", "-y"] | None = None,
+        direction: RollingDirection | None = None,
         cells: int | None = None,
         order: Literal[1, 2] = 2,
         tolerance: float = 1e-8,
@@ -662,7 +768,7 @@ class Contact:
         initial: FrictionSolution | History | None = None,
         progress: StepProgress | None = None,
         check: bool = True,
-    ) -> Any:
+    ) -> FrictionSolution | History:
         """Press a shape into the body, which rolls steadily, or cell by cell from a given state.
 
         Parameters
@@ -697,7 +803,12 @@ class Contact:
         >>> wheel.report.full_slip, round(wheel.force[0], 3)
         (True, 3.0)
         """
-        return _steps(core.roll, locals(), self._plan)
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
+        state, callback = _last_state(initial), _step_callback(progress)
+        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
+        moves = core.roll(shape, rolling, options, self._plan)
+        return _solve_steps(moves, cells or 1, options)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""
@@ -722,39 +833,45 @@ class Contact:
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
 
 
-def _solved(keywords: dict[str, Any], plan: core.Plan | None = None) -> Solution:
-    """Return the solution of what a user asked for with these arguments."""
-    _check_cells(keywords)
-    initial, progress = keywords["initial"], keywords["progress"]
+def _initial_state(initial: Any) -> core.Solved | Matrix | None:
+    """Return what the compiled module starts a solve from."""
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
-    is_solved = isinstance(initial, Solution)
-    keywords["initial"] = initial._solved if is_solved else getattr(initial, "pressure", initial)
-    if callable(progress):
-        keywords["progress"] = lambda *parts: progress(Report._of(parts))
-    return _checked_solution(
-        core.solve(keywords, plan), keywords["shape"], keywords["check"], stacklevel=4
+    return (
+        initial._solved if isinstance(initial, Solution) else getattr(initial, "pressure", initial)
     )
 
 
-def _checked_solution(
-    solved: core.Solved, shape: core.Shape, check: bool, stacklevel: int
-) -> Solution:
+def _last_state(initial: Any) -> core.FrictionSolved | None:
+    """Return the state of the compiled module from which a contact with friction goes on."""
+    last = initial[-1] if isinstance(initial, History) and initial else initial
+    return last._solved if isinstance(last, FrictionSolution) else last
+
+
+def _report_callback(progress: Progress | None) -> Callable[..., object] | None:
+    """Return a function that is called with the parts of a report; the module refuses others."""
+    if not callable(progress):
+        return progress
+    return lambda *parts: progress(Report._of(parts))
+
+
+def _step_callback(progress: StepProgress | None) -> Callable[[int, str], object] | None:
+    """Return a function that is called with the report of a step as JSON text, likewise."""
+    if not callable(progress):
+        return progress
+    return lambda number, text: progress(number, FrictionReport._from_text(text))
+
+
+def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
     """Issue the warnings of a solution, and return it if its tolerance was met."""
     for message in solved.warnings():
-        warnings.warn(message, core.NacreWarning, stacklevel=stacklevel)
+        warnings.warn(message, core.NacreWarning, stacklevel=3)
     solution = Solution._of(solved, shape)
     if check and (missed := solved.not_converged()) is not None:
         error = core.ConvergenceError(missed)
         error.solution = solution
         raise error
     return solution
-
-
-def _check_cells(keywords: Mapping[str, Any]) -> None:
-    """Raise a `ValueError` if a grid is given, and how many cells one may have that is chosen."""
-    if keywords.get("max_cells") is not None and keywords["grid"] is not None:
-        raise ValueError("max_cells must not be given beside grid: it limits a grid that is chosen")
 
 
 def _mappings(
@@ -785,54 +902,38 @@ def _mappings(
     return [dict(item) for item in mappings]
 
 
-def _steps(
-    begin: Callable[..., core.FrictionSteps],
-    keywords: dict[str, Any],
-    plan: core.Plan | None = None,
-) -> Any:
-    """Return the solutions of a function or method that a user called with these arguments.
+def _history_steps(steps: Iterable[Mapping[str, Any]] | None) -> list[FrictionStep] | None:
+    """Return the steps of a history, where there is one."""
+    if steps is None:
+        return None
+    words = ("a step", "steps", "slide", "step")
+    return [FrictionStep.of(mapping) for mapping in _mappings(words, steps, STEP)]
+
+
+def _solve_steps(
+    steps: core.FrictionSteps, count: int, options: FrictionOptions
+) -> FrictionSolution | History:
+    """Return the solutions of so many steps, or that of the only one.
 
     Steps are solved one after another, and warn of what they find; an exception carries those that
     are finished.
     """
-    _check_cells(keywords)
-    progress = keywords["progress"]
-    if callable(progress):
-        keywords["progress"] = lambda number, text: progress(
-            number, FrictionReport._from_text(text)
-        )
-    if isinstance(keywords["initial"], History) and keywords["initial"]:
-        keywords["initial"] = keywords["initial"][-1]
-    if isinstance(keywords["initial"], FrictionSolution):
-        keywords["initial"] = keywords["initial"]._solved
-    step_keywords = None
-    if keywords.get("steps") is not None:
-        words = ("a step", "steps", "slide", "step")
-        step_keywords = _mappings(words, keywords["steps"], STEP)
-    for step in (keywords, *(step_keywords or ())):
-        if np.asarray(friction := step.get("friction")).dtype.kind == "b":
-            raise TypeError(f"friction must be a number, or one for each cell, got {friction!r}")
-    if step_keywords is not None:
-        steps = core.slide(keywords, step_keywords, plan)
-    else:
-        steps = begin(keywords, plan=plan)
-    count = len(step_keywords) if step_keywords else keywords.get("cells") or 1
     solutions: list[FrictionSolution] = []
     try:
-        with lasting("steps", progress) as tell:
+        with lasting("steps", options.progress) as tell:
             for solved in steps:
                 solution = FrictionSolution._of(solved)
                 termination = solution.report.termination
                 for warning in solution.normal.report.warnings if termination != "stopped" else []:
                     warnings.warn(warning, core.NacreWarning, stacklevel=3)
-                if keywords["check"] and termination == "iteration limit":
+                if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution
                     raise error
                 solutions.append(solution)
                 if termination == "stopped":
                     break
-                if progress is None and tell is not None:
+                if options.progress is None and tell is not None:
                     tell(len(solutions) / count)
     except BaseException as error:
         if steps.several:

@@ -876,4 +876,4 @@ class Solution(Result, Stressed):
         position = {name: state.pop(name) for name in ("approach", "tilt")}
         parts = Report._parts(state.pop("report"))
         with values.refusing(cls.__name__):
-            return cls._of(core.Solved(state, as_text(cls.__name__, position), parts))
+            return cls._of(core.Solved(as_text(cls.__name__, position), parts, **state))

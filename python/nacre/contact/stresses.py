@@ -37,6 +37,37 @@ AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
 
+@dataclass(frozen=True)
+class StressOptions:
+    """Body, traction and residual stress of an evaluation, and how it is done."""
+
+    body: Member
+    friction: float
+    direction: Direction | None
+    residual: ByLayer | None
+    threads: int | None
+    progress: Progress | None
+
+
+@dataclass(frozen=True)
+class StressFields:
+    """Place and kind of the fields that an evaluation returns."""
+
+    side: Side
+    x: float | None
+    y: float | None
+    displacement: bool
+
+
+@dataclass(frozen=True)
+class StressLimits:
+    """Limits of the materials, and the largest error of the extremes."""
+
+    yield_stress: ByLayer | None
+    strength: ByLayer | None
+    refine: float | None
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Stress(Result, Warned):
     """Stress below the surface, and displacement where it was asked for.
@@ -567,7 +598,9 @@ class StressPlan:
         >>> solution.stress_plan().stress(10e-6) == solution.stress(10e-6)
         True
         """
-        return _warned(Stress(**core.stress(self._plan, z, locals())))
+        fields = StressFields(side, x, y, displacement)
+        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        return _warned(Stress(**core.stress(self._plan, z, fields, options)))
 
     def summary(
         self,
@@ -608,8 +641,10 @@ class StressPlan:
         True
         """
         _check_limits_of(self._solution, self._member, yield_stress, strength)
-        with lasting("stresses", progress) as progress:
-            text = core.stress_summary(self._plan, locals())
+        limits = StressLimits(yield_stress, strength, None)
+        with lasting("stresses", progress) as tell:
+            options = StressOptions(self._member, friction, direction, residual, None, tell)
+            text = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
         return _warned(StressSummary._from_text(text, sliding))
 
@@ -714,7 +749,9 @@ class Stressed:
         >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
         (True, False)
         """
-        return _warned(Stress(**core.stress(self._solved, z, locals())))
+        fields = StressFields(side, x, y, displacement)
+        options = StressOptions(body, friction, direction, residual, threads, progress)
+        return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
     def stress_summary(
         self,
@@ -787,8 +824,10 @@ class Stressed:
         True
         """
         _check_limits_of(self, body, yield_stress, strength)
-        with lasting("stresses", progress) as progress:
-            text = core.stress_summary(self._solved, locals())
+        limits = StressLimits(yield_stress, strength, refine)
+        with lasting("stresses", progress) as tell:
+            options = StressOptions(body, friction, direction, residual, threads, tell)
+            text = core.stress_summary(self._solved, limits, options)
         return _warned(StressSummary._from_text(text, self._sliding(friction, direction, body)))
 
     def _sliding(
@@ -831,7 +870,7 @@ class Stressed:
         >>> [plan.stress(z, friction=0.1, direction=(1, 0)).friction for z in (10e-6, 20e-6)]
         [(0.1, 0.0), (0.1, 0.0)]
         """
-        return StressPlan(core.stress_plan(self._solved, locals()), self, body, threads)
+        return StressPlan(core.stress_plan(self._solved, body, threads), self, body, threads)
 
 
 def stress(
@@ -895,7 +934,9 @@ def stress(
     >>> bool(abs(field.zz[0, 32] + 1e9) < 1.0)
     True
     """
-    return Stress(**core.stress_under(body, grid, pressure, z, locals()))
+    fields = StressFields(side, x, y, displacement)
+    options = StressOptions("body", friction, direction, residual, threads, progress)
+    return Stress(**core.stress_under(body, grid, pressure, z, fields, options))
 
 
 StressResult = TypeVar("StressResult", Stress, StressSummary)
@@ -925,7 +966,7 @@ def _check_limits_of(
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     if isinstance(body, core.HalfSpace):
         for name, limits in (("yield_stress", yield_stress), ("strength", strength)):
-            check_limits(name, core.layer_values(body, name, {name: limits}), body)
+            check_limits(name, core.layer_values(body, name, limits), body)
 
 
 def _warned(result: StressResult) -> StressResult:

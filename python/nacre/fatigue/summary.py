@@ -614,7 +614,7 @@ def layer_values(name: str, stress: float | ByLayer | None, body: core.HalfSpace
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
     if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
         return [core.real(name, stress)] * count
-    per_layer: list[Any] = core.layer_values(body, name, {name: stress})
+    per_layer: list[Any] = core.layer_values(body, name, stress)
     return per_layer + [None] * (count - len(per_layer))
 
 

@@ -193,7 +193,7 @@ class IndentSolution(Tabular, Warned):
     def _states(self) -> core.IndentStates:
         """Contacts of the compiled module, solved again."""
         arguments: dict[str, Any] = {self.given: getattr(self, self.given)}
-        return self.indentation._planned.at(arguments, self.branch)
+        return self.indentation._planned.at(self.branch, **arguments)
 
     @property
     def state(self) -> Self:
@@ -556,7 +556,7 @@ class Indentation:
         return self._at(arguments, branch, "load")
 
     def _at(self, arguments: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
-        states = self._planned.at(arguments, branch)
+        states = self._planned.at(branch, **arguments)
         # What was given is the value that is not None.
         name = next(name for name, value in arguments.items() if value is not None)
         return IndentSolution._of(self, states, name, branch, control)

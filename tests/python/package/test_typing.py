@@ -39,6 +39,10 @@ study: xarray.Dataset = nacre.sweep(
 )
 curve = plot.curve(design.load_curve(rough, steel, [1.0, 2.0]), "stiffness")
 nacre.plot.compare({"a": solution, "b": again})
+steps = [{"shift": (shift, None)} for shift in (1e-6, -1e-6)]
+loop: nacre.types.History = nacre.slide(roller, steel, load=10.0, friction=0.3, steps=steps)
+contact = nacre.Contact(steel, solution.grid)
+rolling: nacre.types.FrictionSolution = contact.roll(roller, load=10.0, friction=0.3, spin=1.0)
 """
 
 WRONG = {
@@ -46,6 +50,9 @@ WRONG = {
     'detrend="plane"': 'detrend="sphere"',
     "solution.save(": "solution.save(1, ",
     "nacre.Solution = nacre.load": "float = nacre.load",
+    "nacre.types.History = nacre.slide": "nacre.types.FrictionSolution = nacre.slide",
+    "friction=0.3, spin=1.0": "friction=0.3, cells=2",
+    "friction=0.3, steps": "frictoin=0.3, steps",
 }
 
 

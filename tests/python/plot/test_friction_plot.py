@@ -111,7 +111,7 @@ def test_pictures_go_into_given_axes() -> None:
 
 
 def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
-    loop = CONTACT.slide(BALL, [{"force": (f, None)} for f in (2.0, -2.0, 2.0)], **HELD)
+    loop: Any = CONTACT.slide(BALL, [{"force": (f, None)} for f in (2.0, -2.0, 2.0)], **HELD)
     axes: Axes = plot.loop(loop)
     axes.figure.canvas.draw()
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("shift along x [nm]", "force along x [N]")

@@ -120,11 +120,11 @@ def test_every_result_has_its_warnings_in_its_report() -> None:
 def test_warnings_of_friction_are_those_that_were_issued() -> None:
     """A contact of few cells: steps of a history, rolling, and the saved history."""
     coarse = nacre.Contact(STEEL, nacre.Grid((16, 16), (6e-4, 6e-4)), STEEL)
-    load = {"load": 1.0, "friction": 0.3}
+    load: dict[str, Any] = {"load": 1.0, "friction": 0.3}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        history = coarse.slide(BALL, **load, steps=[{"force": (f, None)} for f in (0.1, 0.2)])  # type: ignore[arg-type]
-        rolled = coarse.roll(BALL, **load, creepage=(1e-4, 0.0), direction="+x")  # type: ignore[arg-type]
+        history = coarse.slide(BALL, **load, steps=[{"force": (f, None)} for f in (0.1, 0.2)])
+        rolled = coarse.roll(BALL, **load, creepage=(1e-4, 0.0), direction="+x")
     issued = {str(one.message) for one in caught}
     assert issued
     assert {*history.report.warnings, *rolled.report.warnings} == issued
