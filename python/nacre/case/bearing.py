@@ -22,7 +22,16 @@ from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import Ring
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
-from nacre.case.tables import Count, Counts, Directions, Number, Pair, Table, described, with_words
+from nacre.case.tables import (
+    Count,
+    Counts,
+    Directions,
+    Number,
+    Pair,
+    Table,
+    parameter_texts,
+    with_words,
+)
 
 KINDS: dict[str, type[Solvable]] = {
     bearing_class.kind: bearing_class
@@ -35,8 +44,8 @@ KINDS: dict[str, type[Solvable]] = {
     )
 }
 """Bearings by their names in case files."""
-SOLVE = described(Solvable.solve)
-FILMS = described(film_thickness)
+SOLVE = parameter_texts(Solvable.solve)
+FILMS = parameter_texts(film_thickness)
 
 
 UNITS: dict[str, str] = (
@@ -191,18 +200,19 @@ TYPES: dict[str, Any] = {
     "outer": Body | None,
 }
 """Types of keys that are no numbers."""
+FOLLOWS = {"angular_contact_ball": ("clearance",)}
+"""Arguments that are no keys, since others say what they are: the contact angle, the clearance."""
 
 
 def _table(kind: str, bearing_class: type[Any]) -> type[BearingKind]:
     """Return the table of a bearing: a key for each argument."""
-    descriptions = described(bearing_class)
+    descriptions = parameter_texts(bearing_class)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
     for one in dataclasses.fields(bearing_class):
         hint, default = TYPES.get(one.name, Number), one.default
-        # Without docstrings there are no descriptions.
-        if hint is None or (descriptions and one.name not in descriptions):
+        if one.name in FOLLOWS.get(kind, ()):
             continue
         if default is dataclasses.MISSING:
             fields[one.name] = (hint, Field(description=descriptions.get(one.name, "")))

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
 
 import nacre
-from nacre.case.tables import Count, Directions, Number, Pair, Table, described, with_words
+from nacre.case.tables import (
+    Directions,
+    Number,
+    Pair,
+    Table,
+    from_signature,
+    keywords_of,
+    with_words,
+)
 
-SLIDE = described(nacre.slide)
-ROLL = described(nacre.roll)
-
-
-class Along(Directions):
-    """A value along x, along y, or both."""
-
-    x: Number | None = Field(None, description="Value along x.")
-    y: Number | None = Field(None, description="Value along y.")
+SHARED = keywords_of(nacre.solve)
+"""Keywords that stand in `[solve]`."""
+OF_HISTORY = keywords_of(nacre.slide) & keywords_of(nacre.roll) - {"force"}
+"""Keywords of how steps are solved, which are those of rolling, too."""
 
 
 class Rolling(Directions):
@@ -27,21 +30,14 @@ class Rolling(Directions):
     across: Number | None = Field(None, description="Value along z × e.")
 
 
-AnyAlong = Annotated[
-    Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
-]
 AnyRolling = Annotated[
     Rolling | Pair, with_words("a table with along, across or both, or a pair of finite numbers")
 ]
 
 
+@from_signature(nacre.slide, {*SHARED, *OF_HISTORY})
 class Sliding(Table):
     """Keys of a step of sliding."""
-
-    shift: AnyAlong | None = Field(None, description=SLIDE["shift"])
-    force: AnyAlong | None = Field(None, description=SLIDE["force"])
-    twist: Number | None = Field(None, description=SLIDE["twist"])
-    torque: Number | None = Field(None, description=SLIDE["torque"])
 
 
 class Step(Sliding):
@@ -56,6 +52,7 @@ MOST_STEPS = 10_000
 """Largest number of steps: each takes a tenth of a second at least."""
 
 
+@from_signature(nacre.slide, SHARED)
 class Slide(Sliding):
     """Friction: one tangential step, or a history of steps; load and tilts stand in `[solve]`."""
 
@@ -63,7 +60,6 @@ class Slide(Sliding):
     steps: Annotated[list[Step], Field(max_length=MOST_STEPS)] | None = Field(
         None, description="Steps of a history; a line [[slide.steps]] begins each, too."
     )
-    coupling: bool = Field(True, description=SLIDE["coupling"])
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `nacre.slide`."""
@@ -73,17 +69,13 @@ class Slide(Sliding):
         return arguments
 
 
+@from_signature(nacre.roll, SHARED, creepage=AnyRolling, force=AnyRolling)
 class Roll(Table):
     """Rolling with friction at constant speed; load and tilts stand in `[solve]`."""
 
     friction: Number = Field(description="Coefficient of friction, at least 0.")
-    creepage: AnyRolling | None = Field(None, description=ROLL["creepage"])
-    force: AnyRolling | None = Field(None, description=ROLL["force"])
-    spin: Number = Field(0.0, description=ROLL["spin"])
-    direction: Literal["+x", "-x", "+y", "-y"] | None = Field(None, description=ROLL["direction"])
-    cells: Count | None = Field(None, description=ROLL["cells"])
-    order: Literal[1, 2] = Field(2, description=ROLL["order"])
-    coupling: bool = Field(True, description=ROLL["coupling"])
+    if TYPE_CHECKING:
+        spin: float
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `nacre.roll`, with one at least that `nacre.slide` has not."""

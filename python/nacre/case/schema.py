@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import inspect
-import types
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import (
@@ -13,19 +12,17 @@ from typing import (
     Any,
     ClassVar,
     Literal,
+    Self,
     Union,
-    get_args,
-    get_origin,
-    get_type_hints,
 )
 
 import numpy as np
 from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
-from nacre._tools.typing import Along
+from nacre._tools.typing import Member
 from nacre._tools.units import System
-from nacre.case.friction import AnyAlong, Roll, Slide
+from nacre.case.friction import SHARED, Roll, Slide
 from nacre.case.shapes import AnyShape
 from nacre.case.tables import (
     TWO,
@@ -35,20 +32,16 @@ from nacre.case.tables import (
     Number,
     Pair,
     Table,
-    described,
+    from_signature,
+    needed,
+    parameter_texts,
     with_words,
 )
 from nacre.studies.outputs import OUTPUTS
 
-CONSTANTS = described(nacre.Elastic)
-LAYER = described(nacre.Layer)
-SPRING = described(nacre.Spring)
-GRID = described(nacre.Grid)
-LINE = described(nacre.Grid.line)
-SOLVE = described(nacre.solve)
-STRESS = described(nacre.Solution.stress)
-SUMMARY = described(nacre.Solution.stress_summary)
-FATIGUE = described(nacre.fatigue.assess)
+CONSTANTS = parameter_texts(nacre.Elastic)
+SOLVE = parameter_texts(nacre.solve)
+FATIGUE = parameter_texts(nacre.fatigue.assess)
 
 
 class Material(Table):
@@ -76,15 +69,13 @@ AnyMaterial = Annotated[
 ]
 
 
+@from_signature(nacre.Spring)
 class Spring(Table):
     """Springs between the two sides of an interface."""
 
-    normal: Number | None = Field(None, description=SPRING["normal"])
-    tangential: Number | None = Field(None, description=SPRING["tangential"])
-
     def make(self) -> nacre.Spring:
         """Return the springs."""
-        return nacre.Spring(self.normal, self.tangential)
+        return nacre.Spring(**self.keywords())
 
 
 AnyInterface = Annotated[
@@ -93,13 +84,13 @@ AnyInterface = Annotated[
 ]
 
 
+@from_signature(nacre.Layer, material=AnyMaterial, interface=AnyInterface, name=str)
 class Layer(Table):
     """A layer, the interface below it, and the name that results show."""
 
-    material: AnyMaterial = Field(description=LAYER["material"])
-    thickness: Number = Field(description=LAYER["thickness"])
-    interface: AnyInterface = Field("bonded", description=LAYER["interface"])
-    name: str | None = Field(None, description=LAYER["name"])
+    if TYPE_CHECKING:
+        material: str | Material
+        interface: str | Spring
 
 
 Ends = Annotated[
@@ -126,94 +117,62 @@ class Body(Table):
     )
 
 
+AREA, STRIPS = needed(nacre.Grid), needed(nacre.Grid.line)
+"""Keys that the grid of an area and that of a line contact need."""
+
+
+@from_signature(nacre.Grid.line, cells=Count | None, width=Number | None)
+@from_signature(nacre.Grid, shape=Counts | None, size=Pair | None, periodic=Flags)
 class Grid(Table):
     """Cells of an area, by shape and size; or strips of a line contact, by cells and width."""
 
-    shape: Counts | None = Field(None, description=GRID["shape"])
-    size: Pair | None = Field(None, description=GRID["size"])
     center: Pair | Number | None = Field(
         None, description="Centre [m]: a pair for an area, a number for a line. By default 0."
     )
-    periodic: Flags | None = Field(None, description=GRID["periodic"])
-    cells: Count | None = Field(None, description=LINE["cells"])
-    width: Number | None = Field(None, description=LINE["width"])
 
     @model_validator(mode="after")
-    def _one_kind(self) -> Grid:
-        area, line = (self.shape, self.size), (self.cells, self.width)
-        if (None in area or line != (None, None)) and (None in line or area != (None, None)):
+    def _one_kind(self) -> Self:
+        keys = {name for name, value in self if value is not None}
+        if (keys & AREA, keys & STRIPS) not in ((AREA, set()), (set(), STRIPS)):
             raise ValueError("must have shape and size or, for a line contact, cells and width")
-        if self.periodic is not None and self.cells is not None:
+        if "periodic" in keys and keys >= STRIPS:
             raise ValueError("periodic must not be given for a line contact")
-        if self.center is not None and isinstance(self.center, list) != (self.cells is None):
-            requirement = (
-                "a pair of numbers" if self.cells is None else "a number for a line contact"
-            )
+        if self.center is not None and isinstance(self.center, list) != (keys >= AREA):
+            requirement = "a pair of numbers" if keys >= AREA else "a number for a line contact"
             raise ValueError(f"center must be {requirement}, got {self.center!r}")
         return self
 
     def make(self) -> nacre.Grid:
         """Return the grid."""
-        center: dict[str, Any] = {} if self.center is None else {"center": self.center}
-        if self.cells is not None:
-            return nacre.Grid.line(self.cells, self.width or 0.0, **center)
-        repeats = {} if self.periodic is None else {"periodic": tuple(self.periodic)}
-        return nacre.Grid(self.shape, self.size, **center, **repeats)  # type: ignore[arg-type]
+        keywords = {name: value for name, value in self.keywords().items() if value is not None}
+        return (nacre.Grid if keywords.keys() >= AREA else nacre.Grid.line)(**keywords)
 
 
-KNOWN = {float: Number, int: Count, Along: AnyAlong}
-"""Types that case files have for those of keywords."""
-OBJECTS = ("grid", "initial", "progress", "check")
-"""Keywords of a solve that are no numbers and no words."""
+@from_signature(nacre.solve, {"check"})  # a case is always checked
+class Solve(Table):
+    """The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."""
 
 
-def _checked(hint: Any) -> Any:
-    """Return the type that a case file has for a keyword; it has none for arrays."""
-    parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
-    parts = tuple(part for part in parts if get_origin(part) not in (Sequence, np.ndarray))
-    return Union[(*(KNOWN.get(part, part) for part in parts),)]
+class OfBody(Table):
+    """Keywords of what is computed in one body."""
 
-
-def _solve() -> type[Table]:
-    """Return the table of the keywords of `nacre.solve`."""
-    hints = get_type_hints(nacre.solve)
-    keywords = inspect.signature(nacre.solve).parameters.values()
-    fields: dict[str, Any] = {
-        one.name: (
-            _checked(hints[one.name]),
-            Field(default=one.default, description=SOLVE[one.name]),
-        )
-        for one in keywords
-        if one.kind is one.KEYWORD_ONLY and one.name not in OBJECTS
-    }
-    summary = (
-        "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
-    )
-    return create_model("Solve", __base__=Table, __doc__=summary, **fields)
-
-
-if TYPE_CHECKING:
-    Solve = Table
-else:
-    Solve = _solve()
-
-
-class Stress(Table):
-    """The stresses that are printed and kept, as `Solution.stress_summary` has them."""
-
-    body: Literal["body", "counterbody"] = Field("body", description=STRESS["body"])
-    friction: Number = Field(0.0, description=STRESS["friction"])
-    direction: Pair | None = Field(None, description=STRESS["direction"])
-    refine: Number | None = Field(None, description=SUMMARY["refine"])
+    if TYPE_CHECKING:
+        body: Member
+        friction: float
 
     def keywords(self) -> dict[str, Any]:
-        """Return the keywords."""
+        """Return the keys that were given, the body and the friction, as keywords."""
         return {"body": self.body, "friction": self.friction} | super().keywords()
+
+
+@from_signature(nacre.Solution.stress_summary, SHARED, parameter_texts(nacre.Solution.stress))
+class Stress(OfBody):
+    """The stresses that are printed and kept, as `Solution.stress_summary` has them."""
 
 
 def _criterion(kind: str, maker: Any) -> type[Any]:
     """Return the table of a criterion of fatigue, whose limits must both be given."""
-    descriptions = described(maker)
+    descriptions = parameter_texts(maker)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind of the criterion.")),
         **{
@@ -234,19 +193,15 @@ else:
     AnyCriterion = Annotated[Union[tuple(CRITERIA.values())], Field(discriminator="kind")]  # noqa: UP007
 
 
-class Fatigue(Table):
+@from_signature(nacre.fatigue.assess, SHARED)
+class Fatigue(OfBody):
     """Shakedown and fatigue in steady rolling, as `nacre.fatigue.assess` has them."""
 
     criteria: list[AnyCriterion] = Field([], description=FATIGUE["criteria"])
-    body: Literal["body", "counterbody"] = Field("body", description=FATIGUE["body"])
-    friction: Number = Field(0.0, description=FATIGUE["friction"])
-    direction: Pair | None = Field(None, description=FATIGUE["direction"])
-    x: Number | None = Field(None, description=FATIGUE["x"])
-    rule: Literal["von_mises", "in_plane_tresca"] = Field("von_mises", description=FATIGUE["rule"])
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""
-        arguments = {"body": self.body, "friction": self.friction} | super().keywords()
+        arguments = super().keywords()
         criteria = []
         for number, one in enumerate(self.criteria):
             with at(f"fatigue.criteria[{number}]"):
@@ -337,12 +292,13 @@ class Keys(Table):
         layers = []
         for number, layer in enumerate(body.layers):
             with at(f"{name}.layers[{number}]"):
+                arguments = layer.keywords()
                 with at("material"):
-                    material = self._material(layer.material)
+                    arguments["material"] = self._material(layer.material)
                 with at("interface"):
-                    joint = layer.interface
-                    interface = joint.make() if isinstance(joint, Spring) else joint
-                layers.append(nacre.Layer(material, layer.thickness, interface, layer.name))
+                    if isinstance(layer.interface, Spring):
+                        arguments["interface"] = layer.interface.make()
+                layers.append(nacre.Layer(**arguments))
         ends = None if body.ends is None else (body.ends[0], body.ends[1])
         with at(name):
             return nacre.HalfSpace(substrate, layers, ends=ends)

@@ -21,7 +21,7 @@ from nacre.case.tables import (
     Numbers,
     Pair,
     Table,
-    described,
+    parameter_texts,
     table_of,
 )
 from nacre.hertz import relative_radii
@@ -91,7 +91,7 @@ SHAPES: dict[str, Any] = {
 }
 """Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
 
-READ = described(nacre.HeightMap.read)
+READ = parameter_texts(nacre.HeightMap.read)
 
 
 class HeightMap(Shape):
@@ -123,8 +123,8 @@ class HeightMap(Shape):
         return nacre.HeightMap(height_map.heights / metres, spacing, center, height_map.periodic)
 
 
-RANDOM = described(rough.random_surface)
-CROSSED = described(relative_radii)
+RANDOM = parameter_texts(rough.random_surface)
+CROSSED = parameter_texts(relative_radii)
 
 
 class RandomSurface(Shape):

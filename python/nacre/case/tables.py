@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import inspect
 import re
+import types
 from collections import defaultdict
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Collection, Mapping
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
     BaseModel,
@@ -17,6 +18,8 @@ from pydantic import (
     PositiveInt,
     create_model,
 )
+
+T = TypeVar("T", bound="Table")
 
 TWO = Field(min_length=2, max_length=2)
 Number = FiniteFloat
@@ -66,7 +69,108 @@ def _keyword(value: Any) -> Any:
     return value
 
 
-def described(thing: Any) -> dict[str, str]:
+class Along(Directions):
+    """A value along x, along y, or both."""
+
+    x: Number | None = Field(None, description="Value along x.")
+    y: Number | None = Field(None, description="Value along y.")
+
+
+AnyAlong = Annotated[
+    Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
+]
+TYPES: dict[object, Any] = {
+    float: Number,
+    int: Count,
+    bool: bool,
+    str: str,
+    tuple[float, float]: Pair,
+    tuple[int, int]: Counts,
+    tuple[bool, bool]: Flags,
+    tuple[float | None, float | None]: AnyAlong,
+    types.NoneType: types.NoneType,
+}
+"""Types of case files by those of keywords."""
+
+
+def case_type(hint: object) -> Any:
+    """Return the type that a case file has for that of a keyword, or None if it has none.
+
+    It has none for arrays and objects, nor for values by layer, which stand with the materials.
+    """
+    is_union = isinstance(hint, types.UnionType) or get_origin(hint) is Union
+    parts = get_args(hint) if is_union else (hint,)
+    if any(get_origin(part) is Mapping for part in parts):
+        return None
+    kinds = [part if get_origin(part) is Literal else TYPES.get(part) for part in parts]
+    values = [kind for kind in kinds if kind is not None]
+    return Union[tuple(values)] if set(values) - {types.NoneType} else None  # noqa: UP007
+
+
+def keywords_of(function: Callable[..., object]) -> set[str]:
+    """Return the names of the arguments that a function takes by name only."""
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
+
+
+def needed(function: Callable[..., object]) -> set[str]:
+    """Return the names of the arguments that a function cannot do without."""
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name for one in parameters if one.default is one.empty}
+
+
+def signature_fields(
+    maker: Callable[..., object],
+    own: Mapping[str, Any],
+    leave: Collection[str] = (),
+    texts: Mapping[str, str] | None = None,
+) -> dict[str, Any]:
+    """Return the fields of a table, one for each parameter that a case file has a type for.
+
+    A parameter has its type in `own`, or the one of its annotation, or is a number in a signature
+    of the compiled module, which has no annotations. One whose type in `own` may be None can be
+    left out. Descriptions of `texts` go before those of the docstring.
+    """
+    descriptions, hints = {**parameter_texts(maker), **(texts or {})}, get_type_hints(maker)
+    fields = {}
+    for one in inspect.signature(maker).parameters.values():
+        hint = own.get(one.name, case_type(hints.get(one.name)) if hints else Number)
+        if hint is None or one.name in leave:
+            continue
+        default = one.default
+        if default is one.empty:
+            default = None if types.NoneType in get_args(hint) else ...
+        hint = hint | None if default is None else hint
+        fields[one.name] = (hint, Field(default, description=descriptions.get(one.name)))
+    return fields
+
+
+def from_signature(
+    maker: Callable[..., object],
+    leave: Collection[str] = (),
+    texts: Mapping[str, str] | None = None,
+    **own: Any,
+) -> Callable[[type[T]], type[T]]:
+    """Return a decorator that adds keys for the parameters of a callable to a table.
+
+    Those that the table has already keep its types and descriptions.
+    """
+
+    def decorate(table: type[T]) -> type[T]:
+        fields = signature_fields(maker, own, {*leave, *table.model_fields}, texts)
+        extended: type[T] = create_model(
+            table.__name__,
+            __base__=table,
+            __doc__=table.__doc__,
+            __module__=table.__module__,
+            **fields,
+        )
+        return extended
+
+    return decorate
+
+
+def parameter_texts(thing: object) -> dict[str, str]:
     """Return the descriptions of the parameters in a NumPy-style docstring, by name.
 
     Without docstrings, as of ``python -OO``, all are empty.
@@ -94,17 +198,10 @@ def table_of(
 
     A parameter is a number where `own` has no other type for it.
     """
-    descriptions = described(maker)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
-    for one in inspect.signature(maker).parameters.values():
-        hint, description = (own or {}).get(one.name, Number), descriptions.get(one.name)
-        if one.default is one.empty:
-            fields[one.name] = (hint, Field(description=description))
-        else:
-            hint = hint | None if one.default is None else hint
-            fields[one.name] = (hint, Field(default=one.default, description=description))
+    fields |= signature_fields(maker, own or {})
     summary = inspect.cleandoc(maker.__doc__ or "").partition("\n")[0]
     name = kind.title().replace("_", "") + base.__name__
     table: type[Any] = create_model(name, __base__=base, __doc__=summary, **fields)

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -15,12 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.units import printable
+from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import Stressed
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked, tuples
-from nacre.results.quantities import AXIS, WITH_FRICTION, Quantity
+from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -335,7 +335,18 @@ class FrictionSolution(Result, Stressed):
 
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
-        return display.friction_line(self)
+        nx, ny = self.grid.shape
+        unit = "N/m" if self.grid.is_line else "N"
+        motion = ("shift", "m") if self.shift is not None else ("creepage", "")
+        values = getattr(self, motion[0]) or (0.0, 0.0)
+        values = display.without_rounding(values)
+        components = display.pair(values, "m") if motion[1] else "({:.4g}, {:.4g})".format(*values)
+        force = display.pair(display.without_rounding(self.force), unit)
+        end = "converged" if self.report.converged else "not converged"
+        return printable(
+            f"<FrictionSolution on {nx} x {ny} cells: "
+            f"force {force}, {motion[0]} {components}, {end}>"
+        )
 
     def __str__(self) -> str:
         """Return a table of the main numbers."""
@@ -347,8 +358,8 @@ class FrictionSolution(Result, Stressed):
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return the numbers of the normal contact, and those of friction."""
-        normal = [row for row in display.numbers(self.normal) if row[0] != "ended"]
-        return [*normal, *display.friction_numbers(self)]
+        normal = [row for row in self.normal._rows() if row[0] != "ended"]
+        return [*normal, *_rows(self)]
 
     @property
     def _warnings(self) -> list[str]:
@@ -621,14 +632,107 @@ class History(list[FrictionSolution], Warned):
         """Return a table of the steps."""
         if not self:
             return "a history of 0 steps"
-        return printable("\n".join(display.aligned(display.history(self), ">")))
+        return printable("\n".join(display.aligned(_step_rows(self), ">")))
 
     def _repr_html_(self) -> str:
         if not self:
             return display.markup([["a history of 0 steps"]])
-        head, *rows = display.history(self)
+        head, *rows = _step_rows(self)
         picture = display.drawn(self.plot)
         return display.markup(rows, picture=picture, head=head, widest=display.WIDE)
 
 
 values.RESULTS["History"] = History
+
+
+def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:
+    """Return names and values of the main numbers of friction, with units."""
+    report, rolls = solution.report, solution.shift is None
+    rows = display.rows(solution, FRICTION, TEXTS, solution.grid.is_line, rolls)
+    touching, sticking = int((solution.pressure > 0).sum()), int(solution.stick.sum())
+    state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
+    coupled = f", {report.sweeps} sweeps" if report.coupled else ""
+    accuracy = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
+    return [
+        *rows,
+        *([("rolls", f"towards {solution.direction}")] if rolls else []),
+        ("friction", state if touching else "nothing touches"),
+        ("ended", f"{report.termination}, {accuracy}{coupled}"),
+    ]
+
+
+def _with_error(solution: FrictionSolution, name: str, text: str, size: float, unit: str) -> str:
+    """Return what is said of a number of rolling, with its discretisation error where there is one.
+
+    The error is one of its `size`, or has a unit where it is larger.
+    """
+    error = (solution.report.discretisation or {}).get(name, 0.0)
+    if error <= display.NOISE * size:
+        return text
+    if error < size:
+        return f"{text} ± {rounded(100 * error / size, 1)} %"
+    return f"{text} ± {written(error, unit, 1) if unit else rounded(error, 1)}"
+
+
+def _force(solution: FrictionSolution) -> str:
+    unit = "N/m" if solution.grid.is_line else "N"
+    text = display.pair(display.without_rounding(solution.force), unit)
+    return _with_error(solution, "force", text, float(np.hypot(*solution.force)), unit)
+
+
+def _creepage(solution: FrictionSolution) -> str | None:
+    if (creepage := solution.creepage) is None:
+        return None
+    components = "({:.4g}, {:.4g})".format(*display.without_rounding(creepage))
+    return _with_error(solution, "creepage", components, float(np.hypot(*creepage)), "")
+
+
+def _torque(solution: FrictionSolution) -> str | None:
+    if solution.grid.is_line:
+        return None
+    noise = display.SLIGHT * max(solution.grid.size) * max(map(abs, solution.force))
+    torque = solution.torque if abs(solution.torque) > noise else 0.0
+    return _with_error(solution, "torque", written(torque, "N m"), abs(torque), "N m")
+
+
+def _twist(solution: FrictionSolution) -> str | None:
+    is_given = solution.twist is not None and not solution.grid.is_line
+    return f"{solution.twist:.4g} rad" if is_given else None
+
+
+def _dissipated(solution: FrictionSolution) -> str:
+    # Power over speed in rolling, and rounding where nothing slips.
+    work = max(map(abs, solution.force)) * max(map(abs, solution.shift or (1.0,)))
+    lost = solution.dissipated if solution.dissipated > display.SLIGHT * work else 0.0
+    unit = energy(solution.grid.is_line, solution.shift is None)
+    return _with_error(solution, "power", written(lost, unit), lost, unit)
+
+
+TEXTS: dict[str, Callable[[FrictionSolution], str | None]] = {
+    "force": _force,
+    "torque": _torque,
+    "twist": _twist,
+    "creepage": _creepage,
+    "spin": lambda s: None if s.spin is None else f"{s.spin:.4g} /{symbol('m')}",
+    "dissipated": _dissipated,
+}
+"""Values of a contact with friction that are more than a number with its unit."""
+
+
+def _step_rows(steps: Sequence[FrictionSolution]) -> list[list[str]]:
+    """Return the rows of a table of the steps of a history, the heading first."""
+    line, rolls = steps[0].grid.is_line, steps[0].shift is None
+    force, motion_name = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
+    rows = [["step", "force x", "force y", f"{motion_name} 1" if rolls else "shift x"]]
+    rows[0] += [f"{motion_name} 2" if rolls else "shift y", "dissipated", "ended"]
+    motions = [(step.creepage if rolls else step.shift) or (0.0, 0.0) for step in steps]
+    moves = np.reshape(display.without_rounding(np.ravel(motions).tolist()), (-1, 2))
+    pulls = np.reshape(
+        display.without_rounding(np.ravel([step.force for step in steps]).tolist()), (-1, 2)
+    )
+    for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
+        motion_cells = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
+        force_cells = [written(part, force) for part in pull]
+        outcome = [_dissipated(step), step.report.termination]
+        rows.append([str(number), *force_cells, *motion_cells, *outcome])
+    return rows

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
-from nacre._tools.units import written
+from nacre._tools.units import printable, written
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -824,15 +824,30 @@ class Solution(Result, Stressed):
 
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
-        return display.line(self)
+        report = self.report
+        nx, ny = report.grid.shape
+        counterbody = "rigid" if report.counterbody is None else repr(report.counterbody)
+        force = "N/m" if report.grid.is_line else "N"
+        return printable(
+            f"<Solution on {nx} x {ny} cells, counterbody {counterbody}: "
+            f"load {written(self.load, force, 6)}, "
+            f"peak pressure {written(self.peak_pressure, 'Pa', 6)}, "
+            f"approach {written(self.approach, 'm', 6)}, "
+            f"tilt ({self.tilt[0]:.3e}, {self.tilt[1]:.3e}), "
+            f"{'converged' if report.converged else 'not converged'}>"
+        )
 
     def __str__(self) -> str:
         """Return a table of the main numbers."""
-        return display.text(display.numbers(self), self._warnings)
+        return display.text(self._rows(), self._warnings)
 
     def _repr_html_(self) -> str:
         picture = display.thumbnail(self.pressure)
-        return display.markup(display.numbers(self), self._warnings, picture)
+        return display.markup(self._rows(), self._warnings, picture)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+        return _rows(self)
 
     @property
     def _warnings(self) -> list[str]:
@@ -877,3 +892,127 @@ class Solution(Result, Stressed):
         parts = Report._parts(state.pop("report"))
         with values.refusing(cls.__name__):
             return cls._of(core.Solved(as_text(cls.__name__, position), parts, **state))
+
+
+def _rows(solution: Solution) -> list[tuple[str, str]]:
+    """Return names and values of the main numbers, with units."""
+    report, touching = solution.report, solution.contact_area > 0
+    repeats = [name for name, is_so in zip("xy", report.grid.periodic, strict=True) if is_so]
+    left = set() if touching else {"peak_position", "contact_extent", "contact_area"}
+    if len(repeats) == 2:
+        left.add("tilt")
+    texts = TEXTS | dict.fromkeys(left, _nothing)
+    rows = display.rows(solution, CONTACT, texts, report.grid.is_line)
+    place = 1 + max(k for k, (name, _) in enumerate(rows) if name in ("approach", "tilt"))
+    rows.insert(place, ("motion", _motion(report.motion)))
+    nx, ny = report.grid.shape
+    period = f", periodic along {' and '.join(repeats)}" if repeats else ""
+    return [
+        *rows,
+        *display.body("body", report.body),
+        *display.body("counterbody", report.counterbody),
+        *display.moduli(report.body, report.counterbody),
+        ("grid", f"{nx} × {ny} cells{period}"),
+        ("ended", f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"),
+    ]
+
+
+def _nothing(_: object) -> None:
+    """Leave a row out."""
+
+
+def _centred(solution: Solution, name: str, unit: str, scale: float = 1.0) -> str | None:
+    """Return a position or a moment; rounding leaves 1e-16 of the largest possible one."""
+    values: tuple[float, float] = getattr(solution, name)
+    limits = [display.NOISE * scale * side for side in solution.report.grid.size]
+    components = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
+    return display.along([None if math.isnan(v) else written(v, unit) for v in components])
+
+
+def _tilt(solution: Solution) -> str:
+    """Return the slopes; a side that they move by rounding of the displacements is not tilted."""
+    least = display.NOISE * float(np.abs(solution.displacement).max())
+    sides = zip(solution.tilt, solution.report.grid.size, strict=True)
+    return "({:.4g}, {:.4g})".format(*(s if abs(s) * side > least else 0.0 for s, side in sides))
+
+
+def _place(solution: Solution) -> str | None:
+    touches = solution.contact_area > 0
+    return _centred(solution, "eccentricity", "m") if touches else "nothing touches"
+
+
+def _extent(solution: Solution) -> str | None:
+    widths = [high - low for low, high in solution.contact_extent]
+    sides = [None if math.isnan(width) else written(width, "m") for width in widths]
+    return sides[1] if solution.report.grid.is_line else display.along(sides, " × ", "{}")
+
+
+def _contact_share(solution: Solution) -> str | None:
+    """Return the share of the area; beside one contact, the area of the grid means nothing."""
+    return (
+        f"{100 * solution.contact_share:.3g} % of the area" if all(solution.grid.periodic) else None
+    )
+
+
+def _hardness(solution: Solution) -> str | None:
+    if (hardness := solution.hardness) is None:
+        return None
+    words = [written(float(end), "Pa") for end in (np.min(hardness), np.max(hardness))]
+    return " to ".join(dict.fromkeys(words))
+
+
+def _indentation(solution: Solution) -> str | None:
+    deepest = float(solution.indentation.max())
+    return f"{written(deepest, 'm')} at most, permanent" if deepest > 0 else None
+
+
+def _approach(solution: Solution) -> str:
+    """Return the approach with its error, or with the datum that it depends on and no error."""
+    report = solution.report
+    repeats = (True, False) if report.grid.is_line else report.grid.periodic
+    if sum(repeats) != 1 or all(map(_is_held, (report.body, report.counterbody))):
+        return display.estimated(solution, "approach", "m")
+    datum = report.grid.size[repeats.index(False)]
+    return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
+
+
+def _is_held(body: Planned | None) -> bool:
+    """Return whether a body stays in its place far from a load."""
+    if isinstance(body, core.Response):
+        return body.limits[0] == 0
+    return body is None or isinstance(body.substrate, core.Rigid)
+
+
+def _fallback(report: Report) -> str:
+    """Return the solver that ended the solve, where a cascade fell back to it."""
+    return "" if report.solver in (None, "preconditioned") else f" by the {report.solver} solver"
+
+
+def _motion(motion: Mapping[str, Any]) -> str:
+    """Return which degrees of freedom are loaded, given and locked, in words."""
+    tilts = []
+    for axis, name in enumerate("xy"):
+        keys = [
+            key
+            for key in ("eccentricity", "moment", "tilt")
+            if motion.get(key, (None,) * 2)[axis] is not None
+        ]
+        kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
+        tilts.append(f"{name} {kind[keys[0]] if keys else 'locked'}")
+    control = "load" if "load" in motion else "approach"
+    return f"{control}; tilt {', '.join(tilts)}"
+
+
+TEXTS: dict[str, Callable[[Solution], str | None]] = {
+    "eccentricity": _place,
+    "moment": lambda s: _centred(s, "moment", "N" if s.report.grid.is_line else "N m", s.load),
+    "approach": _approach,
+    "tilt": _tilt,
+    "peak_pressure": lambda s: display.estimated(s, "peak_pressure", "Pa"),
+    "peak_position": lambda s: _centred(s, "peak_position", "m"),
+    "contact_extent": _extent,
+    "contact_share": _contact_share,
+    "hardness": _hardness,
+    "indentation": _indentation,
+}
+"""Values of a normal contact that are more than a number with its unit."""

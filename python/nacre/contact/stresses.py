@@ -15,6 +15,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
+from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.quantities import EXTREMES
@@ -33,6 +34,7 @@ FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_facto
 """Safety factors that stand with extremes."""
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
+UNFINISHED = "stopped before all depths were done"
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
@@ -366,7 +368,8 @@ class LayerStress(_Extremes):
 
     def __repr__(self) -> str:
         """Return von Mises' stress and the tension, in the units that are set."""
-        return display.layer_line(self)
+        mises, tension = (written(value, "Pa") for value, _ in (self.von_mises, self.tension))
+        return f"<LayerStress of {display.part(self)}: von Mises {mises}, tension {tension}>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -408,7 +411,11 @@ class InterfaceStress(_Extremes):
 
     def __repr__(self) -> str:
         """Return shear and tension, in the units that are set."""
-        return display.interface_line(self)
+        shear, tension = (written(value, "Pa") for value, _ in (self.shear, self.tension))
+        return (
+            f"<InterfaceStress of interfaces[{self.interface}] at {written(self.depth, 'm')}: "
+            f"shear {shear}, tension {tension}>"
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -503,10 +510,12 @@ class StressSummary(Tabular, Warned):
 
     def __str__(self) -> str:
         """Return a table, in the units that are set."""
-        return display.stresses(self)
+        lines = [*display.aligned(_peak_rows(self), "<"), *_notes(self)]
+        return printable("\n".join([*lines, *(f"warning: {text}" for text in self.warnings)]))
 
     def _repr_html_(self) -> str:
-        return display.stresses_markup(self)
+        head, *rows = _peak_rows(self)
+        return display.markup(rows, self.warnings, head=head, notes=_notes(self))
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""
@@ -974,3 +983,65 @@ def _warned(result: StressResult) -> StressResult:
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     return result
+
+
+def _notes(summary: StressSummary) -> list[str]:
+    """Return what stands below the table: the friction, and whether it is unfinished."""
+    sliding = []
+    friction = summary.friction or (0.0, 0.0)
+    if size := float(np.hypot(*friction)):
+        x, y = (part / size + 0.0 for part in friction)  # of -0 this makes 0
+        sliding = [f"friction {size:.4g}, traction along ({x:.4g}, {y:.4g})"]
+    return sliding if summary.finished else [*sliding, UNFINISHED]
+
+
+def _share(error: float, value: float) -> str:
+    """Return an error in per cent of a value."""
+    if error == 0:
+        return ""
+    if error >= abs(value):
+        return "> 100 %"
+    percent = 100 * error / abs(value)
+    return f"{percent:.2g} %" if percent >= 0.01 else "< 0.01 %"
+
+
+def _peak_rows(summary: StressSummary) -> list[list[str]]:
+    """Return the rows of the table of a stress summary, the heading first."""
+    rows = [["", "largest", "value", "±", "z", "x, y", "safety factor"]]
+    noise = display.SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
+    peaks = [peak for layer in summary.layers for peak in (layer.von_mises, layer.tension)]
+    dust = display.SLIGHT * max((abs(part) for _, place in peaks for part in place), default=0.0)
+
+    def add(name: str, peak: Peak | None, error: float | None, factor: float | None = None) -> None:
+        if peak is None:
+            return
+        value, (x, y, z) = peak
+        if name == "tension" and abs(value) < noise:
+            # A tension that falls to nothing far away has no place.
+            share = written(error, "Pa") if error is not None and error > noise else ""
+            rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
+            return
+        share = "" if error is None else _share(error, value)
+        place = ", ".join(written(one if abs(one) > dust else 0.0, "m", 3) for one in (x, y))
+        number = "" if factor is None else rounded(factor, 3)
+        rows.append(["", name, written(value, "Pa"), share, written(z, "m"), place, number])
+
+    for layer in summary.layers:
+        start, (top, bottom) = len(rows), layer.depths
+        error = layer.uncertainty.get
+        add("von Mises", layer.von_mises, error("von_mises"), layer.yield_safety_factor)
+        add("tension", layer.tension, error("tension"), layer.strength_safety_factor)
+        add("shear", layer.max_shear, error("max_shear"))
+        ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
+        rows[start][0] = f"{display.part(layer)}, {ends}" if bottom < np.inf else "substrate"
+    names = {layer.layer: layer.name for layer in summary.layers}
+    for face in summary.interfaces:
+        start, above = len(rows), names.get(face.interface)
+        error = face.uncertainty.get
+        add("tension", face.tension, error("tension"))
+        add("compression", face.compression, error("compression"))
+        add("shear", face.shear, error("shear"))
+        add("in-plane jump", face.jump, error("jump"))
+        below = "" if above is None else f" below {above}"
+        rows[start][0] = f"interfaces[{face.interface}]{below} at {written(face.depth, 'm')}"
+    return rows

@@ -14,7 +14,6 @@ from nacre._tools.rounding import ceil, floor
 from nacre._tools.units import Scale
 from nacre.plot.sections import section
 from nacre.plot.style import COLOURMAP, WIDTH, extent, lengths, new_axes, outline, styled
-from nacre.results.display import numbers
 
 with extra("plot"):
     import matplotlib.pyplot as plt
@@ -177,7 +176,7 @@ def _numbers(solution: Solution, axes: Axes) -> None:
     axes.set_axis_off()
     rows = [
         (name if number == 0 else "", part)
-        for name, value in numbers(solution)
+        for name, value in solution._rows()
         for number, part in enumerate(textwrap.wrap(value, LETTERS))
     ]
     step = 1 / max(16, len(rows))

@@ -12,7 +12,17 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from types import NoneType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin, get_type_hints
+from typing import (
+    Any,
+    ClassVar,
+    Literal,
+    Protocol,
+    Self,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 
@@ -20,8 +30,20 @@ import nacre._core as core
 from nacre.results import values
 from nacre.results.quantities import Quantity
 
-if TYPE_CHECKING:
-    from nacre.contact.friction import FrictionSolution
+
+class Tangential(Protocol):
+    """A contact with friction."""
+
+    @property
+    def shift(self) -> tuple[float, float] | None:
+        """Shift in sliding; None in rolling."""
+
+    @property
+    def grid(self) -> core.Grid:
+        """Grid."""
+
+
+FrictionContact = TypeVar("FrictionContact", bound=Tangential)
 
 
 def tuples(value: Any) -> Any:
@@ -60,7 +82,7 @@ def has_friction(solution: object) -> bool:
     return type(solution) is values.RESULTS.get("FrictionSolution")
 
 
-def checked(solutions: object) -> list[FrictionSolution]:
+def checked(solutions: Iterable[FrictionContact]) -> list[FrictionContact]:
     """Return solutions as a list, with one of them at least, and all of one kind.
 
     Raises
@@ -70,8 +92,8 @@ def checked(solutions: object) -> list[FrictionSolution]:
     ValueError
         If there is none, or some slide and some roll, or some are line contacts.
     """
-    contacts: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
-    if not all(map(has_friction, contacts)):
+    contacts = list(solutions) if isinstance(solutions, Iterable) else None
+    if contacts is None or not all(map(has_friction, contacts)):
         raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
     if not contacts:
         raise ValueError("solutions must hold at least one solution, got none")
