@@ -545,6 +545,7 @@ class FrictionSteps:
 
 @final
 class StressPlan:
+    def __new__(cls, body: _Body, grid: Grid, pressure: _Matrix, threads: int | None) -> Self: ...
     @property
     def body(self) -> HalfSpace: ...
     @property

@@ -30,6 +30,22 @@ pub(super) struct PyStressPlan(Arc<StressPlan>);
 
 #[pymethods]
 impl PyStressPlan {
+    /// Plan for a body under a pressure that is uniform over each cell.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = half_space)] body: HalfSpace,
+        grid: PyGrid,
+        pressure: &Bound<'_, PyAny>,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let pressure = real_matrix("pressure", pressure)?;
+        let plan = background::run(py, None, move |_: &mut background::Caller<()>| {
+            StressPlan::plan(&body, &grid.0, &pressure, threads)
+        })??;
+        Ok(Self(Arc::new(plan)))
+    }
+
     #[getter]
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace(self.0.body().clone())
