@@ -59,8 +59,8 @@ def write_stress(
         from pyevtk.hl import gridToVTK
 
     if unknown := set(options) - set(OPTIONS):
-        known = ", ".join(OPTIONS)
-        raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
+        names = ", ".join(OPTIONS)
+        raise TypeError(f"options must be among {names}, got {', '.join(sorted(unknown))}")
     depths = core.real_array("depths", depths)
     z, planes = _planes(solution, np.atleast_1d(depths), options)
     shape = (*solution.pressure.shape, z.size)
