@@ -283,7 +283,9 @@ class FatigueSummary(Tabular, Warned):
             none; values over ``depth`` by the names of `profiles`.
         """
         heads, *rows = self._file_rows()
-        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        variables: dict[str, object] = {
+            name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)
+        }
         table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
         profiles = {name: ("depth", column) for name, column in self.profiles.items()}
         depths = {"depth": self.depths}
