@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -38,3 +40,9 @@ def name_or_number(name: str, value: Any) -> str | int:
         return core.integer(name, value)
     except TypeError:
         raise TypeError(f"{name} must be a name or a number, got {value!r}") from None
+
+
+def keywords_of(function: Callable[..., object]) -> set[str]:
+    """Return the names of the arguments that a function takes by name only."""
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}

@@ -17,7 +17,7 @@ DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
 
 def numbers(arguments: Mapping[str, Any]) -> dict[str, float]:
     """Return all numbers of arguments by path."""
-    return dict(core.numbers(described(arguments)))
+    return dict(core.numbers(with_half_spaces(arguments)))
 
 
 def put(
@@ -36,7 +36,7 @@ def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict
     message = f"{names} must name parameters of {of} by path, got {path!r}"
     if name not in arguments:
         raise ValueError(message)
-    argument = described({name: arguments[name]})
+    argument = with_half_spaces({name: arguments[name]})
     try:
         number = core.at(argument, path)
     except LookupError as missing:
@@ -46,7 +46,7 @@ def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict
     return argument
 
 
-def described(arguments: Mapping[str, Any]) -> dict[str, Any]:
+def with_half_spaces(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
     bare = {name for name in BODIES if isinstance(arguments.get(name), core.Elastic)}
     return {k: core.HalfSpace(one) if k in bare else one for k, one in arguments.items()}

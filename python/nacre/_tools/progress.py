@@ -148,11 +148,11 @@ class _Lines:
         seconds = self.last - self.start
         text = f"nacre.sweep: {self.done} of {self.total} cases"
         text += _stored_text(self.stored, self.total)
-        solved = self.done - self.stored
-        if solved:
+        new_cases = self.done - self.stored
+        if new_cases:
             text += f", {_time(seconds)} so far"
             if left := self.total - self.done:
-                text += f", about {_time(seconds * left / solved)} left"
+                text += f", about {_time(seconds * left / new_cases)} left"
         print(text, file=sys.stderr, flush=True)
 
 

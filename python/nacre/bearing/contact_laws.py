@@ -195,7 +195,7 @@ class Solved:
         reach = bearing.length / 2 if bearing.rolls else 0.0
         self.reach = reach
         self.plans: dict[tuple[int, int], Contact] = {}
-        self.kept: dict[tuple[int, int], Solution] = {}
+        self.last_solutions: dict[tuple[int, int], Solution] = {}
         power = 2 if bearing.rolls else 3  # of the width, in the load
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
@@ -219,7 +219,7 @@ class Solved:
                 break
             self._widen()
         for j, r in np.argwhere(most < self.halved):
-            self.kept.pop((int(j), int(r)), None)  # it starts from no other grid
+            self.last_solutions.pop((int(j), int(r)), None)  # it starts from no other grid
         self.halved = np.minimum(self.halved, most)
 
     def _plan(self, element: int, ring: int) -> Contact:
@@ -234,7 +234,7 @@ class Solved:
 
     def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
         """Return a contact and its stiffness, of which a warning says nothing yet."""
-        initial = self.kept.get((element, ring))
+        initial = self.last_solutions.get((element, ring))
         while True:
             plan = self._plan(element, ring)
             solution = plan.solve(
@@ -316,7 +316,7 @@ class Solved:
         if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
-        self.kept = solutions
+        self.last_solutions = solutions
         return Reaction(energy, force, stiffness, solutions)
 
     def sizes(self) -> Array:

@@ -97,20 +97,20 @@ class Rollers:
         approach, slope = self.motion[:, 0], self.motion[:, 1]
         return np.concatenate([approach + end * slope for end in self.ends]).T
 
-    def neutral(self, moved: Array, pressed: float) -> Array:
+    def neutral(self, ring_motion: Array, pressed: float) -> Array:
         """Return positions of elements midway, or on the outer ring to which they are pressed."""
-        middle: Array = moved / 2
+        middle: Array = ring_motion / 2
         if pressed > 0:
             middle[:, 0] = np.maximum(middle[:, 0], self.play / 4 + pressed)
         return middle
 
-    def places(self, moved: Array, own: Array) -> Places:
+    def places(self, ring_motion: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        coordinates = np.stack([moved - own, own], axis=1)
+        coordinates = np.stack([ring_motion - own, own], axis=1)
         coordinates[..., 0] -= self.play / 4
         return Places(coordinates, self.jacobian, self.curvature)
 
-    def angles(self, moved: Array, own: Array) -> Array:
+    def angles(self, ring_motion: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
         return np.tile(self.contact_angles, (self.count, 1))
 
@@ -152,9 +152,9 @@ class Balls:
         ways = [self.motion[:, 0], along, -along] if self.both_ways else [self.motion[:, 0], along]
         return np.concatenate(ways).T
 
-    def neutral(self, moved: Array, pressed: float) -> Array:
+    def neutral(self, ring_motion: Array, pressed: float) -> Array:
         """Return positions of balls midway, or on the outer ring to which they are pressed."""
-        away = self.start + moved
+        away = self.start + ring_motion
         distance = np.linalg.norm(away, axis=1, keepdims=True)
         share = self.groove[1] / self.groove.sum()
         middle: Array = away * share
@@ -163,9 +163,9 @@ class Balls:
             middle = away * outward
         return middle
 
-    def places(self, moved: Array, own: Array) -> Places:
+    def places(self, ring_motion: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        arms = np.stack([self.start + moved - own, own], axis=1)
+        arms = np.stack([self.start + ring_motion - own, own], axis=1)
         distance = np.linalg.norm(arms, axis=2)
         unit = arms / distance[..., None]
         places = np.zeros((len(own), 2, 2))
@@ -180,9 +180,9 @@ class Balls:
         curvature[:, 1, 2:, 2:] = bend[:, 1]
         return Places(places, jacobian, curvature)
 
-    def angles(self, moved: Array, own: Array) -> Array:
+    def angles(self, ring_motion: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
-        arms = np.stack([self.start + moved - own, own], axis=1)
+        arms = np.stack([self.start + ring_motion - own, own], axis=1)
         return np.arctan2(arms[..., 1], arms[..., 0])
 
 
@@ -284,8 +284,8 @@ class Problem:
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
         kinematics = self.kinematics
-        moved = kinematics.motion @ ring
-        places = kinematics.places(moved, own)
+        ring_motion = kinematics.motion @ ring
+        places = kinematics.places(ring_motion, own)
         reaction = self.law(places.places)
         gradient = np.einsum("zrak,zra->zk", places.jacobian, reaction.force)
         gradient[:, 2:] -= self.centrifugal * self.outward
@@ -395,13 +395,14 @@ class Problem:
             ring[free] = -ways @ (pull / np.maximum(stiffness, least)) / arm
         step, follow = state.back
         own = step + follow @ ring
-        moved = kinematics.motion @ ring
+        ring_motion = kinematics.motion @ ring
         farthest = reach * max(state.deepest, 0.0)
-        largest = float((np.abs(moved) * kinematics.lengths).max())
+        largest = float((np.abs(ring_motion) * kinematics.lengths).max())
         shorter = largest > farthest > 0
         if shorter:
-            ring, own, moved = (way * (farthest / largest) for way in (ring, own, moved))
-        beside = (np.abs(moved) * kinematics.lengths).max(axis=1)
+            share = farthest / largest
+            ring, own, ring_motion = ring * share, own * share, ring_motion * share
+        beside = (np.abs(ring_motion) * kinematics.lengths).max(axis=1)
         return ring, own * self.limits(state, own, beside)[:, None], shorter
 
     def limits(self, state: State, step: Array, beside: Array | float = 0.0) -> Array:
@@ -427,9 +428,9 @@ class Problem:
     def idle_midway(self, state: State) -> State:
         """Return the state with elements midway that touch nothing there: they carry rounding."""
         if self.centrifugal == 0:
-            moved = self.kinematics.motion @ state.ring
-            own = self.kinematics.neutral(moved, 0.0)
-            places = self.kinematics.places(moved, own).places
+            ring_motion = self.kinematics.motion @ state.ring
+            own = self.kinematics.neutral(ring_motion, 0.0)
+            places = self.kinematics.places(ring_motion, own).places
             idle = np.asarray((self.depths(places) <= 0).all(axis=1))
             state.reaction.force[idle] = 0.0
             state.own = np.where(idle[:, None], own, state.own)

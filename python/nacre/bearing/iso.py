@@ -112,8 +112,8 @@ def rating(bearing: Any) -> float:
     >>> round(rating(bearing))
     48417
     """
-    known: object = bearing
-    if not isinstance(known, Bearing):
+    candidate: object = bearing
+    if not isinstance(candidate, Bearing):
         raise TypeError(f"bearing must be a bearing, got {bearing!r}")
     gamma, diameter = bearing.gamma, bearing.diameter * 1e3
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)

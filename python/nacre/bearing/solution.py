@@ -514,8 +514,8 @@ class BearingSolution(Tabular):
         vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
-        known = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        return {"model": self.model, **vectors, **known, **notes}
+        error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
+        return {"model": self.model, **vectors, **error_columns, **notes}
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""

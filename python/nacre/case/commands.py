@@ -102,16 +102,16 @@ def solve(
     as_json: Json = False,
 ) -> None:
     """Solve the contact or the bearing that a case file describes."""
-    described = _read_case(case, units)
-    if described.is_indentation:
+    case_file = _read_case(case, units)
+    if case_file.is_indentation:
         raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
-    if described.kind == "bearing":
+    if case_file.kind == "bearing":
         if initial is not None:
             raise CaseError(f"{case}: --initial must not be given for a bearing")
-        _solve_bearing(case, described, save or [], as_json)
+        _solve_bearing(case, case_file, save or [], as_json)
         return
-    arguments = described.arguments()
-    stress_options, fatigue_options = described.stress(), described.fatigue()
+    arguments = case_file.arguments()
+    stress_options, fatigue_options = case_file.stress(), case_file.fatigue()
     if initial is not None:
         try:
             arguments["initial"] = nacre.load(initial)
@@ -123,10 +123,10 @@ def solve(
         check_direction(arguments, **(stress_options or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
-    with nacre.display_units(described.units):
+    with nacre.display_units(case_file.units):
         _solve(
             case,
-            described.friction,
+            case_file.friction,
             arguments,
             (stress_options, fatigue_options),
             save or [],
@@ -136,18 +136,18 @@ def solve(
 
 def _read_case(case: Path, units: str | None) -> Case:
     """Return the case of a file, in other units if these are given."""
-    described = Case.read(case)
-    return described if units is None else described.in_units(units)
+    case_file = Case.read(case)
+    return case_file if units is None else case_file.in_units(units)
 
 
-def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool) -> None:
+def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool) -> None:
     """Solve a bearing, save and print it, with its life and a film where they are asked for."""
     for path in save:
         if path.suffix.lower() == ".vtr":
             raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
         _check_ending(path)
-    arguments = described.arguments()
-    bearing, life_options = arguments.pop("bearing"), described.life()
+    arguments = case_file.arguments()
+    bearing, life_options = arguments.pop("bearing"), case_file.life()
     added: dict[str, TableResult] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
@@ -158,7 +158,7 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
                     added["life"] = solution.life(**life_options)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: bearing: {error}") from error
-        if (film := described.film()) is not None:
+        if (film := case_file.film()) is not None:
             try:
                 added["film"] = _film(solution, **film)
             except (ArithmeticError, TypeError, ValueError) as error:
@@ -167,9 +167,9 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         state = {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
-        print(json.dumps(_plain(_in_units(state, added, described.units)), indent=2))
+        print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
     else:
-        with shown_in(described.units):
+        with shown_in(case_file.units):
             print("\n\n".join(map(str, (solution, *added.values()))))
     for path in save:
         solution.save(path)
@@ -215,13 +215,13 @@ def _solve(
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():
-                solved = getattr(nacre, friction or "solve")(**arguments)
+                outcome = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             # The notes of an error name the step of a history.
             message = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
             raise CaseError(f"{case}: {message}") from error
         # Of a history, the last step is printed.
-        solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
+        solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
         try:
             stress = None if stress_options is None else solution.stress_summary(**stress_options)
         except (ArithmeticError, TypeError, ValueError) as error:
@@ -234,7 +234,7 @@ def _solve(
             )
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: fatigue: {error}") from error
-    steps = solved if isinstance(solved, nacre.types.History) else None
+    steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
         summaries = {"stress": stress, "fatigue": fatigue}
         extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
@@ -265,15 +265,15 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Solve the study that a case file describes, or the rest of it after a kill."""
-    described = _read_case(case, units)
-    study = described.study(store)
+    case_file = _read_case(case, units)
+    study = case_file.study(store)
     for path in save or []:
         if path.suffix.lower() != ".csv":
             raise CaseError(f"--save must end in .csv, got {str(path)!r}")
-    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as caught:
+    with nacre.display_units(case_file.units), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
-            dataset = nacre.sweep(described, retry=retry, **study)
+            dataset = nacre.sweep(case_file, retry=retry, **study)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: sweep: {error}") from error
     failed = int((dataset.error != "").sum())
@@ -304,14 +304,14 @@ def indent(
     as_json: Json = False,
 ) -> None:
     """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
-    described = _read_case(case, units)
-    if described.kind != "indent":
+    case_file = _read_case(case, units)
+    if case_file.kind != "indent":
         raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
     for path in save or []:
         if path.suffix.lower() not in (".nc", ".csv"):
             raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
-    arguments = described.arguments()
-    with nacre.display_units(described.units), warnings.catch_warnings():
+    arguments = case_file.arguments()
+    with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():

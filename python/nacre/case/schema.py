@@ -313,8 +313,8 @@ class Keys(Table):
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
             if material not in self.materials:
-                known = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({known}), got {material!r}")
+                names = ", ".join(self.materials) or "none"
+                raise ValueError(f"must be one of the materials ({names}), got {material!r}")
             with at(f"materials.{material}"):
                 return self.materials[material].make()
         return material.make()
@@ -378,8 +378,8 @@ class CaseTable(Bodies):
         name = "roll" if self.slide is None else "slide"
         if self.slide is not None and self.roll is not None:
             raise WrongValue("roll", "must not be given beside the table slide")
-        known = inspect.signature(getattr(nacre, name)).parameters
-        if others := sorted(self.solve.model_fields_set - known.keys()):
+        parameters = inspect.signature(getattr(nacre, name)).parameters
+        if others := sorted(self.solve.model_fields_set - parameters.keys()):
             raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
         for place, table in (("stress", self.stress), ("fatigue", self.fatigue)):
             if table is not None and table.friction:

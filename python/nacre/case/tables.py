@@ -107,12 +107,6 @@ def case_type(hint: object) -> Any:
     return Union[tuple(values)] if set(values) - {types.NoneType} else None  # noqa: UP007
 
 
-def keywords_of(function: Callable[..., object]) -> set[str]:
-    """Return the names of the arguments that a function takes by name only."""
-    parameters = inspect.signature(function).parameters.values()
-    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
-
-
 def needed(function: Callable[..., object]) -> set[str]:
     """Return the names of the arguments that a function cannot do without."""
     parameters = inspect.signature(function).parameters.values()

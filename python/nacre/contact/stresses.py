@@ -39,7 +39,7 @@ AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressOptions:
     """Body, traction and residual stress of an evaluation, and how it is done."""
 
@@ -51,7 +51,7 @@ class StressOptions:
     progress: Progress | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressFields:
     """Place and kind of the fields that an evaluation returns."""
 
@@ -61,7 +61,7 @@ class StressFields:
     displacement: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressLimits:
     """Limits of the materials, and the largest error of the extremes."""
 

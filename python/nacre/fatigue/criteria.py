@@ -146,9 +146,9 @@ class Criterion:
         1.0
         """
         states, axes = _states(history)
-        return self._evaluated(states)[0].reshape(axes)
+        return self._equivalent_stress(states)[0].reshape(axes)
 
-    def _evaluated(self, states: Array) -> tuple[Array, npt.NDArray[np.uintp], Array]:
+    def _equivalent_stress(self, states: Array) -> tuple[Array, npt.NDArray[np.uintp], Array]:
         """Return equivalent stress, deciding state and gap to the next plane of each history."""
         return core.fatigue_stress(self._KIND, self.bending, self.torsion, states)
 

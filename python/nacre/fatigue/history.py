@@ -98,7 +98,7 @@ class Rolling:
         self.plan: StressPlan = solution.stress_plan(body, threads)
         self.body = self.plan.body
         tractions = solution.traction if isinstance(solution, FrictionSolution) else None
-        self.known = tractions is not None
+        self.has_tractions = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = threads
         rolls = normal.report.rolling_direction or (0.0, 1.0)
@@ -187,7 +187,7 @@ class Rolling:
 
         With `friction`, the part of the tractions is there.
         """
-        slides = (0.0, 1.0) if friction and not self.known else (0.0,)
+        slides = (0.0, 1.0) if friction and not self.has_tractions else (0.0,)
         own = [self._own(depths, side, slide, self.x) for slide in slides]
         ys, parts = [self.grid.y], [[self._array(field) for field in own]]
         for level in self.levels:

@@ -283,7 +283,9 @@ class FatigueSummary(Tabular, Warned):
             none; values over ``depth`` by the names of `profiles`.
         """
         heads, *rows = self._file_rows()
-        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        variables: dict[str, object] = {
+            name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)
+        }
         table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
         profiles = {name: ("depth", column) for name, column in self.profiles.items()}
         depths = {"depth": self.depths}
@@ -494,10 +496,10 @@ class Assessment:
                 if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
                     own = [chosen[n] for n in at]
                     states = history.only(at)
-                    rows[k] += self._evaluated(region, own, states, uncertain[at], friction)
+                    rows[k] += self._rows_of(region, own, states, uncertain[at], friction)
         return rows
 
-    def _evaluated(
+    def _rows_of(
         self,
         region: Region,
         depths: list[float],
@@ -518,7 +520,7 @@ class Assessment:
         gaps = np.full(len(depths), np.nan)
         for criterion in self.criteria:
             planes = criterion._KIND in ("findley", "matake")
-            stress, which, gap = criterion._evaluated(states if planes else dense)
+            stress, which, gap = criterion._equivalent_stress(states if planes else dense)
             stresses[type(criterion).__name__] = stress, (history.y if planes else y)[which]
             if criterion._KIND == "matake":
                 gaps = gap
@@ -764,7 +766,7 @@ def assess(
     friction = core.real("friction", friction)
     if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
-    if assessment.rolling.known and friction:
+    if assessment.rolling.has_tractions and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")
     ordered_depths = checked_depths(depths, assessment.rolling.body)
     regions, rows_by_region = assessment.regions(), []

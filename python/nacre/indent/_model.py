@@ -240,10 +240,10 @@ class Model:
         if key not in self._at:
             if len(self._at) > KEPT:
                 self._at.clear()
-            self._at[key] = self._evaluated(x)
+            self._at[key] = self._residuals(x)
         return self._at[key]
 
-    def _evaluated(self, x: Array) -> tuple[Array, Array]:
+    def _residuals(self, x: Array) -> tuple[Array, Array]:
         try:
             load, columns = self.loads(x)
         except (ValueError, RuntimeError, OverflowError):

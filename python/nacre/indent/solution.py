@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import math
+import types
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -37,7 +38,7 @@ UNITS = units(indents=True)
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
-KINDS: tuple[Any, ...] = (
+KINDS: tuple[type | types.UnionType, ...] = (
     core.HalfSpace,
     core.Tip,
     core.HalfSpace | None,
@@ -304,7 +305,7 @@ class IndentSolution(Tabular, Warned):
     def _names(cls) -> list[str]:
         return [*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
@@ -343,7 +344,7 @@ class IndentSolution(Tabular, Warned):
 
         return indentation(self)
 
-    def _file_rows(self) -> Iterable[list[Any]]:
+    def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import contact_rows
 
         return contact_rows(self)
@@ -643,7 +644,7 @@ class Indentation:
             others += f", adhesion={self.adhesion!r}"
         return f"Indentation({self.body!r}, {self.tip!r}{others})"
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         arguments = (self.body, self.tip, self.counterbody), {"adhesion": self.adhesion}
         return copyreg.__newobj_ex__, (type(self), *arguments)  # type: ignore[attr-defined]

@@ -29,6 +29,7 @@ from nacre.results.quantities import Quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -251,14 +252,20 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
     return file.getvalue()
 
 
+def figure_of(axes: Axes) -> Figure:
+    """Return the figure that axes are drawn in."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
 def drawn(draw: Callable[[], Axes]) -> bytes | None:
     """Return a PNG of the picture of which `draw` returns the axes; without Matplotlib, none."""
     try:
         from matplotlib import pyplot
     except ImportError:
         return None
-    figure, file = draw().get_figure(root=True), io.BytesIO()
-    assert figure is not None  # axes are drawn in one
+    figure, file = figure_of(draw()), io.BytesIO()
     figure.savefig(file, format="png", dpi=100)
     pyplot.close(figure)
     return file.getvalue()

@@ -58,9 +58,14 @@ def _stored(make: Any) -> tuple[str, ...]:
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
     **{name: (make, _stored(make)) for name, make in CONSTRUCTORS.items()},
-    "Response": (core.Response._of, ("values", "local")),
-    "Grid.line": (core.Grid.line, ("cells", "width", "center")),
-    "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
+    **{
+        name: (make, _stored(make))
+        for name, make in (
+            ("Response", core.Response._of),
+            ("Grid.line", core.Grid.line),
+            ("Grid", core.Grid),
+        )
+    },
 }
 """Callables by their names in data, each with its arguments."""
 LATER = {

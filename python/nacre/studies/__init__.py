@@ -16,6 +16,7 @@ from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
+from nacre._tools.arguments import keywords_of
 from nacre._tools.extras import extra
 from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import case_progress
@@ -50,16 +51,11 @@ ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
-INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
-"""Arguments of `nacre.indent.solve`."""
-BEARING = frozenset(
-    "bearing force displacement moment tilt rotation speed rotating model cells tolerance "
-    "max_iterations threads".split()
-)
-"""Arguments of the solve of a bearing, and the bearing."""
-
-FATIGUE_KEYWORDS = frozenset("criteria shear_yield friction direction residual body x rule".split())
-"""Arguments of `nacre.fatigue.assess` that studies take."""
+NOTES = frozenset(("progress", "check"))
+"""Keywords of what a solve says, which studies say themselves."""
+STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads", "yield_stress", "strength"}
+FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
+"""Keywords of stresses and fatigue that studies take."""
 
 
 def sweep(
@@ -197,13 +193,13 @@ def sweep(
         raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in checked_outputs.values())
     stress_options = {**(stress or {})} if stresses else {}
-    if unknown := set(stress_options) - {"body", "friction", "direction", "residual", "refine"}:
+    if unknown := set(stress_options) - STRESS:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
     needs_fatigue = any(
         isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in checked_outputs.values()
     )
     fatigue_options = {**(fatigue or {})} if needs_fatigue else {}
-    if unknown := set(fatigue_options) - FATIGUE_KEYWORDS:
+    if unknown := set(fatigue_options) - FATIGUE:
         raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
     if not isinstance(version, str | None):
         try:
@@ -228,8 +224,8 @@ def sweep(
             arguments, failure = _describe(case, point, stress_options)
             key = key_of(arguments if failure is None else {"failed": point}, identity)
             keys.append(key)
-            known = journal.records.get(key)
-            if known is not None and not (again or (retry and "error" in known)):
+            record = journal.records.get(key)
+            if record is not None and not (again or (retry and "error" in record)):
                 continue
             if failure is not None:
                 failures[key] = {"key": key, "parameters": _readable(point), "error": failure}
@@ -284,14 +280,19 @@ def _describe(
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
     if "tip" in arguments:
-        if unknown := set(arguments) - INDENT:
+        from nacre.indent import solution as indentation
+
+        if unknown := arguments.keys() - inspect.signature(indentation.solve).parameters:
             raise TypeError(
                 f"case must give arguments of nacre.indent.solve beside a tip, "
                 f"got {sorted(unknown)}"
             )
         return arguments, None
     if "bearing" in arguments:
-        if unknown := set(arguments) - BEARING:
+        from nacre.bearing.bearings import Solvable
+
+        allowed = {"bearing", *keywords_of(Solvable.solve)} - NOTES
+        if unknown := arguments.keys() - allowed:
             raise TypeError(
                 f"case must give keywords of the solve of a bearing beside it, "
                 f"got {sorted(unknown)}"
@@ -364,8 +365,8 @@ def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -
             fields = arguments.get("bearing")
             unset = [k for k, v in fields.items() if v is None] if isinstance(fields, dict) else []
             names = [*numbers(arguments), *(f"bearing.{name}" for name in unset)]
-            known = get_close_matches(path, names, cutoff=0.0)
-            raise ValueError(f"{wrong}; the nearest are {', '.join(known)}")
+            nearest = get_close_matches(path, names, cutoff=0.0)
+            raise ValueError(f"{wrong}; the nearest are {', '.join(nearest)}")
 
 
 def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:

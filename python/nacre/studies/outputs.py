@@ -121,14 +121,14 @@ def outputs_by_name(
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
         f"({', '.join(OF_BEARING)})",
     }
-    known: dict[CaseKind, set[str]] = {
+    names_by_kind: dict[CaseKind, set[str]] = {
         "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
         "indent": {*OF_INDENT},
         "bearing": {*OF_BEARING},
     }
     kinds: list[CaseKind] = ["indent", "contact", "bearing"] if kind is None else [kind]
     for name, output in items:
-        if not (any(output in known[kind] for kind in kinds) or callable(output)):
+        if not (any(output in names_by_kind[kind] for kind in kinds) or callable(output)):
             all_choices = ", ".join(choices[kind] for kind in kinds)
             raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
         if name in ("error", "warnings"):

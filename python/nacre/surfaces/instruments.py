@@ -205,11 +205,11 @@ def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | N
     lines = [one for one in reader.channels if one.dim == 1]
     if not lines:
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
-    known = {one.name for one in lines}
+    line_names = {one.name for one in lines}
     default = reader.default_channel
     chosen = lines[0] if channel is None and default not in lines else _channel(reader, channel)
     if chosen.dim != 1:
-        raise Unfound(f"height must be one of the channels {', '.join(sorted(known))}")
+        raise Unfound(f"height must be one of the channels {', '.join(sorted(line_names))}")
     line = chosen.topography()
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
@@ -254,5 +254,5 @@ def _channel(reader: Any, choice: str | int | None) -> Any:
             return channels[names.index(choice)]
     elif 0 <= choice < len(channels):
         return channels[choice]
-    known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
-    raise Unfound(f"channel must be one of {known}")
+    choices = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
+    raise Unfound(f"channel must be one of {choices}")
