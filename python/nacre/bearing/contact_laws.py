@@ -104,7 +104,7 @@ class Slices:
 class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
-    def __init__(self, bearing: Any) -> None:
+    def __init__(self, bearing: Bearing) -> None:
         self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
 

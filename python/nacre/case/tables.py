@@ -25,7 +25,7 @@ TWO = Field(min_length=2, max_length=2)
 Number = FiniteFloat
 
 
-def _integer(value: Any) -> Any:
+def _integer(value: object) -> object:
     """Return a whole float as an integer, as calls take it."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
@@ -61,7 +61,7 @@ class Directions(Table):
         return tuple(value for _, value in self)
 
 
-def _keyword(value: Any) -> Any:
+def _keyword(value: object) -> object:
     if isinstance(value, Directions):
         return value.pair()
     if isinstance(value, list):
@@ -79,7 +79,7 @@ class Along(Directions):
 AnyAlong = Annotated[
     Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
 ]
-TYPES: dict[object, Any] = {
+TYPES: dict[object, object] = {
     float: Number,
     int: Count,
     bool: bool,

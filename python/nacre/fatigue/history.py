@@ -284,7 +284,7 @@ class Rolling:
         )
 
 
-def _lagrange(nodes: Array, at: Any) -> Array:
+def _lagrange(nodes: Array, at: object) -> Array:
     """Return the weights of the polynomial through nodes, along the last axis."""
     at = np.asarray(at)
     weights = [

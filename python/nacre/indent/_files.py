@@ -52,7 +52,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     names = list(fit.estimates)
     low, high = np.array([fit.intervals[name] for name in names]).T
     both = ("parameter", "other_parameter")
-    columns: dict[str, Any] = {
+    columns: dict[str, object] = {
         "estimate": ("parameter", list(fit.estimates.values())),
         "standard_error": ("parameter", [fit.standard_errors[name] for name in names]),
         "low": ("parameter", low),

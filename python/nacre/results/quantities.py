@@ -51,7 +51,7 @@ class Quantity:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
 
-    def of(self, result: Any) -> Any:
+    def of(self, result: object) -> Any:
         """Return the value in a result."""
         return reduce(getattr, (self.path or self.name).split("."), result)
 

@@ -104,7 +104,7 @@ START = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""
 
 
-def encode(value: Any, *, digest: bool = False) -> Any:
+def encode(value: object, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
     With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure or
@@ -168,7 +168,7 @@ def heading(kind: str) -> dict[str, Any]:
 
 
 def checked_state(
-    data: Mapping[str, Any], kind: str, names: Collection[str], later: Collection[str] = ()
+    data: Mapping[str, object], kind: str, names: Collection[str], later: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return the fields of a result's plain data, which must be of this kind and have these names.
 
@@ -190,7 +190,7 @@ def checked_state(
 
 
 def with_names(
-    place: str, data: Mapping[str, Any], names: Collection[str], later: Collection[str] = ()
+    place: str, data: Mapping[str, object], names: Collection[str], later: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return data with these names and no others; those of `later` may be missing, and are None."""
     state = dict.fromkeys(later) | dict(data)
@@ -222,7 +222,7 @@ def refusing(kind: str) -> Iterator[None]:
         raise ValueError(f"the data do not describe a {kind}: {reason}") from error
 
 
-def decode(data: Any) -> Any:
+def decode(data: object) -> Any:
     """Return the value that `encode` made into `data`; lists become tuples.
 
     Raises `ValueError` where a key is missing or unknown, or holds a value that does not fit.

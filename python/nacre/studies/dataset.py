@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     import xarray
 
 
-def layout(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
+def layout(parameters: Mapping[str, object]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
     """Return the coordinates of a study, and the parameters of each of its cases in order."""
     import xarray
 
-    coordinates: dict[str, Any] = {}
-    values: dict[str, list[Any]] = {}
+    coordinates: dict[str, object] = {}
+    values: dict[str, list[object]] = {}
     places: list[xarray.DataArray] = []
     for name, parameter in parameters.items():
         if isinstance(parameter, xarray.DataArray):
@@ -45,7 +45,7 @@ def layout(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str
         else:
             if isinstance(parameter, str) or not isinstance(parameter, Iterable):
                 raise TypeError(f"{name} must be a sequence of values, got {parameter!r}")
-            labels: list[Any]
+            labels: list[object]
             if isinstance(parameter, Mapping):
                 labels, values[name] = [str(label) for label in parameter], list(parameter.values())
             else:

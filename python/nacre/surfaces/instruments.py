@@ -62,7 +62,7 @@ def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str 
 def _first(
     path: Path,
     channel: str | int | None,
-    take: Callable[[Any], Content],
+    take: Callable[[object], Content],
     table: Callable[[bool], Content | None],
 ) -> Content:
     """Return what the first reader of SurfaceTopography has that knows the file.
@@ -218,7 +218,7 @@ def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | N
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
 
-def _others(reader: Any) -> str:
+def _others(reader: object) -> str:
     """Return the titles of channels of Gwyddion that hold no heights, with their units."""
     metadata = getattr(reader, "_metadata", {})
     fields = [name for name in metadata if re.fullmatch(r"/\d+/data", str(name))]
