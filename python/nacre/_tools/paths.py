@@ -32,7 +32,7 @@ def put(
     arguments |= core.with_value(holder(arguments, path, names, of), path, value)
 
 
-def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> dict[str, Any]:
+def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> dict[str, object]:
     """Return the argument that holds the number at a path, by name.
 
     Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
@@ -51,7 +51,9 @@ def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> d
     return argument
 
 
-def with_half_spaces(arguments: Mapping[str, Any]) -> dict[str, Any]:
+def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, Any]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
-    bare = {name for name in BODIES if isinstance(arguments.get(name), core.Elastic)}
-    return {k: core.HalfSpace(one) if k in bare else one for k, one in arguments.items()}
+    return {
+        name: core.HalfSpace(one) if name in BODIES and isinstance(one, core.Elastic) else one
+        for name, one in arguments.items()
+    }

@@ -58,7 +58,7 @@ class Optimum(Fields):
 
     values: dict[str, float]
     objective: float
-    limits: tuple[tuple[Any, float, tuple[float, ...]], ...]
+    limits: tuple[tuple[object, float, tuple[float, ...]], ...]
     course: dict[str, Array]
     solutions: list[Solution]
     solves: int
@@ -282,7 +282,7 @@ def _cases(cases: object) -> list[dict[str, object]]:
     return [dict(case) for case in cases]
 
 
-def _limits(constraints: Any) -> list[tuple[Any, float]]:
+def _limits(constraints: Any) -> list[tuple[object, float]]:
     for pair in constraints:
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -232,7 +232,6 @@ class Rolling:
                 terms += [Load(traction, 1.0, way, 1.0), Load(traction, 0.0, way, -1.0)]
         total = np.zeros((len(depths), grid.shape[1], 6))
         for term in terms:
-            options: dict[str, Any] = {"friction": term.friction, "direction": term.direction}
             field = stress(
                 self.body,
                 grid,
@@ -241,7 +240,8 @@ class Rolling:
                 side=side,
                 x=self.x,
                 threads=self.threads,
-                **options,
+                friction=term.friction,
+                direction=term.direction,
             )
             total += term.factor * self._array(field)
         return total

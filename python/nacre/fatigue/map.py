@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -87,7 +87,7 @@ class ShakedownMap(Tabular, Warned):
 
     @classmethod
     def _restored(cls, state: dict[str, object]) -> Self:
-        def plane(rows: Any) -> Array:
+        def plane(rows: Iterable[Iterable[float]]) -> Array:
             return np.array([numbers(row) for row in rows])
 
         return cls(

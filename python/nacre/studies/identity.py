@@ -13,7 +13,7 @@ import json
 import pickle
 import types
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from nacre.results.values import encode
 class Identity(NamedTuple):
     """Identity of the outputs of a study."""
 
-    data: dict[str, Any]
+    data: dict[str, object]
     """Plain data that differs between outputs."""
     unknown: list[str]
     """Descriptions of what the data cannot tell apart."""
@@ -65,7 +65,7 @@ def _part(value: object, place: str, unknown: list[str], inside: tuple[object, .
     if any(value is outer for outer in inside):
         return "recursion"
 
-    def of(part: object, name: str = "") -> Any:
+    def of(part: object, name: str = "") -> object:
         return _part(part, place + name, unknown, (*inside, value))
 
     if isinstance(value, list | tuple):
