@@ -199,7 +199,7 @@ class Case:
         """Return a ring and the arguments of `film_thickness`, or None without a table for it."""
         return self._table.film() if isinstance(self._table, BearingCase) else None
 
-    def __call__(self, **values: Any) -> dict[str, object]:
+    def __call__(self, **values: object) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = self.data
         for key, value in values.items():

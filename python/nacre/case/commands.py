@@ -48,7 +48,7 @@ ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
-def _in_folder(paths: Any) -> Any:
+def _in_folder(paths: Path | list[Path] | None) -> Path | list[Path] | None:
     """Return the paths of an option, or the path; a folder that is missing is an error."""
     for path in paths if isinstance(paths, list | tuple) else [paths]:
         try:

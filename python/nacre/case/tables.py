@@ -56,7 +56,7 @@ class Table(BaseModel):
 class Directions(Table):
     """Values along two directions."""
 
-    def pair(self) -> tuple[Any, ...]:
+    def pair(self) -> tuple[object, ...]:
         """Return both values."""
         return tuple(value for _, value in self)
 

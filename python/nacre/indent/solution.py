@@ -233,7 +233,7 @@ class IndentSolution(Tabular, Warned):
         """
         return self._states.field("gap", r)
 
-    def stress(self, r: Numbers, z: float) -> dict[str, float | Field]:
+    def stress(self, r: Numbers, z: float) -> dict[str, Any]:
         """Stresses in the body below the surface.
 
         Parameters
