@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
+from nacre._tools.typing import Layers
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -104,7 +105,7 @@ class Slices:
 class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
-    def __init__(self, bearing: Any) -> None:
+    def __init__(self, bearing: Bearing) -> None:
         self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
 
@@ -167,7 +168,7 @@ def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
     return loads, pressures
 
 
-def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
+def bodies_of(bearing: Any, ring: Ring) -> tuple[Layers, Layers]:
     """Return the bodies of a contact: ring and element, whose ends are free where they are so."""
     element = bearing.element
     if bearing.rolls and bearing.free_ends:

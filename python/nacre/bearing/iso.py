@@ -135,7 +135,7 @@ def rating(bearing: Any) -> float:
     return float(bearing.rating_factor * shape * cos**0.7 * bearing.count ** (2 / 3) * size)
 
 
-def is_thrust(bearing: Any) -> bool:
+def is_thrust(bearing: Bearing) -> bool:
     """Return whether a bearing is a thrust bearing of ISO 281: of a contact angle above 45°."""
     return bool(bearing.nominal_angle > math.pi / 4)
 
@@ -230,7 +230,7 @@ def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
     return pressures
 
 
-def pressure_factors(bearing: Any, loads: Array, pressures: Array) -> Array:
+def pressure_factors(bearing: Bearing, loads: Array, pressures: Array) -> Array:
     """Return pressures of laminae over those of Hertz under their loads ``(Z, 2, laminae)``.
 
     ISO/TS 16281:2008, equations (58) and (59), with the moduli of the substrates in place of the

@@ -510,7 +510,7 @@ class BearingSolution(Tabular):
         writers |= files.pictures(lambda: next(iter(self.plot().values())))
         return files.save(path, writers)
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
@@ -527,7 +527,7 @@ class BearingSolution(Tabular):
                     columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return columns
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         columns = self._columns()
         units = [symbol(row.si()) for row, _, _ in columns]
         names = [name for _, name, _ in columns]
@@ -615,7 +615,7 @@ class BearingSolution(Tabular):
         words = ["bearing", "model", "rotation", "speed", "rotating", *VECTORS]
         return [*words, *ARRAYS, "cells", "report"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = {name: getattr(self, name) for name in ("model", "rotation", "speed", "rotating")}
         state |= {name: list(getattr(self, name)) for name in (*VECTORS,)}
         arrays = {name: getattr(self, name) for name in ARRAYS}

@@ -86,7 +86,7 @@ def sizes_of(units: str) -> dict[str, float]:
     }
 
 
-def scaled(data: Any, sizes: Mapping[str, float]) -> Any:
+def scaled(data: object, sizes: Mapping[str, float]) -> Any:
     """Return data in which the numbers at the keys of a bearing are multiplied by their sizes."""
 
     def inner(data: Any, path: tuple[str, ...], size: float) -> Any:
@@ -275,7 +275,7 @@ class BearingCase(Keys):
         """Return the bearing and the keywords of its ``solve``, in SI."""
         return self._si()._arguments()
 
-    def _arguments(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, object]:
         """Return the bearing and the keywords of its ``solve``, where all numbers are in SI."""
         arguments = self.bearing.model_dump(
             exclude={"kind", "solve", "life", "film"}, exclude_unset=True

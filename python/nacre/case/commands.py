@@ -61,7 +61,7 @@ ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
-def _in_folder(paths: Any) -> Any:
+def _in_folder(paths: Path | list[Path] | None) -> Path | list[Path] | None:
     """Return the paths of an option, or the path; a folder that is missing is an error."""
     for path in paths if isinstance(paths, list | tuple) else [paths]:
         try:
@@ -391,7 +391,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers of friction and the named state of its report."""
     return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
@@ -400,7 +400,7 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
     }
 
 
-def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
         return _numbers(solution.normal) | _tangential(solution)
@@ -418,7 +418,7 @@ def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[st
     return state | numbers | {"warnings": solution.report.warnings}
 
 
-def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
+def _indent_numbers(solution: IndentSolution) -> dict[str, object]:
     """Return the named state of an indentation, the pull-off only with adhesion."""
     state = solution.to_dict()
     if solution.adhesion is None:
@@ -429,7 +429,7 @@ def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
     return {name: value for name, value in state.items() if name not in ("format", "kind")}
 
 
-def _plain(data: Any) -> Any:
+def _plain(data: object) -> object:
     """Return data for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(data, dict):
         return {str(key): _plain(value) for key, value in data.items()}
@@ -447,7 +447,7 @@ def _check_ending(path: Path) -> None:
         raise typer.BadParameter(message, param_hint="'--save'")
 
 
-def _cell(value: Any, error: float) -> str:
+def _cell(value: object, error: float) -> str:
     """Return a value of a study, with its estimated error."""
     if not isinstance(value, float | int):
         return str(value)

@@ -20,6 +20,7 @@ import numpy as np
 from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
+from nacre._core import Free, Rigid
 from nacre._tools.typing import Member
 from nacre._tools.units import System
 from nacre.case.friction import SHARED, Roll, Slide
@@ -303,12 +304,13 @@ class Keys(Table):
         with at(name):
             return nacre.HalfSpace(substrate, layers, ends=ends)
 
-    def _base(self, body: Body) -> Any:
+    def _base(self, body: Body) -> Rigid | Free | None:
         """Return the base that the substrate names, or None if that is a material."""
         substrate = body.substrate
         if not isinstance(substrate, str) or substrate in self.materials:
             return None
-        return {"rigid": nacre.RIGID, "free": nacre.FREE}.get(substrate)
+        bases: dict[str, Rigid | Free] = {"rigid": nacre.RIGID, "free": nacre.FREE}
+        return bases.get(substrate)
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):

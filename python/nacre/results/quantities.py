@@ -51,7 +51,7 @@ class Quantity:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
 
-    def of(self, result: Any) -> Any:
+    def of(self, result: object) -> Any:
         """Return the value in a result."""
         return reduce(getattr, (self.path or self.name).split("."), result)
 
@@ -60,7 +60,7 @@ class Quantity:
         *places, name = (self.path or self.name).split(".")
         return reduce(lambda inner, place: inner[place], places, state).get(name)
 
-    def put(self, state: dict[str, Any], value: Any) -> None:
+    def put(self, state: dict[str, Any], value: object) -> None:
         """Put a value into the state of a result; `REMOVED` takes it out."""
         *places, name = (self.path or self.name).split(".")
         for place in places:

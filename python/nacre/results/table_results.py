@@ -6,7 +6,7 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -60,10 +60,10 @@ class Tabular(Result, ABC, is_base=True):
         return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
 
     @abstractmethod
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         """Return the rows of the table in a ``.csv``, the heading first."""
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands above the table."""
         return {}
 
@@ -94,8 +94,8 @@ class TableResult(Tabular, Warned, is_base=True):
         variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._QUANTITIES}
         return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
-        cells: list[tuple[str, Any]] = []
+    def _file_rows(self) -> Iterable[Iterable[object]]:
+        cells: list[tuple[str, object]] = []
         for row in self._QUANTITIES:
             values = np.ravel(row.of(self)).tolist()
             names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
