@@ -17,8 +17,18 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
+from nacre.bearing.modified import (
+    contamination_range,
+    fatigue_load_limit,
+    life_modification_factor,
+    reference_viscosity,
+    reliability_factor,
+    simple_fatigue_load_limit,
+)
+from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
-from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
+from nacre.bearing.solution import BearingReport, BearingSolution
+from nacre.bearing.static import StaticLoad, equivalent_static_load, static_rating
 
 __all__ = [
     "AngularContactBall",
@@ -32,13 +42,22 @@ __all__ = [
     "LifeRatio",
     "LundbergPalmgren",
     "SphericalRoller",
+    "StaticLoad",
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",
+    "contamination_range",
     "edge_factors",
+    "equivalent_static_load",
+    "fatigue_load_limit",
     "film_thickness",
+    "life_modification_factor",
     "life_ratio",
     "load_integrals",
     "rating",
+    "reference_viscosity",
+    "reliability_factor",
+    "simple_fatigue_load_limit",
+    "static_rating",
     "stress_volume",
 ]
