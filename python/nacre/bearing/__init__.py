@@ -6,6 +6,7 @@ tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 1628
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
+from nacre.bearing.catalogue import CatalogueCheck, check, estimated_balls
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
@@ -35,6 +36,7 @@ __all__ = [
     "BearingLife",
     "BearingReport",
     "BearingSolution",
+    "CatalogueCheck",
     "CylindricalRoller",
     "DeepGrooveBall",
     "Film",
@@ -46,9 +48,11 @@ __all__ = [
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",
+    "check",
     "contamination_range",
     "edge_factors",
     "equivalent_static_load",
+    "estimated_balls",
     "fatigue_load_limit",
     "film_thickness",
     "life_modification_factor",
