@@ -272,7 +272,7 @@ def test_modified_life_is_made_of_its_factors() -> None:
 
 
 def test_the_viscosity_ratio_follows_from_viscosity_or_film() -> None:
-    known = {"contamination": 0.5, "fatigue_load_limit": 6.1e3}
+    known: dict[str, Any] = {"contamination": 0.5, "fatigue_load_limit": 6.1e3}
     viscosity = reference_viscosity(100.0, 65e-3) * 1.7
     assert LOADED.life(kinematic_viscosity=viscosity, **known).viscosity_ratio == pytest.approx(1.7)
     assert LOADED.life(film_ratio=1.5, **known).viscosity_ratio == pytest.approx(1.5**1.3)
