@@ -34,8 +34,6 @@ WORDS = {
 """What the numbers are."""
 ASSUMED = "assumed"
 """Source of a Poisson's ratio that was not measured."""
-CLOSE = 0.5
-"""Least likeness of names that an error calls close, from 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +151,7 @@ class Materials(Mapping[str, Card]):
     def unknown(self, name: object) -> str:
         """Return a message about a name that no card has, with the names that are close."""
         lower = {known.casefold(): known for known in self._cards}
-        close = difflib.get_close_matches(str(name).casefold(), lower, cutoff=CLOSE)
+        close = difflib.get_close_matches(str(name).casefold(), lower)
         names = ", ".join(repr(lower[one]) for one in close)
         hint = f"; close to it are {names}" if close else ""
         return f"name must be one of nacre.materials, got {name!r}{hint}"

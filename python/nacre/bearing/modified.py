@@ -20,10 +20,7 @@ from nacre.bearing.iso import is_thrust
 from nacre.bearing.static import STEEL, check_bearing, element_load, static_rating, total_load
 from nacre.contact import Contact
 
-RELIABILITY = {
-    **{0.90: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25},
-    0.999: 0.093,
-}
+RELIABILITY = {0.9: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.999: 0.093}
 """Factors a_1 by reliability: ISO 281:2007, table 12."""
 SMALL = {
     "extreme cleanliness": (1.0, 1.0),
@@ -393,8 +390,8 @@ class Lubrication(NamedTuple):
         """Whether there is a_ISO."""
         return any(value is not None for value in self[:4])
 
-    def check(self) -> None:
-        """Raise an error unless κ follows from one argument, and e_C is given."""
+    def check(self, bearing: Any) -> None:
+        """Raise an error unless κ follows from one argument, and e_C is given, in range."""
         names = self._fields[:3]
         ways = [name for name in names if getattr(self, name) is not None]
         if self.is_known and len(ways) != 1:
@@ -413,6 +410,8 @@ class Lubrication(NamedTuple):
             raise TypeError(f"additives must be True or False, got {self.additives!r}")
         if self.additives and not ways:
             raise ValueError(f"exactly one of {', '.join(names)} must be given beside additives")
+        if ways:
+            self.cleanliness(bearing)
 
     def kappa(self, bearing: Any, speed: float) -> float:
         """Return the viscosity ratio at a speed [rad/s]."""

@@ -12,7 +12,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre.bearing.contact_laws import LAMINAE
-from nacre.bearing.geometry import RINGS, Ring, above
+from nacre.bearing.geometry import RINGS, Bearing, Ring, above
 from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, reference_life
 from nacre.bearing.modified import (
     Lubrication,
@@ -132,15 +132,30 @@ class _Rate(NamedTuple):
     """Life of a bearing under one load."""
 
     reference: ReferenceLife
-    speed: float
+    cycles: float
+    """Share of the time, times the speed [rad/s]."""
     factor: float
     """Factor a_ISO, 1 without lubrication."""
     kappa: float | None
 
-    @property
-    def millions(self) -> float:
-        """Life at 90 % reliability in millions of revolutions."""
-        return self.reference.l10 * self.factor
+
+class _Terms(NamedTuple):
+    """What a life counts: edges, the ring that rotates, lubrication and fatigue load limit [N]."""
+
+    edge: Edge
+    rotating: Ring
+    lubrication: Lubrication
+    limit: float | None
+
+    def rate(self, solution: BearingSolution, share: float, speed: float) -> _Rate:
+        """Return the life under the load of a solution, for a share of the time."""
+        bearing, cycles = solution.bearing, share * abs(speed)
+        reference = reference_of(solution, self.edge, self.rotating)
+        if self.limit is None:
+            return _Rate(reference, cycles, 1.0, None)
+        load = reference.equivalent_load
+        factor = self.lubrication.factor(bearing, speed, self.limit, load)
+        return _Rate(reference, cycles, factor, self.lubrication.kappa(bearing, speed))
 
 
 def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> ReferenceLife:
@@ -232,68 +247,72 @@ def life_of(
     rotating = solution.rotating if rotating is None else rotating
     if not among(rotating, RINGS):
         raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
-    bearing = solution.bearing
-    a_1 = reliability_factor(reliability)
-    lubrication.check()
-    words = _words(solution, edge, reliability)
-    contamination = simple = None
-    if lubrication.is_known:
-        contamination, degree = lubrication.cleanliness(bearing)
-        words += f"; a_ISO of ISO 281, {degree}"
-        simple = simple_fatigue_load_limit(bearing)
-        limit = fatigue_load_limit(bearing) if limit is None else above("fatigue_load_limit", limit)
-    elif limit is not None:
-        raise ValueError("fatigue_load_limit must be given beside a lubrication, got none")
-
-    def rate(one: BearingSolution, turns: float) -> _Rate:
-        reference = reference_of(one, edge, rotating)
-        if limit is None:
-            return _Rate(reference, turns, 1.0, None)
-        load = reference.equivalent_load
-        factor = lubrication.factor(bearing, turns, limit, load)
-        return _Rate(reference, turns, factor, lubrication.kappa(bearing, turns))
-
+    factor = reliability_factor(reliability)
+    lubrication.check(solution.bearing)
+    limit = _limit(solution.bearing, lubrication, limit)
+    terms = _Terms(edge, rotating, lubrication, limit)
     if spectrum is None:
         turns = solution.speed if speed is None else above("speed", speed, -math.inf)
-        shares, rates = [1.0], [rate(solution, turns)]
+        rates = [terms.rate(solution, 1.0, turns)]
+    elif speed is not None:
+        raise ValueError("speed must not be given beside spectrum, which has speeds")
     else:
-        if speed is not None:
-            raise ValueError("speed must not be given beside spectrum, which has speeds")
-        duties = _duties(solution, spectrum)
-        shares = [share for share, _, _ in duties]
-        rates = [rate(_duty_solution(solution, asked, turns), turns) for _, asked, turns in duties]
-        words += f"; Miner's sum of {len(duties)} loads"
-    # Miner: the shares of the life that each load uses up add to 1.
-    cycles = [share * abs(one.speed) for share, one in zip(shares, rates, strict=True)]
-    turned = sum(cycles)
-    weights = [one / turned for one in cycles] if turned else [1.0]
-    l10 = _harmonic(weights, [one.reference.l10 for one in rates])
-    millions = a_1 * _harmonic(weights, [one.millions for one in rates])
-    hours = millions * 1e6 * 2 * math.pi / turned / 3600 if turned else math.inf
-    slope = 10 / 3 if bearing.rolls else 3.0
+        rates = [
+            terms.rate(_duty_solution(solution, conditions, turns), share, turns)
+            for share, conditions, turns in _duties(solution, spectrum)
+        ]
+    words = _words(solution, edge, reliability)
+    if lubrication.is_known:
+        words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
+    if spectrum is not None:
+        words += f"; Miner's sum of {len(rates)} loads"
+    return _combined(solution.bearing, terms, rates, (float(reliability), factor), words)
+
+
+def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:
+    """Return the fatigue load limit [N]: the argument, or that of the bearing; None without oil."""
+    if lubrication.is_known:
+        return fatigue_load_limit(bearing) if limit is None else above("fatigue_load_limit", limit)
+    if limit is not None:
+        raise ValueError("fatigue_load_limit must be given beside a lubrication, got none")
+    return None
+
+
+def _combined(
+    bearing: Bearing,
+    terms: _Terms,
+    rates: Sequence[_Rate],
+    reliability: tuple[float, float],
+    words: str,
+) -> BearingLife:
+    """Return the life under all loads, of which each uses up its share: Miner."""
+    turned, is_known = sum(one.cycles for one in rates), terms.lubrication.is_known
+    shares = [one.cycles / turned for one in rates] if turned else [1.0]
+    l10 = _harmonic(shares, [one.reference.l10 for one in rates])
+    modified = _harmonic(shares, [one.reference.l10 * one.factor for one in rates])
+    revolutions = reliability[1] * modified * 1e6
     capacity = float(bearing.capacity or 0.0)
-    modified = lubrication.is_known
-    kappas = [one.kappa for one in rates if one.kappa is not None]
-    factor = millions / (a_1 * l10) if math.isfinite(l10) else rates[0].factor
     return BearingLife(
-        revolutions=millions * 1e6,
-        hours=hours,
+        revolutions=revolutions,
+        hours=revolutions * 2 * math.pi / turned / 3600 if turned else math.inf,
         l10=l10,
-        equivalent_load=capacity * l10 ** (-1 / slope),
+        equivalent_load=capacity * l10 ** (-0.3 if bearing.rolls else -1 / 3),
         capacity=capacity,
         ring_capacities=rates[0].reference.capacities,
-        reliability=float(reliability),
-        reliability_factor=a_1,
-        modification_factor=factor if modified else None,
-        viscosity_ratio=min(kappas) if modified else None,
-        contamination_factor=contamination,
-        fatigue_load_limit=limit,
-        simple_fatigue_load_limit=simple,
+        reliability=reliability[0],
+        reliability_factor=reliability[1],
+        modification_factor=(
+            (modified / l10 if math.isfinite(l10) else rates[0].factor) if is_known else None
+        ),
+        viscosity_ratio=min((one.kappa for one in rates if one.kappa is not None), default=None),
+        contamination_factor=terms.lubrication.cleanliness(bearing)[0] if is_known else None,
+        fatigue_load_limit=terms.limit,
+        simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,
         model=words,
     )
 
 
-def _harmonic(weights: Sequence[float], lives: Sequence[float]) -> float:
+def _harmonic(shares: Sequence[float], lives: Sequence[float]) -> float:
     """Return the mean of lives by Miner's rule; infinite where all are."""
-    used = sum(weight / life for weight, life in zip(weights, lives, strict=True))
+    used = sum(share / life for share, life in zip(shares, lives, strict=True))
     return 1 / used if used > 0 else math.inf
