@@ -112,6 +112,12 @@ def test_equivalent_static_loads_are_those_of_the_table() -> None:
     assert equivalent_static_load(BALLS, 1000.0, 4000.0) == pytest.approx(0.6e3 + 0.5 * 4e3)
     assert equivalent_static_load(BALLS, 1000.0, 500.0) == 1000.0  # at least F_r
     assert equivalent_static_load(ANGULAR, 1000.0, 4000.0) == pytest.approx(0.5e3 + 0.26 * 4e3)
+    table = zip(
+        range(5, 50, 5), (0.52, 0.50, 0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22), strict=True
+    )
+    for angle, factor in table:
+        bearing = replace(ANGULAR, contact_angle=math.radians(angle))
+        assert equivalent_static_load(bearing, 0.0, 1e3) == pytest.approx(factor * 1e3)
     between = replace(ANGULAR, contact_angle=math.radians(27.5))
     assert equivalent_static_load(between, 0.0, 1e3) == pytest.approx((0.38 + 0.33) / 2 * 1e3)
     assert equivalent_static_load(ROLLERS, 1000.0) == 1000.0
@@ -166,7 +172,8 @@ def test_modification_factor_rises_and_has_no_steps(element: Any, thrust: bool) 
 
 
 def test_reliability_factors_are_those_of_the_table() -> None:
-    for reliability, factor in ((0.9, 1.0), (0.95, 0.64), (0.99, 0.25), (0.999, 0.093)):
+    table = {0.9: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.999: 0.093}
+    for reliability, factor in table.items():
         assert reliability_factor(reliability) == factor
         # ISO 281's table is a Weibull distribution with a life that all reach, 0.05 L_10.
         share = math.log(1 / reliability) / math.log(1 / 0.9)
@@ -189,7 +196,17 @@ def test_reference_viscosity() -> None:
 def test_contamination_is_larger_in_larger_bearings() -> None:
     assert contamination_range("slight contamination", 99e-3) == (0.3, 0.5)
     assert contamination_range("slight contamination", 100e-3) == (0.4, 0.6)
-    assert contamination_range("extreme cleanliness", 50e-3) == (1.0, 1.0)
+    # ISO 281:2007, table 13, from the cleanest down.
+    names = [
+        *("extreme cleanliness", "high cleanliness", "normal cleanliness"),
+        *("slight contamination", "typical contamination", "severe contamination"),
+    ]
+    for pitch, ends in (
+        (50e-3, [1, 1, 0.6, 0.8, 0.5, 0.6, 0.3, 0.5, 0.1, 0.3, 0, 0.1]),
+        (0.2, [1, 1, 0.8, 0.9, 0.6, 0.8, 0.4, 0.6, 0.2, 0.4, 0, 0.1]),
+    ):
+        found = [end for name in names for end in contamination_range(name, pitch)]
+        assert found == ends
     assert contamination_range("very severe contamination", 1.0) == (0.0, 0.0)
 
 
