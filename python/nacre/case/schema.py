@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import types
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -74,6 +75,24 @@ class Material(Table):
 AnyMaterial = Annotated[
     str | Material, with_words("the name of a material, or a table with young and poisson")
 ]
+
+
+def material_of(name: str, units: str) -> Material:
+    """Return the numbers of a card of `nacre.materials` in the units of a case.
+
+    A warning says which value of a coating's range is taken.
+    """
+    card = nacre.materials[name]
+    size = System(units).unit("Pa")[0]
+    young = card.numbers["young"]
+    if card.kind == "coating":
+        warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
+    numbers = {
+        key: number.value / (size if number.unit == "Pa" else 1.0)
+        for key, number in card.numbers.items()
+        if key in Material.model_fields
+    }
+    return Material(**numbers)
 
 
 class Spring(Table):
@@ -319,8 +338,10 @@ class Keys(Table):
         description="Units of force, length and stress of all numbers in the file, and of what is "
         'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
     )
-    materials: Annotated[dict[str, Material], with_words("a table of materials")] = Field(
-        {}, description="Materials by name."
+    materials: Annotated[dict[str, AnyMaterial], with_words("a table of materials")] = Field(
+        {},
+        description="Materials by name: tables, or names of `nacre.materials`, such as "
+        '"100Cr6", which stand in other places, too.',
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
 
@@ -356,12 +377,29 @@ class Keys(Table):
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
+            known = self._known(material)
             if material not in self.materials:
-                known = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({known}), got {material!r}")
+                return known.make()
             with at(f"materials.{material}"):
-                return self.materials[material].make()
+                return known.make()
         return material.make()
+
+    def _known(self, material: str | Material) -> Material:
+        """Return the table of a material: its own, that of its name here, or that of a card."""
+        if not isinstance(material, str):
+            return material
+        named = self.materials.get(material, material)
+        if isinstance(named, Material):
+            return named
+        if named in nacre.materials:
+            return material_of(named, self.units)
+        if named is not material:
+            with at(f"materials.{material}"):
+                raise ValueError(nacre.materials.unknown(named))
+        known = ", ".join(self.materials) or "none"
+        hint = nacre.materials.unknown(material).partition("; ")[2]
+        message = f"must be one of the materials ({known}), got {material!r}"
+        raise ValueError(f"{message}; {hint} in nacre.materials" if hint else message)
 
 
 class Bodies(Keys):
@@ -440,7 +478,7 @@ class CaseTable(Bodies):
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self.materials.get(one) if isinstance(one, str) else one for one in entries]
+        materials = [self._known(one) for one in entries]
         return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 
