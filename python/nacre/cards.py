@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
@@ -38,7 +38,14 @@ ASSUMED = "assumed"
 
 @dataclass(frozen=True)
 class Number:
-    """A number of a material, in SI, with the range of its sources."""
+    """A number of a material, in SI, with the range of its sources.
+
+    Examples
+    --------
+    >>> young = nacre.materials["ta-C"].numbers["young"]
+    >>> young.value, young.low, young.high, young.unit
+    (572000000000.0, 493000000000.0, 625000000000.0, 'Pa')
+    """
 
     value: float
     """Value that a calculation takes."""
@@ -76,7 +83,7 @@ class Card:
     --------
     >>> card = nacre.materials["100Cr6"]
     >>> card.elastic
-    nacre.Elastic(young=203400000000.0, poisson=0.285)
+    Elastic(young=203400000000.0, poisson=0.285)
     >>> card.numbers["young"].low, card.numbers["young"].high
     (190000000000.0, 210000000000.0)
     """
@@ -126,6 +133,15 @@ def _card(name: str, entry: Mapping[str, Any]) -> Card:
     return Card(name, entry["title"], entry["kind"], elastic, numbers, source)
 
 
+def unknown(name: object, known: Iterable[str]) -> str:
+    """Return a message about a name that no card has, with those that are close."""
+    lower = {one.casefold(): one for one in known}
+    close = difflib.get_close_matches(str(name).casefold(), lower)
+    names = ", ".join(repr(lower[one]) for one in close)
+    hint = f"; close to it are {names}" if close else ""
+    return f"name must be one of nacre.materials, got {name!r}{hint}"
+
+
 class Materials(Mapping[str, Card]):
     """Materials by name, read-only, as `nacre.materials`.
 
@@ -146,15 +162,7 @@ class Materials(Mapping[str, Card]):
         """Return the card of a name, or raise a `KeyError` that names those that are close."""
         if isinstance(name, str) and name in self._cards:
             return self._cards[name]
-        raise KeyError(self.unknown(name))
-
-    def unknown(self, name: object) -> str:
-        """Return a message about a name that no card has, with the names that are close."""
-        lower = {known.casefold(): known for known in self._cards}
-        close = difflib.get_close_matches(str(name).casefold(), lower)
-        names = ", ".join(repr(lower[one]) for one in close)
-        hint = f"; close to it are {names}" if close else ""
-        return f"name must be one of nacre.materials, got {name!r}{hint}"
+        raise KeyError(unknown(name, self._cards))
 
     def __iter__(self) -> Iterator[str]:
         """Return the names in the order of the file."""

@@ -1,7 +1,7 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import Shape
-from nacre.cards import Card, Materials, Number
+from nacre.cards import Card, Number
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
@@ -22,7 +22,6 @@ __all__ = [
     "InterfaceStress",
     "LayerFatigue",
     "LayerStress",
-    "Materials",
     "Number",
     "Report",
     "ShakedownMap",

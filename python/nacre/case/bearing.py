@@ -167,18 +167,18 @@ class BearingLife(Table):
     contamination: str | Number | None = Field(None, description=LIFE["contamination"])
     additives: bool = Field(False, description=LIFE["additives"])
     fatigue_load_limit: Number | None = Field(None, description=LIFE["fatigue_load_limit"])
-    spectrum: Annotated[list[Duty], Field(min_length=1)] | None = Field(
-        None,
+    spectrum: list[Duty] = Field(
+        [],
         description="Load spectrum in place of the solved load: tables with share, force and "
         "speed, whose lives add up by Miner's rule.",
     )
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `BearingSolution.life`."""
-        keywords = super().keywords()
+        keywords = super().keywords() | {"spectrum": None}
         if self.edge == "none":
             keywords["edge"] = None
-        if self.spectrum is not None:
+        if self.spectrum:
             keywords["spectrum"] = [
                 (duty.share, duty.force.pair(), duty.speed) for duty in self.spectrum
             ]

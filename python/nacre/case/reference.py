@@ -145,6 +145,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", known["InSpace"]
     yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", known["About"]
     yield "`[bearing.life]`", known["BearingLife"]
+    yield "`[[bearing.life.spectrum]]`", known["Duty"]
     yield "`[bearing.film]`", known["BearingFilm"]
     yield "`[sweep]`", known["Sweep"]
     yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', known["Range"]

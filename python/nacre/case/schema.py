@@ -26,6 +26,7 @@ from pydantic import Field, create_model, field_validator, model_validator
 import nacre
 from nacre._tools.typing import Along
 from nacre._tools.units import System
+from nacre.cards import unknown
 from nacre.case.friction import AnyAlong, Roll, Slide
 from nacre.case.shapes import AnyShape
 from nacre.case.tables import (
@@ -395,9 +396,9 @@ class Keys(Table):
             return material_of(named, self.units)
         if named is not material:
             with at(f"materials.{material}"):
-                raise ValueError(nacre.materials.unknown(named))
+                raise ValueError(unknown(named, nacre.materials))
         known = ", ".join(self.materials) or "none"
-        hint = nacre.materials.unknown(material).partition("; ")[2]
+        hint = unknown(material, nacre.materials).partition("; ")[2]
         message = f"must be one of the materials ({known}), got {material!r}"
         raise ValueError(f"{message}; {hint} in nacre.materials" if hint else message)
 

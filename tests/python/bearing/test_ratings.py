@@ -148,6 +148,14 @@ def test_modification_factor_is_that_of_the_figures(row: dict[str, Any]) -> None
     assert found == pytest.approx(row["formula"], rel=5e-6)
 
 
+def test_modification_factor_above_a_viscosity_ratio_of_1() -> None:
+    # ISO 281:2007, formulae (33) and (36), typed: no row of the figures has rollers there.
+    roller = 0.1 * (1 - (1.5859 - 1.2348 / 2**0.071739) * 0.5**0.4) ** -9.185
+    ball = 0.1 * (1 - (2.5671 - 1.9987 / 2**0.071739) ** 0.83 * 0.1 ** (1 / 3)) ** -9.3
+    assert life_modification_factor(2.0, 0.5, "roller") == pytest.approx(roller, rel=1e-12)
+    assert life_modification_factor(2.0, 0.1, "ball") == pytest.approx(ball, rel=1e-12)
+
+
 @pytest.mark.parametrize("element", ["ball", "roller"])
 @pytest.mark.parametrize("thrust", [False, True])
 def test_modification_factor_rises_and_has_no_steps(element: Any, thrust: bool) -> None:
