@@ -156,7 +156,7 @@ def _shape(ratio: float, grooves: tuple[float, float], thrust: bool) -> float:
 class ReferenceLife(NamedTuple):
     """Reference rating life, and what it is made of."""
 
-    revolutions: float
+    l10: float
     """Life L_10r in millions of revolutions; infinite without load."""
     equivalent_load: float
     """Dynamic equivalent reference load [N]."""
@@ -274,7 +274,7 @@ def reference_life(
         for row in rows
         for ring in range(2)
     )
-    revolutions = sums**life if sums > 0 else math.inf
+    l10 = sums**life if sums > 0 else math.inf
     slope = 10 / 3 if bearing.rolls else 3.0
-    equivalent = capacity * revolutions ** (-1 / slope) if sums > 0 else 0.0
-    return ReferenceLife(revolutions, equivalent, ring_capacities)
+    equivalent = capacity * l10 ** (-1 / slope) if sums > 0 else 0.0
+    return ReferenceLife(l10, equivalent, ring_capacities)

@@ -145,6 +145,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", definitions["InSpace"]
     yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", definitions["About"]
     yield "`[bearing.life]`", definitions["BearingLife"]
+    yield "`[[bearing.life.spectrum]]`", definitions["Duty"]
     yield "`[bearing.film]`", definitions["BearingFilm"]
     yield "`[sweep]`", definitions["Sweep"]
     yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', definitions["Range"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +24,7 @@ import nacre
 from nacre._core import Free, Rigid
 from nacre._tools.typing import Member
 from nacre._tools.units import System
+from nacre.cards import unknown
 from nacre.case.friction import SHARED, Roll, Slide
 from nacre.case.shapes import AnyShape
 from nacre.case.tables import (
@@ -68,6 +70,24 @@ class Material(Table):
 AnyMaterial = Annotated[
     str | Material, with_words("the name of a material, or a table with young and poisson")
 ]
+
+
+def material_of(name: str, units: str) -> Material:
+    """Return the numbers of a card of `nacre.materials` in the units of a case.
+
+    A warning says which value of a coating's range is taken.
+    """
+    card = nacre.materials[name]
+    size = System(units).unit("Pa")[0]
+    young = card.numbers["young"]
+    if card.kind == "coating":
+        warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
+    numbers = {
+        key: number.value / (size if number.unit == "Pa" else 1.0)
+        for key, number in card.numbers.items()
+        if key in Material.model_fields
+    }
+    return Material(**numbers)
 
 
 @from_signature(nacre.Spring)
@@ -275,8 +295,10 @@ class Keys(Table):
         description="Units of force, length and stress of all numbers in the file, and of what is "
         'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
     )
-    materials: Annotated[dict[str, Material], with_words("a table of materials")] = Field(
-        {}, description="Materials by name."
+    materials: Annotated[dict[str, AnyMaterial], with_words("a table of materials")] = Field(
+        {},
+        description="Materials by name: tables, or names of `nacre.materials`, such as "
+        '"100Cr6", which stand in other places, too.',
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
 
@@ -314,12 +336,29 @@ class Keys(Table):
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
+            known = self._known(material)
             if material not in self.materials:
-                names = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({names}), got {material!r}")
+                return known.make()
             with at(f"materials.{material}"):
-                return self.materials[material].make()
+                return known.make()
         return material.make()
+
+    def _known(self, material: str | Material) -> Material:
+        """Return the table of a material: its own, that of its name here, or that of a card."""
+        if not isinstance(material, str):
+            return material
+        named = self.materials.get(material, material)
+        if isinstance(named, Material):
+            return named
+        if named in nacre.materials:
+            return material_of(named, self.units)
+        if named is not material:
+            with at(f"materials.{material}"):
+                raise ValueError(unknown(named, nacre.materials))
+        known = ", ".join(self.materials) or "none"
+        hint = unknown(material, nacre.materials).partition("; ")[2]
+        message = f"must be one of the materials ({known}), got {material!r}"
+        raise ValueError(f"{message}; {hint} in nacre.materials" if hint else message)
 
 
 class Bodies(Keys):
@@ -398,7 +437,7 @@ class CaseTable(Bodies):
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self.materials.get(one) if isinstance(one, str) else one for one in entries]
+        materials = [self._known(one) for one in entries]
         return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 
