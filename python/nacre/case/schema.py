@@ -115,7 +115,7 @@ class Layer(Table):
 
 
 Ends = Annotated[
-    list[float], TWO, with_words("a pair of numbers, or of -inf and inf where the body goes on")
+    list[float], TWO, with_words("a pair of numbers, or of -inf and inf where the body has no end")
 ]
 MOST_LAYERS = 1000
 """Largest number of layers: the time of a contact grows with it."""
@@ -134,7 +134,7 @@ class Body(Table):
     ends: Ends | None = Field(
         None,
         description="Coordinates x of free ends [m], the lower one first; -inf or inf where the "
-        "body goes on, as it does at both sides by default. Interfaces must then be bonded.",
+        "body has no end, the default on both sides. Interfaces must then be bonded.",
     )
 
 
