@@ -44,6 +44,9 @@ STEPS = 4
 TOO_NARROW = 4.0
 """Expected load over that of its grid above which a contact is not tried on it: half as wide as
 the contact or less, which takes minutes."""
+EQUAL = 1e-15
+"""Approaches that differ by no more are equal [m]: by 1e-10 of a deflection of 10 µm, which is some
+hundred units in its last place."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
 
@@ -303,18 +306,23 @@ class Solved:
         self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
+        groups = self._equal(tasks, places)
         solutions: dict[tuple[int, int], Solution] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)
-                futures = [pool.submit(self._solve, j, r, places[j, r]) for j, r in tasks]
-                for (j, r), future in zip(tasks, futures, strict=True):
+                futures = [
+                    pool.submit(self._solve, *group[0], places[group[0]]) for group in groups
+                ]
+                for group, future in zip(groups, futures, strict=True):
                     solution, tangent = future.result()
-                    solutions[j, r] = solution
-                    energy[j, r] = solution.elastic_energy
-                    force[j, r] = solution.load, solution.moment[0]
-                    stiffness[j, r] = tangent[:2, :2]
+                    for j, r in group:
+                        self.halved[j, r] = self.halved[group[0]]
+                        solutions[j, r] = solution
+                        energy[j, r] = solution.elastic_energy
+                        force[j, r] = solution.load, solution.moment[0]
+                        stiffness[j, r] = tangent[:2, :2]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
         if not self.bearing.leans:
@@ -322,6 +330,15 @@ class Solved:
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
         self.last_solutions = solutions
         return Reaction(energy, force, stiffness, solutions)
+
+    def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:
+        """Return groups of contacts that are equal but for rounding, as those beside a load are."""
+        lengths = np.array([1.0, max(self.reach, self.bearing.diameter)])
+        steps = np.round(places * lengths / EQUAL).astype(np.int64)
+        groups: dict[tuple[int, ...], list[tuple[int, int]]] = {}
+        for j, r in tasks:
+            groups.setdefault((r, int(self.halved[j, r]), *steps[j, r].tolist()), []).append((j, r))
+        return list(groups.values())
 
     def sizes(self) -> Array:
         """Return the sides of the grids ``(Z, 2, 2)`` [m]."""

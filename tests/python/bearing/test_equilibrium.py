@@ -111,6 +111,22 @@ def test_rollers_that_centrifugal_forces_press_alone_take_short_steps(
     assert solved <= 12
 
 
+def test_equal_elements_beside_the_load_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    places = []
+    solve = Solved._solve
+    monkeypatch.setattr(
+        Solved, "_solve", lambda law, *place: places.append(place[:2]) or solve(law, *place)
+    )
+    bearing = CylindricalRoller(**SIZE | {"clearance": 41e-6})
+    load: dict[str, Any] = {"force": (4450.0, 0.0, None), "tilt": (None, 6e-4)}
+    mirrored = bearing.solve(**load, **COARSE)
+    count = len(places)
+    turned = bearing.solve(**load, **COARSE, rotation=1e-9)  # no two are equal
+    assert len(places) - count > 1.5 * count
+    np.testing.assert_allclose(mirrored.loads, turned.loads, atol=1e-5)
+    np.testing.assert_array_equal(mirrored.loads[1:], mirrored.loads[:0:-1])
+
+
 def test_tilted_rollers_between_held_rings_are_in_equilibrium() -> None:
     # Middles are 5 µm apart, and the ends touch. No load is given, and yet there is a balance.
     bearing = CylindricalRoller(**SIZE | {"clearance": 20e-6}, raceway_crown=(None, 2.0))
