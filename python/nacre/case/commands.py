@@ -34,7 +34,7 @@ from nacre.studies.outputs import check_direction
 class Command(TyperCommand):
     """Command whose usage names its file without braces."""
 
-    def collect_usage_pieces(self, ctx: typer.Context) -> list[str]:
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """Return the parts of the line of usage."""
         return [piece.strip("{}") for piece in super().collect_usage_pieces(ctx)]
 
