@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import nacre
+from bodies import quiet
 from nacre.bearing import (
     AngularContactBall,
     CylindricalRoller,
@@ -294,3 +295,22 @@ def test_stiffness_across_the_load_over_that_along_it(count: int, ratio: float) 
     assert closed == pytest.approx(ratio, abs=5e-4)
     # The approach, 2e-4 of the pitch radius, turns the directions of the loads a little.
     assert tangent[1, 1] / tangent[0, 0] == pytest.approx(closed, rel=1e-6)
+
+
+@pytest.mark.parametrize(("count", "loaded"), [(8, 45.0), (12, 60.0), (16, 67.5)])
+def test_stiffness_across_and_along_the_load_are_sums_over_the_loaded_half(
+    count: int, loaded: float
+) -> None:
+    # Of elements with a load as δⁿ, δ = x cos θ: Σ cos^(n−1) sin² / Σ cos^(n+1) (derived); those at
+    # 90° touch with no deflection, and carry nothing.
+    theta = np.radians(np.arange(-loaded, loaded + 1, 360 / count))
+    size: dict[str, Any] = {"count": count, "diameter": 5e-3, "pitch_diameter": 250e-3}
+    for bearing, power in (
+        (DeepGrooveBall(**size), 1.5),
+        (CylindricalRoller(**size, length=5e-3, profile=None), 10 / 9),
+    ):
+        along = (np.cos(theta) ** (power + 1)).sum()
+        across = (np.cos(theta) ** (power - 1) * np.sin(theta) ** 2).sum()
+        solution = quiet(bearing.solve, force=(2000.0, 0.0, None), model="iso16281")
+        stiffness = solution.stiffness()
+        assert stiffness[1, 1] / stiffness[0, 0] == pytest.approx(across / along, rel=1e-4)
