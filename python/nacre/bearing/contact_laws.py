@@ -88,7 +88,7 @@ class Slices:
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
         depths = places[..., :1] + places[..., 1:] * self.x - self.drop
-        # The stiffness of rounding beside the load, as δ^(1/9), would be a hundredth of the largest.
+        # The stiffness of rounding beside the load, as δ^(1/9), would count by a hundredth.
         return np.where(depths > EQUAL, depths, 0.0)
 
     def loads(self, places: Array) -> Array:
