@@ -578,7 +578,7 @@ def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
 
 
 def _spectra(
-    fields: dict[str, Array], grid: core.Grid, attributes: dict[str, Any]
+    fields: dict[str, Array], grid: core.Grid, attributes: dict[str, object]
 ) -> xarray.Dataset:
     """Return the spectra of heights on a grid."""
     with extra("files"):

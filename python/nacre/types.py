@@ -1,6 +1,7 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import Shape
+from nacre.cards import Card, Number
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
@@ -9,6 +10,7 @@ from nacre.fatigue import FatigueSummary, InterfaceFatigue, LayerFatigue, Shaked
 from nacre.friction import CreepCoefficients
 
 __all__ = [
+    "Card",
     "CreepCoefficients",
     "Direction",
     "FatigueSummary",
@@ -20,6 +22,7 @@ __all__ = [
     "InterfaceStress",
     "LayerFatigue",
     "LayerStress",
+    "Number",
     "Report",
     "ShakedownMap",
     "Shape",

@@ -32,7 +32,7 @@ def read_fields(frozen: Any) -> None:
             object.__setattr__(frozen, name, tuple(core.vector(name, 2, value)))
 
 
-def name_or_number(name: str, value: Any) -> str | int:
+def name_or_number(name: str, value: object) -> str | int:
     """Return the name or the number of a part of a file, or raise a `TypeError`."""
     if isinstance(value, str):
         return value

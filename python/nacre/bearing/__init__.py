@@ -6,6 +6,7 @@ tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 1628
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
+from nacre.bearing.catalogue import CatalogueCheck, check, estimated_balls
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
@@ -17,14 +18,25 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
+from nacre.bearing.modified import (
+    contamination_range,
+    fatigue_load_limit,
+    life_modification_factor,
+    reference_viscosity,
+    reliability_factor,
+    simple_fatigue_load_limit,
+)
+from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
-from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
+from nacre.bearing.solution import BearingReport, BearingSolution
+from nacre.bearing.static import StaticLoad, equivalent_static_load, static_rating
 
 __all__ = [
     "AngularContactBall",
     "BearingLife",
     "BearingReport",
     "BearingSolution",
+    "CatalogueCheck",
     "CylindricalRoller",
     "DeepGrooveBall",
     "Film",
@@ -32,13 +44,24 @@ __all__ = [
     "LifeRatio",
     "LundbergPalmgren",
     "SphericalRoller",
+    "StaticLoad",
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",
+    "check",
+    "contamination_range",
     "edge_factors",
+    "equivalent_static_load",
+    "estimated_balls",
+    "fatigue_load_limit",
     "film_thickness",
+    "life_modification_factor",
     "life_ratio",
     "load_integrals",
     "rating",
+    "reference_viscosity",
+    "reliability_factor",
+    "simple_fatigue_load_limit",
+    "static_rating",
     "stress_volume",
 ]

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
+from nacre._tools.typing import Layers
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -43,8 +44,14 @@ STEPS = 4
 TOO_NARROW = 4.0
 """Expected load over that of its grid above which a contact is not tried on it: half as wide as
 the contact or less, which takes minutes."""
+EQUAL = 1e-15
+"""Approaches that differ by no more are equal [m]: by 1e-10 of a deflection of 10 µm, which is some
+hundred units in its last place."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
+
+SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
+"""Warnings of contacts whose pressure has no limit on ever finer cells."""
 
 
 class Reaction(NamedTuple):
@@ -80,8 +87,9 @@ class Slices:
 
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
-        depths: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
-        return depths
+        depths = places[..., :1] + places[..., 1:] * self.x - self.drop
+        # The stiffness of rounding beside the load, as δ^(1/9), would count by a hundredth.
+        return np.where(depths > EQUAL, depths, 0.0)
 
     def loads(self, places: Array) -> Array:
         """Return the loads of the laminae ``(Z, 2, laminae)`` [N]."""
@@ -104,7 +112,7 @@ class Slices:
 class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
-    def __init__(self, bearing: Any) -> None:
+    def __init__(self, bearing: Bearing) -> None:
         self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
 
@@ -167,7 +175,7 @@ def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
     return loads, pressures
 
 
-def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
+def bodies_of(bearing: Any, ring: Ring) -> tuple[Layers, Layers]:
     """Return the bodies of a contact: ring and element, whose ends are free where they are so."""
     element = bearing.element
     if bearing.rolls and bearing.free_ends:
@@ -299,18 +307,23 @@ class Solved:
         self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
+        groups = self._equal(tasks, places)
         solutions: dict[tuple[int, int], Solution] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)
-                futures = [pool.submit(self._solve, j, r, places[j, r]) for j, r in tasks]
-                for (j, r), future in zip(tasks, futures, strict=True):
+                futures = [
+                    pool.submit(self._solve, *group[0], places[group[0]]) for group in groups
+                ]
+                for group, future in zip(groups, futures, strict=True):
                     solution, tangent = future.result()
-                    solutions[j, r] = solution
-                    energy[j, r] = solution.elastic_energy
-                    force[j, r] = solution.load, solution.moment[0]
-                    stiffness[j, r] = tangent[:2, :2]
+                    for j, r in group:
+                        self.halved[j, r] = self.halved[group[0]]
+                        solutions[j, r] = solution
+                        energy[j, r] = solution.elastic_energy
+                        force[j, r] = solution.load, solution.moment[0]
+                        stiffness[j, r] = tangent[:2, :2]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
         if not self.bearing.leans:
@@ -318,6 +331,15 @@ class Solved:
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
         self.last_solutions = solutions
         return Reaction(energy, force, stiffness, solutions)
+
+    def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:
+        """Return groups of contacts that are equal but for rounding, as those beside a load are."""
+        lengths = np.array([1.0, max(self.reach, self.bearing.diameter)])
+        steps = np.round(places * lengths / EQUAL).astype(np.int64)
+        groups: dict[tuple[int, ...], list[tuple[int, int]]] = {}
+        for j, r in tasks:
+            groups.setdefault((r, int(self.halved[j, r]), *steps[j, r].tolist()), []).append((j, r))
+        return list(groups.values())
 
     def sizes(self) -> Array:
         """Return the sides of the grids ``(Z, 2, 2)`` [m]."""

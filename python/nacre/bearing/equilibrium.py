@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
 from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, Solved
-from nacre.bearing.geometry import RINGS, laminae_of
+from nacre.bearing.geometry import RINGS, Bearing, laminae_of
 
 Array = npt.NDArray[np.float64]
 
@@ -226,7 +226,7 @@ class Barrels(Balls):
 Kinematics = Rollers | Balls
 
 
-def kinematics_of(bearing: Any, angles: Array) -> Kinematics:
+def kinematics_of(bearing: Bearing, angles: Array) -> Kinematics:
     """Return the motion of the elements of a bearing at their angles."""
     kind = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
     return kind(bearing, angles)

@@ -19,6 +19,7 @@ from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
     LINE,
+    SINGULAR,
     STANDARD,
     Hertzian,
     Slices,
@@ -46,8 +47,6 @@ STEEPEST = 0.02
 UNKNOWN_RATE = 0.75
 """Power of the size of the cells with which errors fall, where one change shows none: as that of a
 contact's own estimate."""
-SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
-"""Warnings of contacts whose pressure has no limit on ever finer cells."""
 REMEDIES = {
     "iteration limit": "raise max_iterations or the tolerance",
     "no descent": "no step lowers the energy by more than rounding: raise the tolerance",
@@ -357,6 +356,7 @@ def _solution_of(
         rotation=operation.rotation,
         speed=operation.speed,
         rotating=operation.rotating,
+        loaded_directions=tuple(problem.free.tolist()),
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),

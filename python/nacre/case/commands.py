@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
+from typer.core import TyperCommand
 
 import nacre
 from nacre._tools.disk import PICTURES, check_folder, replacing
@@ -18,6 +19,7 @@ from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
+from nacre.case import templates as _templates
 from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
@@ -28,13 +30,20 @@ from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
 
+
+class Command(TyperCommand):
+    """Command whose usage names its file without braces."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return the parts of the line of usage."""
+        return [piece.strip("{}") for piece in super().collect_usage_pieces(ctx)]
+
+
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
-    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-
 
 CaseFile = Annotated[
     Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
@@ -42,13 +51,17 @@ CaseFile = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the units of the case.")]
 Units = Annotated[
     str | None,
-    typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
+    typer.Option(
+        metavar="UNITS",
+        help="Units of the numbers in the case, N-mm-MPa; in place of its key units.",
+    ),
 ]
+ARTICLES = {"bearing": "a bearing", "indent": "an indentation"}
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
-def _in_folder(paths: Any) -> Any:
+def _in_folder(paths: Path | list[Path] | None) -> Path | list[Path] | None:
     """Return the paths of an option, or the path; a folder that is missing is an error."""
     for path in paths if isinstance(paths, list | tuple) else [paths]:
         try:
@@ -74,7 +87,7 @@ def options(
     """Elastic contact of coated bodies."""
 
 
-@app.command()
+@app.command(cls=Command)
 def info() -> None:
     """Print versions and the number of threads."""
     print(f"nacre   {nacre.__version__}")
@@ -82,12 +95,13 @@ def info() -> None:
     print(f"threads {default_threads()}")
 
 
-@app.command()
+@app.command(cls=Command)
 def solve(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
         typer.Option(
+            metavar="FILE",
             callback=_in_folder,
             help="File to write: .nc, .vtr, .csv, or a picture. May be repeated.",
         ),
@@ -95,20 +109,20 @@ def solve(
     initial: Annotated[
         Path | None,
         typer.Option(
-            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation."
+            metavar="FILE",
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation.",
         ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the contact or the bearing that a case file describes."""
+    """Solve the contact, indentation or bearing of a case file."""
     case_file = _read_case(case, units)
-    if case_file.is_indentation:
-        raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
-    if case_file.kind == "bearing":
+    if case_file.kind != "contact":
         if initial is not None:
-            raise CaseError(f"{case}: --initial must not be given for a bearing")
-        _solve_bearing(case, case_file, save or [], as_json)
+            raise CaseError(f"{case}: --initial must not be given for {ARTICLES[case_file.kind]}")
+        solve_case = _solve_bearing if case_file.kind == "bearing" else _solve_indentation
+        solve_case(case, case_file, save or [], as_json)
         return
     arguments = case_file.arguments()
     stress_options, fatigue_options = case_file.stress(), case_file.fatigue()
@@ -249,22 +263,28 @@ def _solve(
         (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
 
 
-@app.command()
+@app.command(cls=Command)
 def sweep(
     case: CaseFile,
     store: Annotated[
         Path | None,
-        typer.Option(callback=_in_folder, help="NetCDF file, in place of the one in the case."),
+        typer.Option(
+            metavar="FILE",
+            callback=_in_folder,
+            help="NetCDF file, in place of the one in the case.",
+        ),
     ] = None,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .csv. May be repeated."),
+        typer.Option(
+            metavar="FILE", callback=_in_folder, help="File to write: .csv. May be repeated."
+        ),
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the study that a case file describes, or the rest of it after a kill."""
+    """Solve the study of a case file, or the rest of it after a kill."""
     case_file = _read_case(case, units)
     study = case_file.study(store)
     for path in save or []:
@@ -293,23 +313,30 @@ def sweep(
         raise typer.Exit(1)
 
 
-@app.command()
+@app.command(cls=Command)
 def indent(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .nc or .csv. May be repeated."),
+        typer.Option(
+            metavar="FILE", callback=_in_folder, help="File to write: .nc or .csv. May be repeated."
+        ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
+    """Solve the indentation of a case file, as solve does."""
     case_file = _read_case(case, units)
     if case_file.kind != "indent":
         raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
-    for path in save or []:
+    _solve_indentation(case, case_file, save or [], as_json)
+
+
+def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: bool) -> None:
+    """Solve an indentation, save and print it."""
+    for path in save:
         if path.suffix.lower() not in (".nc", ".csv"):
-            raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
+            raise CaseError(f"--save must end in .nc or .csv for an indentation, got {str(path)!r}")
     arguments = case_file.arguments()
     with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
@@ -320,11 +347,43 @@ def indent(
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
         print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
-        for path in save or []:
+        for path in save:
             solution.save(path)
 
 
-@app.command()
+@app.command(cls=Command)
+def new(
+    kind: Annotated[
+        str | None,
+        typer.Argument(metavar="KIND", help="Kind of the case.", show_default=False),
+    ] = None,
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE", help="File to write; by default it is printed.", show_default=False
+        ),
+    ] = None,
+) -> None:
+    """List commented case files to start from; print or write one."""
+    texts = _templates.texts()
+    if kind is None:
+        width = max(map(len, texts))
+        for name, text in texts.items():
+            print(f"{name:{width}}  {_templates.title(text)}")
+        return
+    if kind not in texts:
+        raise CaseError(f"KIND must be one of {', '.join(texts)}, got {kind!r}")
+    if file is None:
+        print(texts[kind], end="")
+        return
+    try:
+        with file.open("x", encoding="utf-8") as stream:
+            stream.write(texts[kind])
+    except FileExistsError:
+        raise CaseError(f"{str(file)!r} exists already: give a new file") from None
+
+
+@app.command(cls=Command)
 def schema(
     as_json: Annotated[bool, typer.Option("--json", help="Print a JSON schema.")] = False,
 ) -> None:
@@ -332,7 +391,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers of friction and the named state of its report."""
     return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
@@ -341,7 +400,7 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
     }
 
 
-def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
         return _numbers(solution.normal) | _tangential(solution)
@@ -359,7 +418,7 @@ def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[st
     return state | numbers | {"warnings": solution.report.warnings}
 
 
-def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
+def _indent_numbers(solution: IndentSolution) -> dict[str, object]:
     """Return the named state of an indentation, the pull-off only with adhesion."""
     state = solution.to_dict()
     if solution.adhesion is None:
@@ -370,7 +429,7 @@ def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
     return {name: value for name, value in state.items() if name not in ("format", "kind")}
 
 
-def _plain(data: Any) -> Any:
+def _plain(data: object) -> object:
     """Return data for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(data, dict):
         return {str(key): _plain(value) for key, value in data.items()}
@@ -388,7 +447,7 @@ def _check_ending(path: Path) -> None:
         raise typer.BadParameter(message, param_hint="'--save'")
 
 
-def _cell(value: Any, error: float) -> str:
+def _cell(value: object, error: float) -> str:
     """Return a value of a study, with its estimated error."""
     if not isinstance(value, float | int):
         return str(value)

@@ -145,6 +145,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", definitions["InSpace"]
     yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", definitions["About"]
     yield "`[bearing.life]`", definitions["BearingLife"]
+    yield "`[[bearing.life.spectrum]]`", definitions["Duty"]
     yield "`[bearing.film]`", definitions["BearingFilm"]
     yield "`[sweep]`", definitions["Sweep"]
     yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', definitions["Range"]
@@ -179,7 +180,7 @@ def _key(name: str, node: Node, required: bool) -> str:
     )
 
 
-def table_for(data: Any) -> type[Keys]:
+def table_for(data: object) -> type[Keys]:
     """Return the table for a case: a bearing; or with a tip or ``indent`` an indentation."""
     keys = data.keys() if isinstance(data, dict) else set()
     if "bearing" in keys:
@@ -193,7 +194,7 @@ class Place:
 
     path: tuple[int | str, ...]
     node: Node
-    value: Any
+    value: object
 
     @property
     def key(self) -> str:
@@ -238,7 +239,7 @@ class Place:
         return None if node is None else Place((*self.path, part), node, value)
 
 
-def place(data: Any, location: Iterable[int | str]) -> Place:
+def place(data: object, location: Iterable[int | str]) -> Place:
     """Return the deepest place of a case that a location leads to.
 
     A location may hold names of alternatives between its keys, which are passed over.

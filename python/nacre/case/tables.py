@@ -25,7 +25,7 @@ TWO = Field(min_length=2, max_length=2)
 Number = FiniteFloat
 
 
-def _integer(value: Any) -> Any:
+def _integer(value: object) -> object:
     """Return a whole float as an integer, as calls take it."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
@@ -56,12 +56,12 @@ class Table(BaseModel):
 class Directions(Table):
     """Values along two directions."""
 
-    def pair(self) -> tuple[Any, ...]:
+    def pair(self) -> tuple[object, ...]:
         """Return both values."""
         return tuple(value for _, value in self)
 
 
-def _keyword(value: Any) -> Any:
+def _keyword(value: object) -> object:
     if isinstance(value, Directions):
         return value.pair()
     if isinstance(value, list):
@@ -79,7 +79,7 @@ class Along(Directions):
 AnyAlong = Annotated[
     Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
 ]
-TYPES: dict[object, Any] = {
+TYPES: dict[object, object] = {
     float: Number,
     int: Count,
     bool: bool,

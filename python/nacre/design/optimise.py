@@ -23,7 +23,7 @@ from nacre.results.base import Fields
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Limits = Sequence[tuple[Any, float]]
+Limits = Sequence[tuple[object, float]]
 
 RESTARTS = 3
 """Fresh starts where the last search ended, until one gains less than the tolerance."""
@@ -58,7 +58,7 @@ class Optimum(Fields):
 
     values: dict[str, float]
     objective: float
-    limits: tuple[tuple[Any, float, tuple[float, ...]], ...]
+    limits: tuple[tuple[object, float, tuple[float, ...]], ...]
     course: dict[str, Array]
     solutions: list[Solution]
     solves: int
@@ -109,8 +109,8 @@ def optimise(
     build: Build,
     start: Mapping[str, float],
     *,
-    objective: Any,
-    cases: Sequence[Mapping[str, Any]],
+    objective: object,
+    cases: Sequence[Mapping[str, object]],
     bounds: Bounds | None = None,
     constraints: Limits = (),
     across: float = 16.0,
@@ -203,7 +203,7 @@ def optimise(
     )
     x = np.array([scale.x(start[scale.name]) for scale in scales])
     box = [(scale.low, scale.high) for scale in scales]
-    options: dict[str, Any] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
+    options: dict[str, object] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
     if constraints:
         slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
         options["constraints"] = [{"type": "ineq", **slack}]
@@ -276,13 +276,13 @@ def optimise(
     return Optimum(*best, point.solutions, problem.solves, termination, warning_lines)
 
 
-def _cases(cases: Any) -> list[dict[str, Any]]:
+def _cases(cases: object) -> list[dict[str, object]]:
     if isinstance(cases, Mapping | str) or not isinstance(cases, Sequence) or not cases:
         raise TypeError(f"cases must be a sequence of one mapping or more, got {cases!r}")
     return [dict(case) for case in cases]
 
 
-def _limits(constraints: Any) -> list[tuple[Any, float]]:
+def _limits(constraints: Any) -> list[tuple[object, float]]:
     for pair in constraints:
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")

@@ -17,7 +17,7 @@ from nacre.contact.solution import Solution
 from nacre.design.parameters import Scale
 from nacre.studies import ARGUMENTS
 
-Build = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+Build = Mapping[str, object] | Callable[..., Mapping[str, object]]
 Array = npt.NDArray[np.float64]
 
 STEP = 1e-4
@@ -67,7 +67,7 @@ class Problem:
         pairs = zip(self.scales, x, strict=True)
         return {scale.name: scale.rounded(float(v)) for scale, v in pairs}
 
-    def arguments(self, x: Array, case: Mapping[str, Any]) -> dict[str, Any]:
+    def arguments(self, x: Array, case: Mapping[str, object]) -> dict[str, Any]:
         """Return arguments of a solve."""
         parameters = self.by_name(x)
         if callable(self.build):
@@ -164,7 +164,7 @@ class Problem:
         return plan.solve(keywords.pop("shape"), **({"initial": last} | keywords))
 
     def changes(
-        self, x: Array, case: Mapping[str, Any], grid: core.Grid
+        self, x: Array, case: Mapping[str, object], grid: core.Grid
     ) -> list[tuple[dict[str, float], Array]]:
         """Return the derivatives of arguments by path, and of gaps, along each parameter."""
         derivatives = []

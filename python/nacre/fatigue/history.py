@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -280,7 +280,7 @@ class Rolling:
         )
 
 
-def _lagrange(nodes: Array, at: Any) -> Array:
+def _lagrange(nodes: Array, at: object) -> Array:
     """Return the weights of the polynomial through nodes, along the last axis."""
     at = np.asarray(at)
     weights = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -79,15 +79,15 @@ class ShakedownMap(Tabular, Warned):
 
     _LATER = ("warnings",)
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         return {
             name: value.tolist() if isinstance(value, np.ndarray) else value
             for name, value in super()._state().items()
         }
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
-        def plane(rows: Any) -> Array:
+    def _restored(cls, state: dict[str, object]) -> Self:
+        def plane(rows: Iterable[Iterable[float]]) -> Array:
             return np.array([numbers(row) for row in rows])
 
         return cls(
@@ -156,7 +156,7 @@ class ShakedownMap(Tabular, Warned):
         places = {"layer": list(self.names), "friction": self.friction}
         return files.dataset("shakedown map", table, variables, places, self.to_dict())
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         yield [row.name for row in SHAKEDOWN]
         for layer, name in enumerate(self.names):
             parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])

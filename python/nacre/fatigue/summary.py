@@ -213,7 +213,7 @@ class FatigueSummary(Tabular, Warned):
         """Smallest yield stress in shear with which each depth shakes down ``(nz,)`` [Pa]."""
         return self.profiles["shakedown"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = super()._state()
         state["depths"] = self.depths.tolist()
         state["profiles"] = {name: column.tolist() for name, column in self.profiles.items()}
@@ -295,7 +295,7 @@ class FatigueSummary(Tabular, Warned):
             title, table, variables | profiles, depths, self.to_dict(), **attributes
         )
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands beside the table."""
         settings = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
         return {
@@ -396,7 +396,7 @@ def rule_of(name: Any) -> Rule:
     return rule
 
 
-def numbers(sequence: Any) -> Array:
+def numbers(sequence: Iterable[float]) -> Array:
     """Return an array of numbers, or raise."""
     return np.array([float(one) for one in sequence])
 
@@ -611,16 +611,18 @@ def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
     return all_criteria
 
 
-def layer_values(name: str, stress: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
+def layer_values(
+    name: str, stress: float | ByLayer | None, body: core.HalfSpace
+) -> list[float | None]:
     """Return a value for each layer and the substrate, None where it is not known."""
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
     if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
         return [core.real(name, stress)] * count
-    per_layer: list[Any] = core.layer_values(body, name, stress)
+    per_layer: list[float | None] = core.layer_values(body, name, stress)
     return per_layer + [None] * (count - len(per_layer))
 
 
-def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
+def checked_depths(depths: npt.ArrayLike | None, body: core.HalfSpace) -> Array | None:
     """Return depths in their order, checked, or None where they are to be chosen."""
     if depths is None:
         return None
@@ -636,7 +638,7 @@ def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
 
 
 def assessment_of(
-    solution: Any,
+    solution: Solution | FrictionSolution,
     criteria: Iterable[Criterion],
     rule: Rule,
     residual: ByLayer | None,

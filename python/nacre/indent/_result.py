@@ -227,12 +227,12 @@ class Fit(Tabular):
 
         return estimates(self)
 
-    def _file_rows(self) -> Iterable[list[Any]]:
+    def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import parameter_rows
 
         return parameter_rows(self)
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         curves = [
             {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
             for c in self.curves

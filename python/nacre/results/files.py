@@ -44,8 +44,8 @@ class HasDataset(Protocol):
 def dataset(
     title: str,
     table: Iterable[tuple[Quantity, str]],
-    variables: Mapping[Any, object],
-    coordinates: Mapping[Any, object],
+    variables: Mapping[str, object],
+    coordinates: Mapping[str, object],
     state: Mapping[str, object],
     **attributes: object,
 ) -> xarray.Dataset:

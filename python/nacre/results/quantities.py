@@ -51,7 +51,7 @@ class Quantity:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
 
-    def of(self, result: Any) -> Any:
+    def of(self, result: object) -> Any:
         """Return the value in a result."""
         return reduce(getattr, (self.path or self.name).split("."), result)
 
@@ -60,7 +60,7 @@ class Quantity:
         *places, name = (self.path or self.name).split(".")
         return reduce(lambda inner, place: inner[place], places, state).get(name)
 
-    def put(self, state: dict[str, Any], value: Any) -> None:
+    def put(self, state: dict[str, Any], value: object) -> None:
         """Put a value into the state of a result; `REMOVED` takes it out."""
         *places, name = (self.path or self.name).split(".")
         for place in places:
@@ -315,12 +315,27 @@ BEARING = (
 )
 """Quantities of a bearing: of its rings, and of each element."""
 BEARING_LIFE = (
-    Quantity("revolutions", "life, million revolutions", label="life"),
+    Quantity("revolutions", "life, revolutions"),
+    Quantity("hours", "life, hours"),
+    Quantity("l10", "life L10r, million revolutions"),
     Quantity("equivalent_load", "equivalent reference load", "N", label="equivalent load"),
     Quantity("capacity", "dynamic load rating", "N", label="rating"),
     Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
+    Quantity("reliability", "share of bearings that reach the life"),
+    Quantity("reliability_factor", "factor a_1"),
+    Quantity("modification_factor", "factor a_ISO", label="a_ISO"),
+    Quantity("viscosity_ratio", "viscosity ratio κ", label="viscosity ratio κ"),
+    Quantity("contamination_factor", "contamination factor e_C", label="contamination e_C"),
+    Quantity("fatigue_load_limit", "fatigue load limit C_u", "N", label="fatigue load limit"),
+    Quantity("simple_fatigue_load_limit", "C_u by simple formula", "N", label="by C_0 alone"),
 )
 """Quantities of the life of a bearing."""
+STATIC_LOAD = (
+    Quantity("rating", "static load rating C_0", "N", label="static rating"),
+    Quantity("equivalent_load", "equivalent static load P_0", "N", label="equivalent load"),
+    Quantity("safety", "static safety factor", label="static safety"),
+)
+"""Quantities of the static load of a bearing."""
 COATING = (
     Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
     Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),

@@ -6,7 +6,7 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -60,10 +60,10 @@ class Tabular(Result, ABC, is_base=True):
         return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
 
     @abstractmethod
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         """Return the rows of the table in a ``.csv``, the heading first."""
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands above the table."""
         return {}
 
@@ -82,6 +82,11 @@ class TableResult(Tabular, Warned, is_base=True):
         """What limits the validity, and was warned of: the notes of a model."""
         return tuple(getattr(self, "notes", ()))
 
+    @property
+    def _known(self) -> list[Quantity]:
+        """Quantities that the result has: those that are None are left out."""
+        return [row for row in self._QUANTITIES if row.of(self) is not None]
+
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the numbers, with units; needs ``nacre-contact[files]``.
 
@@ -90,13 +95,13 @@ class TableResult(Tabular, Warned, is_base=True):
         xarray.Dataset
             Numbers by name.
         """
-        table = [(row, self._si(row)) for row in self._QUANTITIES]
-        variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._QUANTITIES}
+        table = [(row, self._si(row)) for row in self._known]
+        variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._known}
         return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
-        cells: list[tuple[str, Any]] = []
-        for row in self._QUANTITIES:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
+        cells: list[tuple[str, object]] = []
+        for row in self._known:
             values = np.ravel(row.of(self)).tolist()
             names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
             heads = [heading(row, self, name) for name in (names if row.dims else [""])]
@@ -111,7 +116,7 @@ class TableResult(Tabular, Warned, is_base=True):
         """Return names and values of the quantities that are printed, with units."""
         return [
             (row.label, (display.pair if row.dims else display.number)(row.of(self), self._si(row)))
-            for row in self._QUANTITIES
+            for row in self._known
             if row.label
         ]
 

@@ -81,7 +81,7 @@ def write_surface(result: Gridded, path: Path) -> None:
 
 
 def write_stress(
-    solution: Stressed, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+    solution: Stressed, path: Path, depths: npt.ArrayLike, options: Mapping[str, object]
 ) -> None:
     """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
 
@@ -108,7 +108,7 @@ def write_stress(
 
 
 def _planes(
-    solution: Stressed, depths: Array, options: Mapping[str, Any]
+    solution: Stressed, depths: Array, options: Mapping[str, object]
 ) -> tuple[Array, dict[str, Array]]:
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from nacre.contact.friction import FrictionSolution
 
-Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+Case = Mapping[str, object] | Callable[..., Mapping[str, object]]
 
 ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
@@ -60,11 +60,11 @@ FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
 
 def sweep(
     case: Case,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
     *,
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
-    stress: Mapping[str, Any] | None = None,
-    fatigue: Mapping[str, Any] | None = None,
+    stress: Mapping[str, object] | None = None,
+    fatigue: Mapping[str, object] | None = None,
     store: str | os.PathLike[str] | None = None,
     version: str | int | None = None,
     executor: Executor | None = None,
@@ -218,7 +218,7 @@ def sweep(
     journal = Journal(path.with_suffix(".journal") if path else None)
     with journal, _quiet():
         keys: list[str] = []
-        tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
+        tasks: dict[str, tuple[dict[str, object], dict[str, object]]] = {}
         failures: dict[str, Record] = {}
         for point in points:
             arguments, failure = _describe(case, point, stress_options)
@@ -308,7 +308,7 @@ def _describe(
     return {"threads": 1, **arguments}, None
 
 
-def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
+def _arguments(case: Case, point: Mapping[str, object]) -> dict[str, object]:
     """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
     if not isinstance(case, Mapping):
         keywords = case(**point)
@@ -341,7 +341,7 @@ def _split_paths(
     return arguments, paths
 
 
-def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
+def _holder(arguments: Mapping[str, object], path: str) -> dict[str, object]:
     """Return the argument that holds the number at a path; a bearing may have None there."""
     if path.startswith("bearing."):
         with suppress(LookupError):
@@ -350,7 +350,7 @@ def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
     return holder(arguments, path, "parameters", "the case")
 
 
-def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -> None:
+def _check_paths(case: Mapping[str, object], points: Sequence[Mapping[str, object]]) -> None:
     """Raise a `ValueError` if a path leads to a number in none of the cases."""
     for path in _split_paths(case, points[0])[1]:
         wrong: ValueError | None = None
@@ -369,7 +369,7 @@ def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -
             raise ValueError(f"{wrong}; the nearest are {', '.join(nearest)}")
 
 
-def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:
+def _case_kind(case: Case, points: Sequence[Mapping[str, object]]) -> CaseKind:
     """Return what the cases of a study are, as the first one that is a case."""
     names: set[str] = set()
     if isinstance(case, Mapping):
@@ -382,15 +382,15 @@ def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:
     return "indent" if "tip" in names else "bearing" if "bearing" in names else "contact"
 
 
-def _readable(point: Mapping[str, Any]) -> dict[str, Any]:
+def _readable(point: Mapping[str, object]) -> dict[str, object]:
     """Return parameters as readable values for the journal."""
     return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
 
 
 def _run(
-    tasks: Mapping[str, dict[str, Any]],
+    tasks: Mapping[str, dict[str, object]],
     outputs: Mapping[str, Output],
-    options: tuple[Mapping[str, Any], Mapping[str, Any]],
+    options: tuple[Mapping[str, object], Mapping[str, object]],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:

@@ -147,7 +147,7 @@ def plain(
     own, words = (
         (OF_INDENT, "an indentation") if hasattr(solution, "tip") else (OF_BEARING, "a bearing")
     )
-    numbers: dict[str, Any] = {}
+    numbers: dict[str, object] = {}
     for name, output in outputs.items():
         if isinstance(output, str) and output not in own:
             raise ValueError(f"the output {output} is not one of {words}")
@@ -241,7 +241,7 @@ def rolls(solution: FrictionSolution) -> bool:
 
 
 def check_direction(
-    arguments: Mapping[str, Any], friction: float = 0.0, direction: object = None, **_: object
+    arguments: Mapping[str, object], friction: float = 0.0, direction: object = None, **_: object
 ) -> None:
     """Raise a `ValueError` before a solve whose stresses need a direction of friction."""
     grid, shape = arguments.get("grid"), arguments.get("shape")

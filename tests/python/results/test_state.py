@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+import functools
 import json
 import pickle
 from collections.abc import Callable
@@ -86,11 +87,9 @@ def test_what_the_compiled_module_hands_over_has_the_types_of_the_fields() -> No
     """A tuple is no list, an infinite number no None, in reports of progress too."""
     seen: list[Any] = []
     nacre.solve(BALL, results.COATED, STEEL, grid=GRID, load=10.0, progress=seen.append)
-    nacre.slide(
-        *(BALL, STEEL, STEEL),
-        **{"grid": GRID, "load": 9, "friction": 0.3, "force": (1, 0)},
-        progress=lambda step, report: seen.append(report),
-    )
+    plan = nacre.Contact(STEEL, GRID, counterbody=STEEL)
+    slide = functools.partial(plan.slide, BALL, load=9.0, friction=0.3, force=(1.0, 0.0))
+    slide(progress=lambda step, report: seen.append(report))
     assert {type(report) for report in seen} == {type(SOLUTION.report), nacre.types.FrictionReport}
     compiled = ("Report", "StressSummary", "LayerStress", "InterfaceStress", "FrictionReport")
     for result in (*seen, *(RESULTS[kind] for kind in compiled), solved("creep coefficients")):
