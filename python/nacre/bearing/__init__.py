@@ -2,7 +2,8 @@
 
 A bearing is described by what a catalogue or a drawing says of it. `CylindricalRoller.solve` and
 its like find loads, tilts and pressures of all elements under forces, displacements, moments and
-tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281.
+tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281. A `Pair` has two
+of them on one shaft.
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
@@ -17,6 +18,7 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
+from nacre.bearing.pair import Pair, PairLife, PairSolution
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
 from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
 
@@ -31,6 +33,9 @@ __all__ = [
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
+    "Pair",
+    "PairLife",
+    "PairSolution",
     "SphericalRoller",
     "StressVolume",
     "TaperedRoller",

@@ -321,6 +321,12 @@ BEARING_LIFE = (
     Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
 )
 """Quantities of the life of a bearing."""
+PAIR_LIFE = (
+    Quantity("revolutions", "life of both, million revolutions", label="life of both"),
+    Quantity("first", "life of the first bearing, million revolutions", label="first bearing"),
+    Quantity("second", "life of the second bearing, million revolutions", label="second bearing"),
+)
+"""Quantities of the lives of a pair of bearings."""
 COATING = (
     Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
     Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
