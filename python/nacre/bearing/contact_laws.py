@@ -81,7 +81,8 @@ class Several:
             for (element, ring), contact in reaction.contacts.items()
         }
         fields = zip(*(reaction[:3] for reaction in reactions), strict=True)
-        return Reaction(*map(np.concatenate, fields), contacts)
+        energy, force, stiffness = map(np.concatenate, fields)
+        return Reaction(energy, force, stiffness, contacts)
 
     def split(self, reaction: Reaction) -> Iterator[Reaction]:
         """Yield the reaction of each bearing."""
@@ -91,7 +92,8 @@ class Several:
                 for (element, ring), contact in reaction.contacts.items()
                 if rows.start <= element < rows.stop
             }
-            yield Reaction(*(field[rows] for field in reaction[:3]), contacts)
+            energy, force, stiffness = (field[rows] for field in reaction[:3])
+            yield Reaction(energy, force, stiffness, contacts)
 
 
 def slices_of(counts: Sequence[int]) -> list[slice]:

@@ -290,11 +290,14 @@ class Shaft(Elements):
 
     def ring_motion(self, ring: Array) -> Array:
         """Return ``t`` of all elements ``(Z, 2)`` at displacements of the shaft."""
-        return super().ring_motion(ring) + self.offsets
+        motion: Array = super().ring_motion(ring) + self.offsets
+        return motion
 
     def generators(self) -> Array:
         """Return forces ``(5, n)`` on the shaft, of which those of contacts are sums."""
-        forces = [way.T @ part.generators() for part, way in zip(self.parts, self.ways, strict=True)]
+        forces = [
+            way.T @ part.generators() for part, way in zip(self.parts, self.ways, strict=True)
+        ]
         return np.concatenate(forces, axis=1)
 
     def neutral(self, ring_motion: Array, pressed: Array | float) -> Array:

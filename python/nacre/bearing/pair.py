@@ -65,6 +65,8 @@ THRUSTS: dict[str, tuple[int, int]] = {"O": (1, -1), "X": (-1, 1), "tandem": (1,
 """Directions along z of the thrusts on the shaft that first and second bearing carry."""
 FARTHEST = 100.0
 """Largest distance over the pitch diameter: shafts as long bend more than their bearings."""
+PRELOAD_STEPS = 50
+"""Newton steps, at least, for the place of the rings without load: it takes some five."""
 STANDSTILL = Operation(0.0, 0.0, "inner")
 """Operation in which bearings are preloaded."""
 
@@ -114,7 +116,7 @@ class Pair:
     >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
     >>> solution = pair.solve(force=(0.0, 0.0, 300.0), model="iso16281")
     >>> [round(one.force[2]) for one in (solution.first, solution.second)]
-    [373, 73]
+    [371, 71]
     """
 
     first: Single
@@ -145,9 +147,7 @@ class Pair:
                 f"got {self.second!r}"
             )
         if not among(self.arrangement, get_args(Arrangement)):
-            raise ValueError(
-                f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}'
-            )
+            raise ValueError(f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}')
         read_fields(self)
         above("distance", self.distance)
         most = FARTHEST * max(one.pitch for one in self.bearings)
@@ -340,9 +340,7 @@ def _equilibrium(
     laws = [law(one, options.model) for one in bearings]
     forces = [centrifugal_force(one, operation) for one in bearings]
     pressed = [pressed_by(one, force) for one, force in zip(laws, forces, strict=True)]
-    problem = Problem(
-        shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None]
-    )
+    problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
     check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
 
     def contacts(state: State) -> Law:
@@ -367,7 +365,9 @@ def _parts(problem: Problem, state: State) -> Iterator[tuple[Problem, State]]:
     shaft, laws = problem.kinematics, problem.law
     assert isinstance(shaft, Shaft)
     assert isinstance(laws, Several)
-    for k, (rows, reaction) in enumerate(zip(shaft.slices, laws.split(state.reaction), strict=True)):
+    for k, (rows, reaction) in enumerate(
+        zip(shaft.slices, laws.split(state.reaction), strict=True)
+    ):
         ring = shaft.ways[k] @ state.ring
         ring[2] += shaft.set_to[k]
         none = np.zeros(5, dtype=bool)
@@ -406,7 +406,9 @@ def solve_pair(
         operation, options = operation.checked(bearing), options.checked(bearing)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", core.NacreWarning)
-        settings = _settings(pair, replace(options, progress=None, check=True))
+        limit = max(PRELOAD_STEPS, options.max_iterations)
+        quiet = replace(options, max_iterations=limit, progress=None, check=True)
+        settings = _settings(pair, quiet)
     problem, state, ending = _equilibrium(pair, conditions, operation, options, settings)
     parts = zip(pair.bearings, _parts(problem, state), strict=True)
     first, second = (
@@ -693,11 +695,12 @@ class PairSolution(Tabular):
         with refusing(cls.__name__):
             arguments = dict(state["pair"])
             bearings: dict[str, Any] = {name: bearing_from(arguments.pop(name)) for name in NAMES}
-            parts = {name: BearingSolution._restored(dict(state[name])) for name in NAMES}
+            first, second = (BearingSolution._restored(dict(state[name])) for name in NAMES)
             vectors: dict[str, Any] = {name: tuple(map(float, state[name])) for name in VECTORS}
             solution = cls(
                 pair=Pair(**bearings, **arguments),
-                **parts,
+                first=first,
+                second=second,
                 **vectors,
                 tangent=np.array(state["tangent"], dtype=np.float64),
                 report=BearingReport._restored(dict(state["report"])),
