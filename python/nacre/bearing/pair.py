@@ -351,10 +351,8 @@ def _equilibrium(
     def check(problem: Problem, state: State, tolerance: float) -> None:
         each = zip(NAMES, bearings, _parts(problem, state), strict=True)
         for name, bearing, (part, own) in each:
-            try:
-                check_sides(bearing, part, own, tolerance)
-            except ValueError as error:
-                raise ValueError(f"{name} bearing: {error}") from None
+            remedy = f"preload or thrust of the {name} bearing"
+            check_sides(bearing, part, own, tolerance, remedy)
 
     start = problem.start(moved, np.repeat(pressed, counts))
     return find_equilibrium(problem, start, contacts, check, options)

@@ -218,11 +218,17 @@ def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
         )
 
 
-def check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: float) -> None:
+def check_sides(
+    bearing: Bearing,
+    problem: Problem,
+    state: State,
+    tolerance: float,
+    remedy: str = "force or displacement along z",
+) -> None:
     """Raise a `ValueError` where a bearing with a contact angle bears where it has no shoulder.
 
     A row carries at positive angles towards its own side alone. Balls that nothing but their
-    centrifugal force presses on the outer ring are at its bottom.
+    centrifugal force presses on the outer ring are at its bottom. A larger `remedy` helps.
     """
     if bearing.leans or not bearing.nominal_angle:
         return
@@ -232,7 +238,7 @@ def check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: flo
     least = float(angles[is_carrying].min(initial=math.inf))
     if least <= tolerance:
         raise ValueError(
-            f"force or displacement along z must be larger: an element bears at a contact angle "
+            f"{remedy} must be larger: an element bears at a contact angle "
             f"of {math.degrees(least):.3g} degrees, where the rings have no shoulder"
         )
     if bearing.rows == 1 and problem.free[2]:

@@ -362,13 +362,19 @@ def test_in_tandem_both_carry_half(bearing: Any) -> None:
 
 @KINDS
 def test_at_speed_centrifugal_forces_balance(bearing: Any) -> None:
-    pair = pair_of(bearing, "O")
+    unlike = dataclasses.replace(bearing, count=bearing.count - 2)
+    pair = Pair(bearing, unlike, arrangement="O", distance=60e-3, preload_force=300.0)
     spinning = pair.solve(force=(300.0, 0.0, 0.0), moment=(0.0, 0.0), speed=1500.0, **EXACT)
-    np.testing.assert_allclose(spinning.force, (300.0, 0.0, 0.0), atol=1e-7)
     for one in (spinning.first, spinning.second):
-        alone = bearing.solve(displacement=one.displacement, tilt=one.tilt, speed=1500.0, **EXACT)
+        alone = one.bearing.solve(  # type: ignore[attr-defined]
+            displacement=one.displacement, tilt=one.tilt, speed=1500.0, **EXACT
+        )
         np.testing.assert_allclose(alone.loads, one.loads, atol=1e-9 * one.largest_load)
         np.testing.assert_allclose(alone.force, one.force, atol=1e-9 * one.largest_load)
+    # On the shaft: also what elements at speed push the rings along the axis.
+    thrusts = spinning.first.force[2], spinning.second.force[2]
+    assert thrusts[0] == pytest.approx(thrusts[1], rel=1e-9)
+    assert abs(thrusts[0] - 300.0) > 3.0
 
 
 def test_lives_of_both_together() -> None:
@@ -459,6 +465,9 @@ def test_loads_without_equilibrium_are_refused() -> None:
         tandem.solve(force=(100.0, 0.0, -10.0), moment=(0.0, 0.0), **STANDARD)
     with pytest.raises(ValueError, match="by which the radial forces push the rings apart"):
         tandem.solve(force=(100.0, 0.0, 30.0), moment=(0.0, 0.0), **STANDARD)
+    apart = pair_of(dataclasses.replace(BALL, contact_angle=0.1), preload_force=1.0)
+    with pytest.raises(ValueError, match="preload or thrust of the second bearing must be larger"):
+        apart.solve(displacement=(60e-6, 0.0, 80e-6), **STANDARD)
     with pytest.raises(ValueError, match="force and displacement must not both be given along x"):
         pair_of(BALL).solve(force=(1.0, None, None), displacement=(1e-6, None, None))
     with pytest.raises(ValueError, match="moment must be at most"):
