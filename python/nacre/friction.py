@@ -104,7 +104,7 @@ def creep_coefficients(
     >>> coated.c11 < 0.5 * nacre.creep_coefficients(steel, steel, (1e-3, 1e-3)).c11
     True
     """
-    return CreepCoefficients._from_text(
+    return CreepCoefficients._from_fields(
         core.creep_coefficients(body, counterbody, semi_axes, cells)
     )
 

@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use super::arguments::{Argument, Pair, Real, Repr, count, listed, real_array, real_matrix};
 use super::background;
 use super::bodies::{PyHalfSpace, half_space};
-use super::data::summary_text;
+use super::data::{Plain, SummaryWithWarnings};
 use super::friction::PyFrictionSolved;
 use super::grid::PyGrid;
 use super::solved::PySolved;
@@ -188,14 +188,14 @@ fn evaluated<'py>(
     field::fields(z.py(), stress, [one, x, y])
 }
 
-/// JSON text of the summary of the stress.
+/// Summary of the stress.
 #[pyfunction]
 pub(super) fn stress_summary(
     py: Python<'_>,
     of: Of,
     limits: PyStressLimits<'_>,
     options: PyStressOptions<'_>,
-) -> PyResult<String> {
+) -> PyResult<Plain<SummaryWithWarnings>> {
     let (member, body) = of.body(&options.body)?;
     let strengths = Strengths {
         yield_stress: by_layer("yield_stress", &limits.yield_stress, &body)?,
@@ -211,7 +211,7 @@ pub(super) fn stress_summary(
             Of::Plan(plan) => plan.get().0.summary(&strengths, options),
         }
     })?;
-    summary_text(&summary)
+    Ok(Plain(summary.into()))
 }
 
 /// Plan of the stress in a body of a solved contact.

@@ -588,8 +588,8 @@ class PairSolution(Tabular):
         Raises
         ------
         ValueError
-            If there is no such kind of factors, or factors from the pressure are asked of contacts
-            that are those of the standard.
+            If there is no such kind of factors, factors from the pressure are asked of contacts
+            that are those of the standard, or there is a spectrum.
 
         Examples
         --------
@@ -602,6 +602,8 @@ class PairSolution(Tabular):
         >>> life.second  # it has lost contact
         inf
         """
+        if "spectrum" in modification:
+            raise ValueError("spectrum must not be given: solve the pair under each of its loads")
         first, second = (
             one.life(edge, rotating=rotating, **modification) for one in self.bearings
         )

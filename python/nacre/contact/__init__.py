@@ -855,11 +855,11 @@ def _report_callback(progress: Progress | None) -> Callable[..., object] | None:
     return lambda *parts: progress(Report._of(parts))
 
 
-def _step_callback(progress: StepProgress | None) -> Callable[[int, str], object] | None:
-    """Return a function that is called with the report of a step as JSON text, likewise."""
+def _step_callback(progress: StepProgress | None) -> Callable[..., object] | None:
+    """Return a function that is called with the fields of the report of a step, likewise."""
     if not callable(progress):
         return progress
-    return lambda number, text: progress(number, FrictionReport._from_text(text))
+    return lambda number, fields: progress(number, FrictionReport._from_fields(fields))
 
 
 def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:

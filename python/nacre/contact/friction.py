@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import Stressed
 from nacre.results import display, files, tables, values
-from nacre.results.base import Result, Warned, as_text, checked, tuples
+from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
 
 if TYPE_CHECKING:
@@ -170,7 +169,7 @@ class FrictionSolution(Result, Stressed):
     @classmethod
     def _of(cls, solved: core.FrictionSolved) -> Self:
         """Return a solution of the compiled module."""
-        numbers = dict.fromkeys(SLIDES + ROLLS) | tuples(json.loads(solved.numbers()))
+        numbers = {**dict.fromkeys(SLIDES + ROLLS), **solved.numbers()}
         normal = Solution._of(solved.normal())
         warnings = tuple(normal.report.warnings)
         report = FrictionReport(**numbers.pop("report"), warnings=warnings)

@@ -28,15 +28,17 @@ from nacre.contact.gradient import (
 )
 from nacre.contact.stresses import Stressed
 from nacre.results import display, files, tables, values, vtk
-from nacre.results.base import Result, as_text, tuples
+from nacre.results.base import Result, as_text
 from nacre.results.quantities import CONTACT, Quantity
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Parts = tuple[str, core.Grid, Planned, Planned | None]
-"""JSON text of a report, its grid and its bodies."""
+Parts = tuple[dict[str, Any], core.Grid, Planned, Planned | None]
+"""Fields of a report, its grid and its bodies."""
+State = tuple[str, core.Grid, Planned, Planned | None]
+"""JSON text of a report's state, its grid and its bodies."""
 
 BODIES: dict[str, Any] = {
     "grid": core.Grid,
@@ -56,7 +58,7 @@ ENDLESS = ("residual", "overlap")
 
 
 class Numbers(TypedDict):
-    """Numbers of a solution, as the compiled module tells them."""
+    """Numbers of a solution, as the compiled module hands them over."""
 
     load: float
     eccentricity: Pair
@@ -83,7 +85,7 @@ class Report(Result):
     ('converged', True, [])
     """
 
-    _DERIVED = ("free_ends", "warning_kinds", "_text")
+    _DERIVED = ("free_ends", "warning_kinds", "_data")
     _LATER = ("rolling_direction",)
 
     termination: Ending
@@ -159,8 +161,8 @@ class Report(Result):
     """Tolerance that was asked for."""
     seconds: float
     """Seconds that the solve took, without planning."""
-    _text: str
-    """What the compiled module tells of the report, as JSON text."""
+    _data: dict[str, Any]
+    """State of the report, but for its grid and its bodies."""
 
     @property
     def converged(self) -> bool:
@@ -170,33 +172,26 @@ class Report(Result):
     @classmethod
     def _of(cls, parts: Parts) -> Self:
         """Return the report of the parts that the compiled module hands over."""
-        text, *bodies = parts
-        report_data = json.loads(text)
-        state = cls._data(report_data)
-        balance, motion = state["balance"], tuples(state["motion"])
+        report, *bodies = parts
+        data = report["data"]
+        balance, motion = data["balance"], data["motion"]
         fields = {
             "balance": (balance["force"], *balance["moment"]),
-            "free_ends": report_data["free_ends"],
-            "warnings": report_data["messages"],
-            "warning_kinds": [warning["kind"] for warning in state["warnings"]],
+            "free_ends": report["free_ends"],
+            "warnings": report["messages"],
+            "warning_kinds": [warning["kind"] for warning in data["warnings"]],
             "motion": {k: v for k, v in motion.items() if v not in (None, (None, None))},
-            "rolling_direction": tuples(state["rolling_direction"]),
         }
-        return cls(**state | fields | dict(zip(BODIES, bodies, strict=True)), _text=text)
-
-    @staticmethod
-    def _data(report_data: dict[str, Any]) -> dict[str, Any]:
-        """Return the state, but for grid and bodies, in what the compiled module tells."""
-        data: dict[str, Any] = report_data["data"]
-        return data | {name: math.inf for name in ENDLESS if data[name] is None}
+        return cls(**data | fields | dict(zip(BODIES, bodies, strict=True)), _data=data)
 
     def _state(self) -> dict[str, Any]:
-        bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
-        return self._data(json.loads(self._text)) | bodies
+        bodies = {name: getattr(self, name) for name in BODIES}
+        state: dict[str, Any] = values.encode(self._data | bodies)
+        return state
 
     @classmethod
-    def _parts(cls, data: Any) -> Parts:
-        """Return the parts of a report with this state."""
+    def _parts(cls, data: Any) -> State:
+        """Return the parts of a report with this state, which the compiled module checks."""
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
         state = values.with_names("report", data, cls._names(), cls._LATER)
@@ -273,8 +268,7 @@ class Solution(Result, Stressed):
 
     @cached_property
     def _numbers(self) -> Numbers:
-        numbers: Numbers = tuples(self._solved.numbers())
-        return numbers
+        return self._solved.numbers()
 
     @cached_property
     def grid(self) -> core.Grid:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -14,7 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
+from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
@@ -298,17 +297,12 @@ class _Extremes(Result):
     uncertainty: dict[str, float]
 
     @classmethod
-    def _from_text(cls, text: str) -> Self:
-        return cls._read(json.loads(text))
-
-    @classmethod
-    def _read(cls, data: dict[str, Any]) -> Self:
-        """Return the extremes that data of the compiled module describe."""
-        peak_data = {name: data[name] for name in cls._PEAKS if data[name] is not None}
-        errors = {name: peak["uncertainty"] for name, peak in peak_data.items()}
-        peaks = {name: (peak["value"], tuple(peak["at"])) for name, peak in peak_data.items()}
-        known = {name: error for name, error in errors.items() if error is not None}
-        return cls(**data | peaks | {"uncertainty": known})
+    def _from_fields(cls, fields: dict[str, Any]) -> Self:
+        known = {name: fields[name] for name in cls._PEAKS if fields[name] is not None}
+        peaks = {name: (peak["value"], peak["at"]) for name, peak in known.items()}
+        errors = {name: peak["uncertainty"] for name, peak in known.items()}
+        errors = {name: error for name, error in errors.items() if error is not None}
+        return cls(**fields | peaks | {"uncertainty": errors})
 
     def _state(self) -> dict[str, Any]:
         state = super()._state()
@@ -360,11 +354,6 @@ class LayerStress(_Extremes):
     which the cells resolve less, may have the extreme. Where it is not small compared with the
     value, take smaller cells, or `refine`. See `Stress.uncertainty`.
     """
-
-    @classmethod
-    def _read(cls, data: dict[str, Any]) -> Self:
-        top, bottom = data["depths"]
-        return super()._read(data | {"depths": (top, np.inf if bottom is None else bottom)})
 
     def __repr__(self) -> str:
         """Return von Mises' stress and the tension, in the units that are set."""
@@ -458,17 +447,17 @@ class StressSummary(Tabular, Warned):
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
-    def _from_text(cls, text: str, friction: tuple[float, float] | None = None) -> Self:
-        data = json.loads(text) | {"friction": friction}
-        data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
-        data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
-        return cls(**data)
+    def _from_fields(cls, fields: dict[str, Any], friction: Pair | None = None) -> Self:
+        layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
+        interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
+        parts = {"layers": layers, "interfaces": interfaces}
+        return cls(**fields | parts | {"friction": friction})
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         friction = cls._checked({"friction": state.pop("friction")})["friction"]
-        text = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
-        return cls._from_text(text, friction)
+        fields = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
+        return cls._from_fields(fields, friction)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -653,9 +642,9 @@ class StressPlan:
         limits = StressLimits(yield_stress, strength, None)
         with lasting("stresses", progress) as tell:
             options = StressOptions(self._member, friction, direction, residual, None, tell)
-            text = core.stress_summary(self._plan, limits, options)
+            fields = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
-        return _warned(StressSummary._from_text(text, sliding))
+        return _warned(StressSummary._from_fields(fields, sliding))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -836,8 +825,8 @@ class Stressed:
         limits = StressLimits(yield_stress, strength, refine)
         with lasting("stresses", progress) as tell:
             options = StressOptions(body, friction, direction, residual, threads, tell)
-            text = core.stress_summary(self._solved, limits, options)
-        return _warned(StressSummary._from_text(text, self._sliding(friction, direction, body)))
+            fields = core.stress_summary(self._solved, limits, options)
+        return _warned(StressSummary._from_fields(fields, self._sliding(friction, direction, body)))
 
     def _sliding(
         self, friction: float, direction: Direction | None, body: Member

@@ -1,8 +1,8 @@
 """What all results have in common: plain data, equality, pickles.
 
-A result is a frozen dataclass. What the compiled module computes it hands over as JSON text, with
-bodies, grids and arrays apart, and checks again where it is read from a file. The fields of other
-results are checked by their annotations.
+A result is a frozen dataclass. What the compiled module computes it hands over as fields, with
+bodies, grids and arrays apart, and checks again where it is read from a file, as JSON text. The
+fields of other results are checked by their annotations.
 """
 
 from __future__ import annotations
@@ -45,15 +45,6 @@ class Tangential(Protocol):
 
 
 FrictionContact = TypeVar("FrictionContact", bound=Tangential)
-
-
-def tuples(value: Any) -> Any:
-    """Return plain data with tuples in place of lists."""
-    if isinstance(value, list):
-        return tuple(tuples(item) for item in value)
-    if isinstance(value, dict):
-        return {key: tuples(item) for key, item in value.items()}
-    return value
 
 
 def _plain(value: object) -> Any:
@@ -215,9 +206,9 @@ class Result(Fields):
         return [field.name for field in fields if field.name not in cls._DERIVED]
 
     @classmethod
-    def _from_text(cls, text: str) -> Self:
-        """Return the result that JSON text of the compiled module describes."""
-        return cls(**tuples(json.loads(text)))
+    def _from_fields(cls, fields: dict[str, Any]) -> Self:
+        """Return the result that fields of the compiled module describe."""
+        return cls(**fields)
 
     def to_dict(self) -> dict[str, Any]:
         """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
@@ -262,7 +253,7 @@ class Result(Fields):
         """Return the result with these fields, checked."""
         name = cls.__name__
         if cls._COMPILED:
-            return cls._from_text(core.checked(name, as_text(name, state, infinite=True)))
+            return cls._from_fields(core.checked(name, as_text(name, state, infinite=True)))
         return cls(**cls._checked(state))
 
     @classmethod
