@@ -604,9 +604,7 @@ class PairSolution(Tabular):
         """
         if "spectrum" in modification:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
-        first, second = (
-            one.life(edge, rotating=rotating, **modification) for one in self.bearings
-        )
+        first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
         slope = LINE if self.pair.first.rolls else POINT
         lives = np.array([first.revolutions, second.revolutions])
         shortest = float(lives.min())
