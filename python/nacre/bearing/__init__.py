@@ -27,8 +27,8 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
-from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.pair import Pair, PairLife, PairSolution
+from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
 from nacre.bearing.solution import BearingReport, BearingSolution
 from nacre.bearing.static import StaticLoad, equivalent_static_load, static_rating

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
-from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, Solved, slices_of
+from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, slices_of
 from nacre.bearing.geometry import RINGS, Bearing, laminae_of
 
 Array = npt.NDArray[np.float64]
