@@ -2,7 +2,8 @@
 
 A bearing is described by what a catalogue or a drawing says of it. `CylindricalRoller.solve` and
 its like find loads, tilts and pressures of all elements under forces, displacements, moments and
-tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281.
+tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281. A `Pair` has two
+of them on one shaft.
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
@@ -26,6 +27,7 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
+from nacre.bearing.pair import Pair, PairLife, PairSolution
 from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
 from nacre.bearing.solution import BearingReport, BearingSolution
@@ -43,6 +45,9 @@ __all__ = [
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
+    "Pair",
+    "PairLife",
+    "PairSolution",
     "SphericalRoller",
     "StaticLoad",
     "StressVolume",

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -68,6 +68,45 @@ class Reaction(NamedTuple):
 
 
 Law = Callable[[Array], Reaction]
+
+
+class Several:
+    """Contacts of several bearings, each of which has its own law and its own elements."""
+
+    def __init__(self, laws: Sequence[Law], counts: Sequence[int]) -> None:
+        """Take the laws, and the number of elements of each."""
+        self.laws = laws
+        self.slices = slices_of(counts)
+        self.costly = any(isinstance(one, Solved) for one in laws)
+
+    def __call__(self, places: Array) -> Reaction:
+        """Return the reaction of all contacts."""
+        reactions = [one(places[rows]) for one, rows in zip(self.laws, self.slices, strict=True)]
+        contacts = {
+            (element + rows.start, ring): contact
+            for reaction, rows in zip(reactions, self.slices, strict=True)
+            for (element, ring), contact in reaction.contacts.items()
+        }
+        fields = zip(*(reaction[:3] for reaction in reactions), strict=True)
+        energy, force, stiffness = map(np.concatenate, fields)
+        return Reaction(energy, force, stiffness, contacts)
+
+    def split(self, reaction: Reaction) -> Iterator[Reaction]:
+        """Yield the reaction of each bearing."""
+        for rows in self.slices:
+            contacts = {
+                (element - rows.start, ring): contact
+                for (element, ring), contact in reaction.contacts.items()
+                if rows.start <= element < rows.stop
+            }
+            energy, force, stiffness = (field[rows] for field in reaction[:3])
+            yield Reaction(energy, force, stiffness, contacts)
+
+
+def slices_of(counts: Sequence[int]) -> list[slice]:
+    """Return the rows of the elements of several bearings, one after the other."""
+    ends = np.cumsum(counts).tolist()
+    return [slice(end - count, end) for count, end in zip(counts, ends, strict=True)]
 
 
 class Slices:
@@ -188,6 +227,9 @@ def bodies_of(bearing: Any, ring: Ring) -> tuple[Layers, Layers]:
 
 class Solved:
     """Contacts that nacre solves, with warm starts; one plan for contacts of similar width."""
+
+    costly = True
+    """Whether elements do not settle at each place of the ring, for which they are evaluated."""
 
     def __init__(
         self,

@@ -168,7 +168,8 @@ def load(path: AnyPath) -> Any:
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
         `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
         `IndentSolution`, a `Fit` or an `OliverPharr` of `nacre.indent`, a `BearingSolution`,
-        `BearingLife`, `StressVolume`, `LifeRatio` or `Film` of `nacre.bearing`.
+        `BearingLife`, `PairSolution`, `PairLife`, `StressVolume`, `LifeRatio` or `Film` of
+        `nacre.bearing`.
 
     Raises
     ------

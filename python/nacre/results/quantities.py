@@ -336,6 +336,13 @@ STATIC_LOAD = (
     Quantity("safety", "static safety factor", label="static safety"),
 )
 """Quantities of the static load of a bearing."""
+PAIR_LIFE = (
+    Quantity("revolutions", "life of both in revolutions", label="life of both"),
+    Quantity("hours", "life of both in hours"),
+    Quantity("first", "life of the first bearing in revolutions", label="first bearing"),
+    Quantity("second", "life of the second bearing in revolutions", label="second bearing"),
+)
+"""Quantities of the lives of a pair of bearings."""
 COATING = (
     Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
     Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),

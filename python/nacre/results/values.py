@@ -91,6 +91,8 @@ ELSEWHERE = {
     "BearingSolution": "nacre.bearing",
     "BearingLife": "nacre.bearing",
     "BearingReport": "nacre.bearing",
+    "PairSolution": "nacre.bearing",
+    "PairLife": "nacre.bearing",
     "StressVolume": "nacre.bearing",
     "LifeRatio": "nacre.bearing",
     "Film": "nacre.bearing",
