@@ -611,7 +611,7 @@ class PairSolution(Tabular):
         shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
         both = float((shares**slope).sum()) ** (-1 / slope)
         hours = both * min(first.hours, second.hours)
-        return PairLife(both * shortest, hours, *lives.tolist(), first.model)
+        return PairLife(both * shortest, hours, first.revolutions, second.revolutions, first.model)
 
     @display.in_si
     def to_xarray(self) -> xarray.Dataset:
