@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,12 +23,13 @@ from nacre.case import reference as _reference
 from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
-from nacre.results import tables
+from nacre.results import files, report, tables
 from nacre.results.display import SLIGHT, shown_in
 from nacre.results.quantities import BEARING, ERROR
 from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
+from nacre.studies.report import save_report
 
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
@@ -44,6 +47,8 @@ Units = Annotated[
     str | None,
     typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
 ]
+DEPTH_OPTIONS = ("body", "friction", "direction", "residual")
+"""Keywords of stresses that the picture over depth in a report takes."""
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
@@ -89,7 +94,7 @@ def solve(
         list[Path] | None,
         typer.Option(
             callback=_in_folder,
-            help="File to write: .nc, .vtr, .csv, or a picture. May be repeated.",
+            help="File to write: .nc, .vtr, .csv, a picture, or .html, a report. May be repeated.",
         ),
     ] = None,
     initial: Annotated[
@@ -124,14 +129,7 @@ def solve(
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(case_file.units):
-        _solve(
-            case,
-            case_file.friction,
-            arguments,
-            (stress_options, fatigue_options),
-            save or [],
-            as_json,
-        )
+        _solve(case, case_file, arguments, (stress_options, fatigue_options), save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -144,7 +142,9 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     """Solve a bearing, save and print it, with its life and a film where they are asked for."""
     for path in save:
         if path.suffix.lower() == ".vtr":
-            raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
+            raise CaseError(
+                f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
+            )
         _check_ending(path)
     arguments = case_file.arguments()
     bearing, life_options = arguments.pop("bearing"), case_file.life()
@@ -172,7 +172,37 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
         with shown_in(case_file.units):
             print("\n\n".join(map(str, (solution, *added.values()))))
     for path in save:
-        solution.save(path)
+        if path.suffix.lower() == ".html":
+            with shown_in(case_file.units):
+                _save_report(path, [solution, *added.values()], case, case_file)
+        else:
+            solution.save(path)
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """A contact in a report, with the keywords of stresses for the picture over depth."""
+
+    solution: Any
+    stress: dict[str, Any]
+
+    def _sections(self) -> report.Sections:
+        return self.solution._sections(**self.stress)
+
+
+def _save_report(path: Path, parts: list[Any], case: Path, case_file: Case) -> None:
+    """Write a report with the case file, and the files that it names."""
+    text, rows = case.read_text(encoding="utf-8-sig"), _files(case_file)
+    files.save(path, {".html": lambda file: report.write(file, parts, text, rows)})
+
+
+def _files(case_file: Case) -> list[tuple[str, str]]:
+    """Return the units of a case, and the measured files that it names with their SHA-256."""
+    digests = [
+        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
+        for path in case_file.measured()
+    ]
+    return [("units of the case", case_file.units), *digests]
 
 
 def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
@@ -203,7 +233,7 @@ def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
 
 def _solve(
     case: Path,
-    friction: str | None,
+    case_file: Case,
     arguments: dict[str, Any],
     options: tuple[dict[str, Any] | None, dict[str, Any] | None],
     save: list[Path],
@@ -211,6 +241,7 @@ def _solve(
 ) -> None:
     """Solve, save and print in the units that are set."""
     stress_options, fatigue_options = options
+    friction = case_file.friction
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
@@ -244,9 +275,15 @@ def _solve(
         if steps:
             print(f"{steps}\n\nlast step")
         print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
+    whole = solution if steps is None else steps
+    sliding = {k: v for k, v in (stress_options or {}).items() if k in DEPTH_OPTIONS}
+    parts = [_Contact(whole, sliding), *(one for one in (stress, fatigue) if one is not None)]
     for path in save:
-        # The fields of ParaView's file are those of the last step.
-        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
+        if path.suffix.lower() == ".html":
+            _save_report(path, parts, case, case_file)
+        else:
+            # The fields of ParaView's file are those of the last step.
+            (solution if path.suffix.lower() == ".vtr" else whole).save(path)
 
 
 @app.command()
@@ -258,7 +295,7 @@ def sweep(
     ] = None,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .csv. May be repeated."),
+        typer.Option(callback=_in_folder, help="File to write: .csv or .html. May be repeated."),
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     units: Units = None,
@@ -268,8 +305,8 @@ def sweep(
     case_file = _read_case(case, units)
     study = case_file.study(store)
     for path in save or []:
-        if path.suffix.lower() != ".csv":
-            raise CaseError(f"--save must end in .csv, got {str(path)!r}")
+        if path.suffix.lower() not in (".csv", ".html"):
+            raise CaseError(f"--save must end in .csv or .html, got {str(path)!r}")
     with nacre.display_units(case_file.units), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
@@ -287,6 +324,10 @@ def sweep(
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     for path in save or []:
+        if path.suffix.lower() == ".html":
+            text = case.read_text(encoding="utf-8-sig")
+            save_report(dataset, path, case=text, inputs=_files(case_file))
+            continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
     if failed:
@@ -298,7 +339,9 @@ def indent(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .nc or .csv. May be repeated."),
+        typer.Option(
+            callback=_in_folder, help="File to write: .nc, .csv or .html. May be repeated."
+        ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
@@ -308,8 +351,8 @@ def indent(
     if case_file.kind != "indent":
         raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
     for path in save or []:
-        if path.suffix.lower() not in (".nc", ".csv"):
-            raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
+        if path.suffix.lower() not in (".nc", ".csv", ".html"):
+            raise CaseError(f"--save must end in .nc, .csv or .html, got {str(path)!r}")
     arguments = case_file.arguments()
     with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
@@ -321,7 +364,10 @@ def indent(
             raise CaseError(f"{case}: indent: {error}") from error
         print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
         for path in save or []:
-            solution.save(path)
+            if path.suffix.lower() == ".html":
+                _save_report(path, [solution], case, case_file)
+            else:
+                solution.save(path)
 
 
 @app.command()
@@ -382,7 +428,7 @@ def _plain(data: Any) -> Any:
 
 
 def _check_ending(path: Path) -> None:
-    endings = {".nc", ".vtr", ".csv", *PICTURES}
+    endings = {".nc", ".vtr", ".csv", ".html", *PICTURES}
     if path.suffix.lower() not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -19,6 +20,8 @@ from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.quantities import EXTREMES
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -32,6 +35,13 @@ Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
+STRESSES = "Fourier transforms of the stress below pressure and traction, exact in the depth"
+SIZE_ERRORS = "errors due to the size of the cells, estimated"
+"""What a report says of stresses."""
+DEPTHS, INSIDE, MOST_CELLS = 24, 6, 1 << 17
+"""Depths of the picture of a report, in all and in each layer; most cells of a grid for it."""
+DEEPEST, THIN = 1.25, 0.1
+"""Its depth over the width of the contact; thickness over that below which it has an inset."""
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
@@ -508,6 +518,14 @@ class StressSummary(Tabular, Warned):
                 rows.append((display.part(part), name, value, error, *place, limit))
         return rows
 
+    def _sections(self) -> Sections:
+        (part, name, value, error, *rest), *rows = self._file_rows()
+        cells = [(*r[:3], display.share(r[3], r[2]) if r[3] == r[3] else "", *r[4:]) for r in rows]
+        extremes = table("Extremes", [(part, name, value, "±", *rest), *cells], EXTREMES)
+        notes = [("traction", text) for text in _notes(self)]
+        model = [("theory", STRESSES), ("±", SIZE_ERRORS)]
+        return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
+
     def __str__(self) -> str:
         """Return a table, in the units that are set."""
         lines = [*display.aligned(_peak_rows(self), "<"), *_notes(self)]
@@ -983,6 +1001,40 @@ def _warned(result: StressResult) -> StressResult:
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     return result
+
+
+def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> Iterator[Picture]:
+    """Yield the picture of the von Mises stress against depth below the largest pressure.
+
+    There is none of bodies without stresses, of surfaces that have yielded and of large grids.
+    """
+    normal = getattr(solution, "normal", solution)
+    member = normal.report.counterbody if body == "counterbody" else normal.report.body
+    if (
+        not isinstance(member, core.HalfSpace)
+        or not isinstance(member.substrate, core.Elastic)
+        or not normal.contact_area > 0
+        or normal.indentation.any()
+        or normal.pressure.size > MOST_CELLS
+    ):
+        return
+    widths = [high - low for low, high in normal.contact_extent if high > low]
+    bottom = DEEPEST * min(widths, default=min(normal.grid.size))
+    faces = [0.0, *(z for z in member.interfaces if z < bottom), bottom]
+    counts = [max(INSIDE, round(DEPTHS * (end - top) / bottom)) for top, end in pairwise(faces)]
+    plan, (x, y) = solution.stress_plan(body), normal.peak_position
+    z, stress = [], []
+    for (top, end), count in zip(pairwise(faces), counts, strict=True):
+        depths = np.linspace(top, end, count)
+        for part, side in ((depths[:-1], "below"), (depths[-1:], "above")):
+            z.append(part)
+            stress.append(plan.stress(part, x=x, y=y, side=side, **sliding).von_mises)
+    curve = Curve(np.concatenate(z), np.concatenate(stress))
+    inset = (0.0, 3 * faces[1]) if faces[1] < THIN * bottom else None
+    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
+    words = "; inset: the first three thicknesses of the coat" if inset else ""
+    caption = f"Von Mises stress below the largest pressure; dotted: interfaces{words}."
+    yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
 
 
 def _notes(summary: StressSummary) -> list[str]:
