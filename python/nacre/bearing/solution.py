@@ -64,7 +64,7 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
-NOT_COUNTED = "lubrication, cage, friction, heat, and bending of rings and housing: they are rigid in the large"
+NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
 """What a report says of the model."""
 EDGES = {
     "standard": "edge factors of ISO/TS 16281, eq. 60",
@@ -563,7 +563,8 @@ class BearingSolution(Tabular):
             table("Elements and rings", self._element_rows()),
             table("Stiffness in N, N m, m and rad", [head, *([n, *row] for n, row in matrix)]),
         ]
-        limits = [*model, ("±", SIZE_ERRORS), ("not counted", NOT_COUNTED)]
+        errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
+        limits = [*model, *errors, ("not counted", NOT_COUNTED)]
         warnings = self.report.warnings
         return Sections(self._TITLE, inputs, numbers, self._pictures(), tables, limits, warnings)
 
@@ -585,7 +586,13 @@ class BearingSolution(Tabular):
     def _pictures(self) -> list[Picture]:
         """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
         axis = Axis("load of each element", "N")
-        ring = bars(self.angles, self.loads, axis, [f"{name} ring" for name in RINGS])
+        count, rows = self.bearing.count, self.bearing.rows
+        loads = self.loads.reshape(rows, count, 2).transpose(1, 0, 2).reshape(count, 2 * rows)
+        angles = np.repeat(self.angles.reshape(rows, count).T, 2, axis=1)
+        labels = [
+            f"row {k + 1}, {name}" if rows > 1 else name for k in range(rows) for name in RINGS
+        ]
+        ring = bars(angles, loads, axis, [f"{label} ring" for label in labels])
         pictures = [Picture("Loads of the elements, x to the right.", ring)]
         heaviest = int(self.loads[:, 0].argmax())
         if self.lamina_pressures is None:

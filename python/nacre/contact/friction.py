@@ -185,10 +185,10 @@ class FrictionSolution(Result, Stressed):
     """Course of the solve, and how well the laws hold."""
 
     @classmethod
-    def _of(cls, solved: core.FrictionSolved) -> Self:
+    def _of(cls, solved: core.FrictionSolved, shape: core.Shape | None = None) -> Self:
         """Return a solution of the compiled module."""
         numbers = dict.fromkeys(SLIDES + ROLLS) | tuples(json.loads(solved.numbers()))
-        normal = Solution._of(solved.normal())
+        normal = Solution._of(solved.normal(), shape)
         warnings = tuple(normal.report.warnings)
         report = FrictionReport(**numbers.pop("report"), warnings=warnings)
         solution = cls(solved, report=report, **numbers)

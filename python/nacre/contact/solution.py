@@ -60,8 +60,8 @@ NESTED = {
 OPTIONAL = ("hardness", "indentation", "coefficients")
 """Fields in the state of a solution that has them."""
 THEORY = (
-    "linear elasticity of half-spaces, bare or layered, with small slopes: influence coefficients of "
-    "rectangular cells, convolution by FFT, conjugate gradients under p ≥ 0, gap ≥ 0"
+    "linear elasticity of half-spaces, bare or layered, with small slopes: influence coefficients "
+    "of rectangular cells, convolution by FFT, conjugate gradients under p ≥ 0, gap ≥ 0"
 )
 NOT_COUNTED = (
     "the effect of friction on the pressure, plastic flow except by a given hardness, lubrication, "
@@ -952,14 +952,14 @@ def _inputs(solution: Solution) -> Rows:
     units = {row.name: solution._si(row) for row in CONTACT}
     inputs = {"body": report.body, "counterbody": report.counterbody or "rigid", **report.motion}
     inputs |= {"hardness": hardness, "tolerance": report.tolerance}
-    shape = solution._shape or "not known: files do not keep it"
+    shape = solution._shape or "not kept in the solution"
     return input_rows({"shape": shape, **inputs, "grid": report.grid}, units)
 
 
 def _model(report: Report) -> Rows:
     """Return on what a solution stands, and what is not counted."""
-    force, *moments = report.balance
-    balance = f"force {force:.0e}, moments {moments[0]:.0e} and {moments[1]:.0e}, relative"
+    force, *moments = (f"{part:.0e}" if part else "0" for part in report.balance)
+    balance = f"force {force}, moments {' and '.join(moments)}, relative"
     ending = f"{report.termination}{_fallback(report)} after {report.iterations} iterations"
     return [
         ("theory", THEORY),

@@ -38,8 +38,9 @@ FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_facto
 STRESSES = "Fourier transforms of the stress below pressure and traction, exact in the depth"
 SIZE_ERRORS = "errors due to the size of the cells, estimated"
 """What a report says of stresses."""
-DEPTHS, INSIDE, MOST_CELLS = 24, 6, 1 << 17
-"""Depths of the picture of a report, in all and in each layer; most cells of a grid for it."""
+DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
+"""Depths of the picture of a report, in all, fewest and most, and in each layer; their number times
+that of the cells, which takes 0.2 s; most cells of a grid for it."""
 DEEPEST, THIN = 1.25, 0.1
 """Its depth over the width of the contact; thickness over that below which it has an inset."""
 SOFTEST = 1e-6
@@ -519,7 +520,7 @@ class StressSummary(Tabular, Warned):
         return rows
 
     def _sections(self) -> Sections:
-        (part, name, value, error, *rest), *rows = self._file_rows()
+        (part, name, value, _, *rest), *rows = self._file_rows()
         cells = [(*r[:3], display.share(r[3], r[2]) if r[3] == r[3] else "", *r[4:]) for r in rows]
         extremes = table("Extremes", [(part, name, value, "±", *rest), *cells], EXTREMES)
         notes = [("traction", text) for text in _notes(self)]
@@ -1021,19 +1022,24 @@ def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> I
     widths = [high - low for low, high in normal.contact_extent if high > low]
     bottom = DEEPEST * min(widths, default=min(normal.grid.size))
     faces = [0.0, *(z for z in member.interfaces if z < bottom), bottom]
-    counts = [max(INSIDE, round(DEPTHS * (end - top) / bottom)) for top, end in pairwise(faces)]
-    plan, (x, y) = solution.stress_plan(body), normal.peak_position
-    z, stress = [], []
-    for (top, end), count in zip(pairwise(faces), counts, strict=True):
-        depths = np.linspace(top, end, count)
-        for part, side in ((depths[:-1], "below"), (depths[-1:], "above")):
-            z.append(part)
-            stress.append(plan.stress(part, x=x, y=y, side=side, **sliding).von_mises)
-    curve = Curve(np.concatenate(z), np.concatenate(stress))
     inset = (0.0, 3 * faces[1]) if faces[1] < THIN * bottom else None
+    ends = sorted({*faces, *(inset or ())})
+    count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
+    counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
+    plan, (x, y) = solution.stress_plan(body), normal.peak_position
+    parts = zip(pairwise(ends), counts, strict=True)
+    within = np.concatenate([np.linspace(top, end, n, endpoint=False) for (top, end), n in parts])
+    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces[1:]), "above"))
+    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
+    depths = np.concatenate([within, faces[1:]])
+    # An interface occurs twice: its upper side, which comes last here, stands first.
+    order = np.lexsort((-np.arange(depths.size), depths))
+    curve = Curve(depths[order], np.concatenate([one.von_mises for one in fields])[order])
     axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
-    words = "; inset: the first three thicknesses of the coat" if inset else ""
-    caption = f"Von Mises stress below the largest pressure; dotted: interfaces{words}."
+    words = ["Von Mises stress below the largest pressure"]
+    words += ["dotted: interfaces"] if faces[1:-1] else []
+    words += ["inset: the first three thicknesses of the coat"] if inset else []
+    caption = "; ".join(words) + "."
     yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
 
 

@@ -404,6 +404,7 @@ LENGTHS = (
 INPUTS = PARAMETERS | dict.fromkeys(LENGTHS, "m")
 INPUTS |= {"normal": "Pa/m", "tangential": "Pa/m", "bending": "Pa", "torsion": "Pa"}
 INPUTS |= {"capacity": "N", "force": "N", "rotation": "rad", "speed": "rad/s", "density": "kg/m³"}
+INPUTS |= {"yield_stress": "Pa", "residual": "Pa", "poisson": "", "exponent": "", "slope": ""}
 INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
 """SI units of all arguments of contacts, indentations and bearings, by their names."""
 

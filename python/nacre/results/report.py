@@ -33,27 +33,36 @@ MOST_ROWS = 300
 """Largest number of rows of a table that stand in a page."""
 MOST_LISTED = 12
 """Largest number of numbers in an input that are written out."""
-DIGITS, EXACT = 5, 9
+DIGITS, EXACT = 4, 9
 """Digits of numbers in tables, and of inputs."""
+DUST = 1e-15
+"""Size below which an input is the rounding of 0, as of the centre of a grid that was chosen."""
+MOST_COLUMNS = 11
+"""Largest number of columns on a page; a wider table is continued below, by its first column."""
 UNIT = re.compile(r"(.*) \[(.+)\]")
 """A heading with a unit."""
-BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response"}
+AXIS = re.compile(r"\b[xyz](?= \[|$)")
+"""The axis in the heading of a component."""
+BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", "Grid", "Grid.line"}
 """Classes that need no row of their own among the inputs."""
 STYLE = (
-    "@page{size:A4;margin:16mm}body{font:10.5pt/1.4 sans-serif;color:#222;max-width:178mm;"
-    "margin:8mm auto;padding:0 4mm}h1{font-size:17pt;margin:0}h2{font-size:12.5pt;margin:7mm 0 2mm;"
-    "border-bottom:1px solid #999;break-after:avoid}h3{font-size:10.5pt;margin:4mm 0 1mm}"
-    "table{border-collapse:collapse;font-size:9pt}th{font-weight:600}td,th{white-space:nowrap;"
-    "text-align:left;padding:1px 10px 1px 0;vertical-align:top}tr{break-inside:avoid}"
-    ".wide{overflow-x:auto}.number td,.number th{text-align:right}.number td:first-child,"
-    ".number th:first-child{text-align:left}.long td{white-space:normal;overflow-wrap:anywhere}"
-    ".long td:first-child{white-space:nowrap}.verdict{border-left:5px solid #888;"
-    "padding:1mm 3mm;margin:4mm 0}.good{border-color:#2a7d3f}.fair{border-color:#c98a00}"
-    ".bad{border-color:#b3261e}.sign td{border-bottom:1px solid #222;width:60mm;height:11mm;"
-    "vertical-align:bottom}.pictures{display:flex;flex-wrap:wrap;gap:4mm}figure{margin:0;"
-    "width:86mm;break-inside:avoid}figcaption{font-size:9pt}pre{white-space:pre-wrap;"
-    "font-size:8.5pt;overflow-wrap:anywhere}" + svg.STYLE
+    "@page{size:A4;margin:16mm}"
+    "body{font:10.5pt/1.4 sans-serif;color:#222;max-width:178mm;margin:8mm auto;padding:0 4mm}"
+    "h1{font-size:17pt;margin:0}h3{font-size:10.5pt;margin:4mm 0 1mm}"
+    "h2{font-size:12.5pt;margin:7mm 0 2mm;border-bottom:1px solid #999;break-after:avoid}"
+    "table{border-collapse:collapse;font-size:9pt}tr,figure{break-inside:avoid}"
+    "td,th{white-space:nowrap;text-align:left;padding:1px 10px 1px 0;vertical-align:top}"
+    ".long td+td{white-space:normal;overflow-wrap:anywhere}"
+    ".number{margin-bottom:3mm;font-size:8pt}.number td+td,.number th+th{text-align:right}"
+    ".number th{white-space:normal;vertical-align:bottom}"
+    ".verdict{border-left:5px solid #888;padding:1mm 3mm;margin:4mm 0}"
+    ".good{border-color:#2a7d3f}.fair{border-color:#c98a00}.bad{border-color:#b3261e}"
+    ".sign td{border-bottom:1px solid #222;width:60mm;height:11mm;vertical-align:bottom}"
+    ".pictures{display:flex;flex-wrap:wrap;gap:4mm}figure{margin:0;width:86mm}"
+    "figcaption{font-size:9pt}pre{white-space:pre-wrap;font-size:8.5pt;overflow-wrap:anywhere}"
+    + svg.STYLE
 )
+"""Style sheet of the page, for A4."""
 
 
 class Picture(NamedTuple):
@@ -134,7 +143,8 @@ def page(
     case: str | None = None,
 ) -> str:
     """Return the page of a report."""
-    title, version = html.escape(parts[0].title), html.escape(core.__version__)
+    title = html.escape(parts[0].title[:1].upper() + parts[0].title[1:])
+    version = html.escape(core.__version__)
     head = [("case", name), ("date", date), ("computed by", f"nacre {core.__version__}")]
     texts = list(dict.fromkeys(text for part in parts for text in part.warnings))
     several = sum(bool(part.title) for part in parts) > 1
@@ -190,7 +200,9 @@ def _leaves(path: str, value: Any, units: Mapping[str, str]) -> Iterator[tuple[s
         for number, item in enumerate(value):
             yield from _leaves(f"{path}[{number}]", item, units)
     elif value is not None and value != []:
-        yield path, _leaf(value, units.get(re.split(r"[.\[]", path.split("[")[0])[-1], ""))
+        # Limits of layers have the unit of the name before.
+        names = re.sub(r"\[\d+\]", "", path).split(".")[:-3:-1]
+        yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
 
 
 def _leaf(value: Any, unit: str) -> str:
@@ -198,9 +210,11 @@ def _leaf(value: Any, unit: str) -> str:
         texts = ["–" if one is None else _leaf(one, unit) for one in value]
         more = f" and {len(texts) - MOST_LISTED} more" if len(texts) > MOST_LISTED else ""
         return ", ".join(texts[:MOST_LISTED]) + more
-    if isinstance(value, str | bool):
-        return {True: "yes", False: "no"}.get(value, str(value))  # type: ignore[call-overload]
-    return display.number(value, unit, EXACT)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    return display.number(value if abs(value) > DUST else 0.0, unit, EXACT)
 
 
 def other_numbers(result: Any) -> Rows:
@@ -222,28 +236,44 @@ def table(
     """Return a table of rows, the heading first; columns get the units of quantities by name."""
     head, *body = ([*row] for row in rows)
     units = {row.name: symbol(row.unit) for row in quantities}
-    columns = [_column(str(name), [row[k] for row in body], units) for k, name in enumerate(head)]
-    cells = [*zip(*(cells for _, cells in columns), strict=True)][:MOST_ROWS]
+    columns = {str(name): [row[k] for row in body] for k, name in enumerate(head)}
+    columns = {name: values for name, values in columns.items() if not _is_empty(values)}
+    largest: dict[str, float] = {}
+    for name, values in columns.items():
+        stem = AXIS.sub("", name)
+        largest[stem] = max([largest.get(stem, 0.0), *map(abs, filter(_is_number, values))])
+    cells = [
+        _column(name, values, units.get(name, ""), display.SLIGHT * largest[AXIS.sub("", name)])
+        for name, values in columns.items()
+    ]
+    texts = [*zip(*(column for _, column in cells), strict=True)][:MOST_ROWS]
     more = [f"and {len(body) - MOST_ROWS} more rows"] if len(body) > MOST_ROWS else []
-    return Table(title, [name for name, _ in columns], cells, [*notes, *more])
+    return Table(title, [name for name, _ in cells], texts, [*notes, *more])
 
 
-def _column(name: str, values: Sequence[Any], units: Mapping[str, str]) -> tuple[str, list[str]]:
-    """Return the heading and the cells of a column, in one unit; rounding is 0."""
-    numbers = [v for v in values if isinstance(v, float | int) and math.isfinite(v)]
-    largest = max(map(abs, numbers), default=0.0)
-    match = UNIT.fullmatch(name)
-    words, unit = match.groups() if match else (name.replace("_", " "), units.get(name, ""))
-    scale = display.scale_in(largest, unit)
+def _is_empty(values: Sequence[Any]) -> bool:
+    """Return whether a column has rows, but nothing in them."""
+    return bool(values) and all(value != value or value == "" for value in values)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _column(name: str, values: Sequence[Any], unit: str, rounding: float) -> tuple[str, list[str]]:
+    """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
+    if match := UNIT.fullmatch(name):
+        name, unit = match.groups()
+    numbers = [abs(value) for value in values if _is_number(value)]
+    scale = display.scale_in(max(numbers, default=0.0), unit)
+    scale = scale if max(numbers, default=0.0) > rounding else display.scale_in(0.0, unit)
 
     def cell(value: Any) -> str:
-        if not isinstance(value, float | int) or isinstance(value, bool):
-            return str(value)
-        if math.isnan(value):
-            return ""
-        number = value if abs(value) > display.SLIGHT * largest else 0.0
-        return rounded(scale.factor * number, DIGITS)
+        if _is_number(value):
+            return rounded(scale.factor * value if abs(value) > rounding else 0.0, DIGITS)
+        return "" if value != value else str(value)
 
+    words = name.replace("_", " ")
     return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
 
 
@@ -268,7 +298,11 @@ def contact_pictures(result: Any) -> list[Picture]:
         sides = [svg.Axis(name, "m", end) for name, end in zip("xy", ends, strict=True)]
         loaded = np.where(pressure > 0, pressure, np.nan)[cells[0], cells[1]]
         drawing = svg.image(loaded, (sides[0], sides[1], y_axis))
-        pictures.append(Picture("Pressure over the contact; white: no contact.", drawing))
+        pictures.append(
+            Picture(
+                "Pressure over the contact, x and y each to its scale; white: no contact.", drawing
+            )
+        )
     return pictures
 
 
@@ -288,14 +322,17 @@ def _figures(pictures: Iterable[Picture]) -> str:
 
 
 def _table(members: Table) -> str:
-    rows = [("th", members.head), *(("td", row) for row in members.rows)]
-    cells = (
-        f"<tr>{''.join(f'<{tag}>{html.escape(text)}</{tag}>' for text in row)}</tr>"
-        for tag, row in rows
-    )
+    """Return a table, in parts as wide as a page."""
+    lines, parts = [members.head, *members.rows], []
+    for first in range(1, max(len(members.head), 2), MOST_COLUMNS - 1):
+        columns = [0, *range(first, min(first + MOST_COLUMNS - 1, len(members.head)))]
+        rows = "".join(
+            "<tr>" + "".join(f"<{tag}>{html.escape(line[k])}</{tag}>" for k in columns) + "</tr>"
+            for tag, line in zip(("th", *["td"] * len(members.rows)), lines, strict=True)
+        )
+        parts.append(f"<table class='number'>{rows}</table>")
     notes = "".join(f"<p>{html.escape(note)}</p>" for note in members.notes)
-    head = f"<h3>{html.escape(members.title)}</h3><div class='wide'>"
-    return f"{head}<table class='number'>{''.join(cells)}</table></div>{notes}"
+    return f"<h3>{html.escape(members.title)}</h3>{''.join(parts)}{notes}"
 
 
 def _verdict(verdict: Any) -> str:

@@ -32,8 +32,14 @@ BAR = 78
 """Width of a colour bar with its numbers."""
 MOST_POINTS, MOST_CELLS = 300, 240
 """Largest numbers of points of a curve, and of cells along a side of a map."""
-TICKS = 5
-"""Number of intervals between ticks, at most."""
+APART = 42
+"""Least distance of ticks."""
+INNER, OUTER = 56.0, 130.0
+"""Radii of the ring from which bars stand out, and of the largest load."""
+MOST_NUMBERS = 20
+"""Largest number of elements of a ring that are numbered."""
+INSET, ABOVE = 0.44, 1.75
+"""Size of an inset over that of the picture, and of y over the curves, so that it is free."""
 HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
 VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725"
@@ -44,7 +50,7 @@ STYLE = (
     "svg text{font:11px sans-serif;fill:#222}"
     "svg .frame{fill:none;stroke:#888}svg .paper{fill:#fff}svg .grid{stroke:#ddd}"
     "svg .mark{stroke:#666;stroke-dasharray:2 3}svg polyline{fill:none;stroke-width:1.6}"
-    "svg .dashed{stroke-dasharray:6 4}svg .bar{stroke-width:7}"
+    "svg .dashed{stroke-dasharray:6 4}"
     "svg .middle{text-anchor:middle}svg .end{text-anchor:end}svg image{image-rendering:pixelated}"
     + "".join(f"svg .c{k}{{stroke:{c}}}svg .p{k}{{fill:{c}}}" for k, c in enumerate(COLOURS))
 )
@@ -77,7 +83,8 @@ class Side:
 
     def __init__(self, axis: Axis, ends: Ends, start: float, end: float) -> None:
         self.scale: Scale = display.scale_in(max(map(abs, ends)), symbol(axis.unit))
-        self.label = f"{axis.name} [{self.scale.unit}]" if self.scale.unit else axis.name
+        unit = f"[{self.scale.unit}]" if self.scale.unit else ""
+        self.label = f"{axis.name} {unit}".strip()
         self.low, self.high = (self.scale.factor * one for one in ends)
         self.start, self.end = start, end
 
@@ -92,19 +99,19 @@ class Side:
 
     def ticks(self) -> list[tuple[float, str]]:
         """Return the coordinates of round numbers, and these as text."""
-        values = round_numbers(self.low, self.high)
+        values = round_numbers(self.low, self.high, abs(self.end - self.start) / APART)
         return [(float(self.place(v)), f"{v:.6g}") for v in values]
 
 
-def round_numbers(low: float, high: float) -> Array:
+def round_numbers(low: float, high: float, most: float) -> Array:
     """Return multiples of 1, 2 or 5 times a power of ten between two numbers.
 
-    >>> round_numbers(-0.3, 0.92).tolist()
+    >>> round_numbers(-0.3, 0.92, 7).tolist()
     [-0.2, 0.0, 0.2, 0.4, 0.6, 0.8]
     """
     if not high > low:
         return np.array([low])
-    least = (high - low) / (TICKS + 1.5)
+    least = (high - low) / max(most, 2.0)
     power = math.floor(math.log10(least))
     step = next(factor for factor in (1, 2, 5, 10) if factor * 10.0**power >= least)
     first, last = (r / (step * 10.0**power) for r in (low, high))
@@ -119,73 +126,63 @@ def lines(
     inset: Ends | None = None,
     size: tuple[float, float] = (WIDTH, HEIGHT),
 ) -> str:
-    """Return a picture of curves, with vertical lines at `marks`, and a part of x as an inset."""
-    drawn = [_thinned(curve) for curve in curves]
-    ends = [axis.ends or _ends([c[k] for c in drawn], k == 1) for k, axis in enumerate(axes)]
+    """Return a picture of curves, with vertical lines at `marks`, and a part of x as an inset.
+
+    The inset is in the upper right corner, above the curves.
+    """
+    points = [_thinned(curve) for curve in curves]
+    low, high = _ends([part for _, part in points], has_zero=True)
+    x_ends = axes[0].ends or _ends([part for part, _ in points])
     labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
-    top = TOP + LINE * len(labels)
-    x = Side(axes[0], ends[0], LEFT, size[0] - RIGHT)
-    y = Side(axes[1], ends[1], size[1] - BOTTOM, top)
-    parts = [
-        _frame(x, y),
-        *(_curve(k, c.look, x, y, d) for k, (c, d) in enumerate(zip(curves, drawn, strict=True))),
-    ]
-    for mark in x.at(np.array([one for one in marks if ends[0][0] < one < ends[0][1]])):
+    x = Side(axes[0], x_ends, LEFT, size[0] - RIGHT)
+    y_ends = axes[1].ends or (low, high * (1.0 if inset is None else ABOVE))
+    y = Side(axes[1], y_ends, size[1] - BOTTOM, TOP + LINE * len(labels))
+    parts = [_frame(x, y)]
+    parts += [_curve(k, one.look, x, y, points[k]) for k, one in enumerate(curves)]
+    for mark in x.at(np.array([one for one in marks if x_ends[0] < one < x_ends[1]])):
         parts.append(f"<path class='mark' d='M{mark:.1f} {y.start:.1f}V{y.end:.1f}'/>")
     for row, (k, label) in enumerate(labels):
-        height = TOP + LINE * row
-        parts.append(f"<path class='c{k % 7}' stroke-width='2' d='M{LEFT} {height}h18'/>")
-        parts.append(_text(label, LEFT + 24, height + 4))
+        parts.append(f"<path class='c{k % 7}' stroke-width='2' d='M{LEFT} {TOP + LINE * row}h18'/>")
+        parts.append(_text(label, LEFT + 24, TOP + LINE * row + 4))
     if inset is not None:
-        parts.append(_inset(curves, axes, marks, inset, y))
+        small = (INSET * size[0], INSET * size[1])
+        place = (
+            f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}' width='{small[0]}' height='{small[1]}'"
+        )
+        units = axes[0]._replace(name="", ends=inset), axes[1]._replace(name="")
+        inner = lines([_upto(curve, inset[1]) for curve in curves], units, marks, None, small)
+        parts.append(inner.replace("<svg", f"<svg {place}", 1))
     return _picture(parts, size)
-
-
-def _inset(
-    curves: Sequence[Curve], axes: tuple[Axis, Axis], marks: Sequence[float], ends: Ends, y: Side
-) -> str:
-    """Return the part of curves between two places, small, in the upper right corner."""
-    near = []
-    for curve in curves:
-        x, values = np.asarray(curve.x, dtype=np.float64), np.asarray(curve.y, dtype=np.float64)
-        inside = x <= ends[1]
-        near.append(Curve(x[inside], values[inside], "", curve.look))
-    size = (0.52 * WIDTH, 0.5 * HEIGHT)
-    inner = lines(near, (axes[0]._replace(ends=ends), axes[1]), marks, None, size)
-    place = f"<svg x='{WIDTH - RIGHT - size[0] - 4:.1f}' y='{y.end + 4:.1f}' "
-    return inner.replace("<svg ", f"{place}width='{size[0]:.1f}' height='{size[1]:.1f}' ", 1)
 
 
 def bars(
     angles: npt.ArrayLike, loads: npt.ArrayLike, axis: Axis, labels: Sequence[str] = ()
 ) -> str:
-    """Return a picture of loads ``(Z, rings)`` around a ring: bars at angles from x [rad]."""
-    places, heights = np.asarray(angles, dtype=np.float64), np.asarray(loads, dtype=np.float64)
-    rings = heights.shape[1]
-    middle, inner, outer = WIDTH / 2, 44.0, 122.0
-    top = TOP + LINE * (len(labels) + 1)
-    centre = top + outer + LINE
-    radius = Side(axis, (0.0, float(heights.max(initial=0.0)) or 1.0), inner, outer)
-    parts = [_text(radius.label, WIDTH / 2, TOP + 4, "middle")]
+    """Return loads ``(Z, n)`` around a ring: bars at angles from x [rad], n beside each other."""
+    heights = np.asarray(loads, dtype=np.float64)
+    count, series = heights.shape
+    places = np.broadcast_to(np.asarray(angles, dtype=np.float64).reshape(count, -1), heights.shape)
+    x, y = WIDTH / 2, TOP + LINE * (len(labels) + 1) + OUTER
+    radius = Side(axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
+    width = min(7.0, 0.7 * 2 * math.pi * INNER / (count * series))
+    parts = [_text(radius.label, x, TOP + 4, "middle")]
     for length, number in radius.ticks():
-        parts.append(f"<circle class='frame' cx='{middle}' cy='{centre}' r='{length:.1f}'/>")
-        parts.append(_text(number, middle + 3, centre - length - 2))
-    for k, label in enumerate(labels, start=1):
-        parts.append(_text(label, 20, TOP + 4 + LINE * k))
-        parts.append(f"<path class='c{k - 1} bar' d='M4 {TOP + LINE * k}h10'/>")
-    for ring in range(rings):
-        shift = 9.0 / inner * (ring - (rings - 1) / 2)
-        for j, (angle, end) in enumerate(
-            zip(places + shift, radius.at(heights[:, ring]), strict=True)
-        ):
-            c, s = math.cos(angle), -math.sin(angle)
-            first = f"M{middle + inner * c:.1f} {centre + inner * s:.1f}"
-            last = f"L{middle + end * c:.1f} {centre + end * s:.1f}"
-            parts.append(f"<path class='c{ring} bar' d='{first}{last}'/>" if end > inner else "")
-            if ring == 0:
-                x, y = (inner - 12) * np.array([math.cos(places[j]), -math.sin(places[j])])
-                parts.append(_text(f"{j}", middle + x, centre + y + 4, "middle"))
-    return _picture(parts, (WIDTH, centre + outer + LINE))
+        parts.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
+        parts.append(_text(number, x + 3, y - length - 2))
+    for k, label in enumerate(labels):
+        parts.append(f"<path class='c{k}' stroke-width='7' d='M4 {TOP + LINE * (k + 1)}h10'/>")
+        parts.append(_text(label, 20, TOP + LINE * (k + 1) + 4))
+    shifts = 1.2 * width / INNER * (np.arange(series) - (series - 1) / 2)
+    for (j, k), end in np.ndenumerate(radius.at(heights)):
+        c, s = math.cos(places[j, k] + shifts[k]), -math.sin(places[j, k] + shifts[k])
+        ends = f"M{x + INNER * c:.1f} {y + INNER * s:.1f}L{x + end * c:.1f} {y + end * s:.1f}"
+        if end > INNER:
+            parts.append(f"<path class='c{k}' stroke-width='{width:.1f}' d='{ends}'/>")
+        if k == 0 and j % math.ceil(count / MOST_NUMBERS) == 0:
+            across, down = math.cos(places[j, 0]), -math.sin(places[j, 0])
+            place = x + (INNER - 12) * across, y + (INNER - 12) * down + 4
+            parts.append(_text(f"{j}", *place, "middle"))
+    return _picture(parts, (WIDTH, y + OUTER + LINE))
 
 
 def image(values: Array, axes: tuple[Axis, Axis, Axis]) -> str:
@@ -257,13 +254,18 @@ def _thinned(curve: Curve) -> tuple[Array, Array]:
     return x[keep], y[keep]
 
 
-def _ends(parts: Sequence[Array], has_zero: bool) -> Ends:
-    """Return the ends of numbers; those along y have 0 among them, and room beyond."""
-    values = np.concatenate([*parts, [0.0]] if has_zero or not parts else parts)
-    low, high = float(values.min(initial=np.inf)), float(values.max(initial=-np.inf))
-    if not high > low:
-        low = 0.0 if not math.isfinite(low) else min(low, 0.0)
-        high = max(low + 1.0 if not high > low else high, high)
+def _upto(curve: Curve, end: float) -> Curve:
+    """Return a curve without its label up to a place along x."""
+    x, y = np.asarray(curve.x), np.asarray(curve.y)
+    return Curve(x[x <= end], y[x <= end], "", curve.look)
+
+
+def _ends(parts: Sequence[Array], has_zero: bool = False) -> Ends:
+    """Return the ends of numbers; with 0 among them, they have room beyond."""
+    values = np.concatenate([*parts, [0.0]] if has_zero or not any(map(np.size, parts)) else parts)
+    low, high = float(values.min()), float(values.max())
+    if low == high:  # one number, or none
+        low, high = min(low, 0.0), max(high, 0.0) or 1.0
     room = HEADROOM * (high - low) if has_zero else 0.0
     return low - room * (low < 0), high + room * (high > 0)
 
@@ -271,9 +273,8 @@ def _ends(parts: Sequence[Array], has_zero: bool) -> Ends:
 def _frame(x: Side, y: Side, paper: str = "frame paper") -> str:
     """Return the frame of a picture, with ticks and labels."""
     width, height = x.end - x.start, y.start - y.end
-    parts = [
-        f"<rect class='{paper}' x='{x.start}' y='{y.end}' width='{width:.1f}' height='{height:.1f}'/>"
-    ]
+    size = f"width='{width:.1f}' height='{height:.1f}'"
+    parts = [f"<rect class='{paper}' x='{x.start}' y='{y.end}' {size}/>"]
     for place, number in x.ticks():
         parts.append(f"<path class='frame' d='M{place:.1f} {y.start:.1f}v4'/>")
         parts.append(_text(number, place, y.start + 16, "middle"))

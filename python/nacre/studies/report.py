@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._tools.units import SI, Within
+from nacre._tools.units import display_units, symbol
 from nacre.results import display, files, svg
-from nacre.results.quantities import ERROR
+from nacre.results.quantities import ERROR, PARAMETERS
 from nacre.results.report import Picture, Rows, Sections, Table, table, write
 
 if TYPE_CHECKING:
@@ -34,17 +34,18 @@ class Study:
         dataset, texts = self.dataset, ("error", "warnings")
         names = [str(name) for name in dataset.data_vars if name not in texts]
         names = [name for name in names if not name.endswith(ERROR)]
+        numbers = [name for name in names if dataset[name].dims == self._dims]
         failed = int((dataset["error"] != "").sum()) if "error" in dataset else 0
         cases = int(np.prod([dataset.sizes[dim] for dim in self._dims]))
         return Sections(
             str(dataset.attrs.get("title", "study")),
-            [(str(name), self._values(str(name))) for name in dataset.coords],
+            [(str(name), self._values(str(name))) for name in dataset.coords if name != "axis"],
             [
                 ("cases", f"{cases}, {failed} failed"),
-                *((name, self._range(name)) for name in names),
+                *((name, self._range(name)) for name in numbers),
             ],
-            [picture for name in names for picture in self._pictures(name)],
-            self._tables(names),
+            [picture for name in numbers for picture in self._pictures(name)],
+            self._tables(numbers),
             MODEL,
             self._warnings(),
         )
@@ -56,16 +57,21 @@ class Study:
             return self.dataset["error"].dims
         return max((one.dims for one in self.dataset.data_vars.values()), key=len, default=())
 
+    def _unit(self, name: str) -> str:
+        """Return the unit of a variable, or of a parameter by its name; "" where it has none."""
+        usual = symbol(PARAMETERS.get(name.rpartition(".")[2], ""))
+        unit = str(self.dataset[name].attrs.get("units", usual))
+        return "" if unit == "1" else unit
+
     def _head(self, name: str) -> str:
-        unit = self.dataset[name].attrs.get("units", "")
-        return f"{name} [{unit}]" if unit not in ("", "1") else name
+        return f"{name} [{unit}]" if (unit := self._unit(name)) else name
 
     def _number(self, name: str, value: Any) -> str:
         """Return a value of a variable, with its unit."""
         if not isinstance(value, float | int) or isinstance(value, bool):
             return str(value)
-        scale = display.scale_in(value, self.dataset[name].attrs.get("units", ""))
-        return f"{scale.factor * value:.5g} {scale.unit}".rstrip(" 1")
+        scale = display.scale_in(value, self._unit(name))
+        return f"{scale.factor * value:.5g} {scale.unit}".rstrip()
 
     def _values(self, name: str) -> str:
         values = np.ravel(self.dataset[name].values).tolist()
@@ -82,13 +88,12 @@ class Study:
 
     def _tables(self, names: list[str]) -> list[Table]:
         """Return the table of all cases, and that of those that failed."""
-        plain = [name for name in names if self.dataset[name].dims == self._dims]
-        kept = [*plain, *(name + ERROR for name in plain if name + ERROR in self.dataset)]
+        kept = [*names, *(name + ERROR for name in names if name + ERROR in self.dataset)]
         rows = self.dataset[[*kept, *(["error"] if "error" in self.dataset else [])]]
         frame = rows.to_dataframe().reset_index()
         places = [str(name) for name in frame.columns if name in self.dataset.coords]
         columns = {self._head(name): frame[name].tolist() for name in places}
-        for name in plain:
+        for name in names:
             columns[self._head(name)] = frame[name].tolist()
             if name + ERROR in frame:
                 pairs = zip(frame[name + ERROR], frame[name], strict=True)
@@ -112,7 +117,9 @@ class Study:
             and output.coords[dim].dtype.kind in "fiu"
             and output.sizes[dim] > 1
         ]
-        if output.dims != self._dims or not along or output.dtype.kind not in "fiu":
+        if output.dtype.kind not in "fiu" or output.dims != self._dims:
+            return []
+        if not along or not np.isfinite(output).any():
             return []
         x, rest = str(along[0]), [dim for dim in output.dims if dim != along[0]]
         flat = output.stack(others=rest) if rest else output.expand_dims("others")
@@ -125,7 +132,7 @@ class Study:
         return [Picture(f"{name} over {x}.".replace("_", " "), svg.lines(curves, axes))]
 
     def _axis(self, name: str) -> svg.Axis:
-        return svg.Axis(name.replace("_", " "), self.dataset[name].attrs.get("units", ""))
+        return svg.Axis(name.replace("_", " "), self._unit(name))
 
     def _warnings(self) -> list[str]:
         if "warnings" not in self.dataset:
@@ -175,6 +182,5 @@ def save_report(
     ...     save_report(study, f"{folder}/study.html").name
     'study.html'
     """
-    # Units stand in the Dataset, and those of axes are of SI.
-    with Within(SI):
+    with display_units(str(dataset.attrs.get("unit_system", "SI"))):
         return files.save(path, {".html": lambda file: write(file, [Study(dataset)], case, inputs)})
