@@ -958,8 +958,8 @@ def _inputs(solution: Solution) -> Rows:
 
 def _model(report: Report) -> Rows:
     """Return on what a solution stands, and what is not counted."""
-    force, *moments = (f"{part:.0e}" if part else "0" for part in report.balance)
-    balance = f"force {force}, moments {' and '.join(moments)}, relative"
+    force, *moments = report.balance
+    balance = f"force {force:.0e}, moments {moments[0]:.0e} and {moments[1]:.0e}, relative"
     ending = f"{report.termination}{_fallback(report)} after {report.iterations} iterations"
     return [
         ("theory", THEORY),

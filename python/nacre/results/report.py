@@ -199,7 +199,7 @@ def _leaves(path: str, value: Any, units: Mapping[str, str]) -> Iterator[tuple[s
     elif isinstance(value, list) and not all(isinstance(one, float | int | None) for one in value):
         for number, item in enumerate(value):
             yield from _leaves(f"{path}[{number}]", item, units)
-    elif value is not None and value != []:
+    elif value is not None and not (isinstance(value, list) and all(v is None for v in value)):
         # Limits of layers have the unit of the name before.
         names = re.sub(r"\[\d+\]", "", path).split(".")[:-3:-1]
         yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
@@ -271,7 +271,7 @@ def _column(name: str, values: Sequence[Any], unit: str, rounding: float) -> tup
     def cell(value: Any) -> str:
         if _is_number(value):
             return rounded(scale.factor * value if abs(value) > rounding else 0.0, DIGITS)
-        return "" if value != value else str(value)
+        return "" if value != value else {math.inf: "∞", -math.inf: "−∞"}.get(value, str(value))
 
     words = name.replace("_", " ")
     return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
@@ -307,9 +307,9 @@ def contact_pictures(result: Any) -> list[Picture]:
 
 
 def _pairs(rows: Rows) -> str:
-    cells = (
-        f"<tr><td>{html.escape(name)}</td><td>{html.escape(text)}</td></tr>" for name, text in rows
-    )
+    """Return a table of names and texts, in which a zero has no exponent."""
+    pairs = ((html.escape(name), html.escape(text.replace("0e+00", "0"))) for name, text in rows)
+    cells = (f"<tr><td>{name}</td><td>{text}</td></tr>" for name, text in pairs)
     return f"<table class='long'>{''.join(cells)}</table>"
 
 

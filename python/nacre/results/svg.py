@@ -32,13 +32,13 @@ BAR = 78
 """Width of a colour bar with its numbers."""
 MOST_POINTS, MOST_CELLS = 300, 240
 """Largest numbers of points of a curve, and of cells along a side of a map."""
-APART = 42
-"""Least distance of ticks."""
+ABREAST, STACKED = 52, 32
+"""Least distances of ticks along x and along y, where numbers are above each other."""
 INNER, OUTER = 56.0, 130.0
 """Radii of the ring from which bars stand out, and of the largest load."""
 MOST_NUMBERS = 20
 """Largest number of elements of a ring that are numbered."""
-INSET, ABOVE = 0.44, 1.75
+INSET, ABOVE = 0.36, 2.0
 """Size of an inset over that of the picture, and of y over the curves, so that it is free."""
 HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
@@ -99,7 +99,8 @@ class Side:
 
     def ticks(self) -> list[tuple[float, str]]:
         """Return the coordinates of round numbers, and these as text."""
-        values = round_numbers(self.low, self.high, abs(self.end - self.start) / APART)
+        apart = ABREAST if self.end > self.start else STACKED
+        values = round_numbers(self.low, self.high, abs(self.end - self.start) / apart)
         return [(float(self.place(v)), f"{v:.6g}") for v in values]
 
 
@@ -130,7 +131,7 @@ def lines(
 
     The inset is in the upper right corner, above the curves.
     """
-    points = [_thinned(curve) for curve in curves]
+    points = [_thinned(curve, axes[0].ends or (-math.inf, math.inf)) for curve in curves]
     low, high = _ends([part for _, part in points], has_zero=True)
     x_ends = axes[0].ends or _ends([part for part, _ in points])
     labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
@@ -150,7 +151,7 @@ def lines(
             f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}' width='{small[0]}' height='{small[1]}'"
         )
         units = axes[0]._replace(name="", ends=inset), axes[1]._replace(name="")
-        inner = lines([_upto(curve, inset[1]) for curve in curves], units, marks, None, small)
+        inner = lines([one._replace(label="") for one in curves], units, marks, None, small)
         parts.append(inner.replace("<svg", f"<svg {place}", 1))
     return _picture(parts, size)
 
@@ -242,22 +243,16 @@ def png(shares: Array) -> bytes:
     )
 
 
-def _thinned(curve: Curve) -> tuple[Array, Array]:
-    """Return the finite points of a curve, not too many, its largest and smallest among them."""
+def _thinned(curve: Curve, ends: Ends) -> tuple[Array, Array]:
+    """Return the finite points of a curve between two places, not too many, with its extremes."""
     x, y = (np.asarray(part, dtype=np.float64) for part in (curve.x, curve.y))
-    finite = np.isfinite(x) & np.isfinite(y)
-    x, y = x[finite], y[finite]
+    inside = np.isfinite(x) & np.isfinite(y) & (x >= ends[0]) & (x <= ends[1])
+    x, y = x[inside], y[inside]
     if x.size <= MOST_POINTS:
         return x, y
     places = np.linspace(0, x.size - 1, MOST_POINTS - 2).round().astype(int)
     keep = np.union1d(places, [y.argmax(), y.argmin()])
     return x[keep], y[keep]
-
-
-def _upto(curve: Curve, end: float) -> Curve:
-    """Return a curve without its label up to a place along x."""
-    x, y = np.asarray(curve.x), np.asarray(curve.y)
-    return Curve(x[x <= end], y[x <= end], "", curve.look)
 
 
 def _ends(parts: Sequence[Array], has_zero: bool = False) -> Ends:
