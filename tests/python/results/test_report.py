@@ -22,10 +22,11 @@ import nacre
 import results
 from bodies import BALL, ROD, STEEL, quiet
 from nacre import bearing, design, fatigue
+from nacre.contact import stresses
 from nacre.results import report, svg
 from nacre.results.report import Sections, input_rows, page, table, write
 from nacre.studies.report import save_report
-from support import Capture, command, written
+from support import Capture, Patch, command, written
 
 LARGEST = 300_000
 """Bytes of a page that mail and archives take."""
@@ -449,6 +450,66 @@ def test_ticks_are_where_their_numbers_are() -> None:
         share = (float(tick.text or "") + 40) / 130
         # The baseline of the text is 4 pixels below the tick.
         assert float(tick.get("y", "")) - 4 == pytest.approx(low + share * (high - low), abs=0.2)
+
+
+def test_ticks_lie_in_the_picture() -> None:
+    for low, high in ((-0.3, 0.92), (1.7e-9, 4.1e-9), (0.0, 600.0), (1.0, 1.0)):
+        ticks = svg.round_numbers(low, high, 6)
+        assert len(ticks) >= (2 if high > low else 1)
+        room = 1e-8 * (high - low)
+        assert low - room <= ticks.min() <= ticks.max() <= high + room
+
+
+def captured(monkeypatch: Patch, module: Any, name: str, result: Any) -> tuple[Any, ...]:
+    """Return the arguments of the first picture that the report of a result draws in a module."""
+    calls: list[tuple[Any, ...]] = []
+
+    def drawing(*arguments: Any) -> str:
+        calls.append(arguments)
+        return "<svg/>"
+
+    monkeypatch.setattr(module, name, drawing)
+    quiet(result._sections)
+    return calls[0]
+
+
+def test_the_stress_over_depth_is_that_of_the_solution(monkeypatch: Patch) -> None:
+    (curve,), axes, marks, inset = captured(monkeypatch, stresses, "lines", ball())
+    assert [axis.unit for axis in axes] == ["m", "Pa"]
+    assert (marks, inset) == ([2e-6], (0.0, 6e-6))
+    x, y = ball().peak_position
+    z, count = np.asarray(curve.x), np.count_nonzero(curve.x <= 2e-6)
+    assert np.all(np.diff(z) >= 0)
+    assert np.count_nonzero(z == 2e-6) == 2  # the coat first, then the steel below it
+    for part, side in ((slice(0, count - 1), "above"), (slice(count - 1, None), "below")):
+        due = quiet(ball().stress, z[part], x=x, y=y, side=side).von_mises
+        np.testing.assert_allclose(np.asarray(curve.y)[part], due, rtol=1e-12)
+    width = np.diff(ball().contact_extent[1])[0]
+    assert z[-1] == pytest.approx(1.25 * width)
+
+
+def test_sections_go_through_the_largest_pressure(monkeypatch: Patch) -> None:
+    solution = results.solved("both coated, tilted")
+    (curve,), *_ = captured(monkeypatch, svg, "lines", solution)
+    row = np.abs(solution.y - solution.peak_position[1]).argmin()
+    due = np.interp(curve.x, solution.x, solution.pressure[:, row])
+    np.testing.assert_array_equal(curve.y, due)
+    assert max(curve.y) == solution.peak_pressure
+
+
+def test_bars_and_curves_are_those_of_the_elements(monkeypatch: Patch) -> None:
+    solution = quiet(KINDS["two rows"])
+    angles, heights, _, labels = captured(monkeypatch, bearing.solution, "bars", solution)
+    assert labels == [f"row {row}, {ring} ring" for row in (1, 2) for ring in ("inner", "outer")]
+    for element, ring in ((0, 0), (3, 1), (15, 0), (29, 1)):
+        row, place = divmod(element, 15)
+        assert heights[place, 2 * row + ring] == solution.loads[element, ring]
+        assert angles[place, 2 * row + ring] == solution.angles[element]
+    rollers = loads()
+    inner, outer = captured(monkeypatch, bearing.solution, "lines", rollers)[0]
+    assert max(inner.y) == rollers.peak_pressures[:, 0].max()
+    assert max(outer.y) == pytest.approx(rollers.lamina_pressures[0, 1].max())  # type: ignore[index]
+    assert inner.x[0] == pytest.approx(-9.6e-3 / 2 * 39 / 40)  # the middle of the first of 40
 
 
 def test_long_curves_keep_their_peaks() -> None:
