@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -179,23 +178,17 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
             solution.save(path)
 
 
-@dataclass(frozen=True)
-class _Contact:
-    """A contact in a report, with the keywords of stresses for the picture over depth."""
-
-    solution: nacre.Solution | nacre.types.FrictionSolution | nacre.types.History
-    stress: dict[str, Any]
-
-    def _sections(self) -> report.Sections:
-        return self.solution._sections(**self.stress)
-
-
 def _save_report(
-    path: Path, parts: list[Any], case: Path, case_file: Case, inputs: report.Rows = ()
+    path: Path,
+    parts: list[Any],
+    case: Path,
+    case_file: Case,
+    inputs: report.Rows = (),
+    stress: dict[str, Any] | None = None,
 ) -> None:
     """Write a report with the case file, and the files that it names."""
     text, rows = case.read_text(encoding="utf-8-sig"), [*_files(case_file), *inputs]
-    files.save(path, {".html": lambda file: report.write(file, parts, text, rows)})
+    files.save(path, {".html": lambda file: report.write(file, parts, text, rows, stress)})
 
 
 def _files(case_file: Case) -> list[tuple[str, str]]:
@@ -280,10 +273,10 @@ def _solve(
     whole = solution if steps is None else steps
     sliding = {k: v for k, v in (stress_options or {}).items() if k in DEPTH_OPTIONS}
     keywords = dict(zip(("stress", "fatigue"), options, strict=True))
-    parts = [_Contact(whole, sliding), *(one for one in (stress, fatigue) if one is not None)]
+    parts = [whole, *(one for one in (stress, fatigue) if one is not None)]
     for path in save:
         if path.suffix.lower() == ".html":
-            _save_report(path, parts, case, case_file, report.input_rows(keywords))
+            _save_report(path, parts, case, case_file, report.input_rows(keywords), sliding)
         else:
             # The fields of ParaView's file are those of the last step.
             (solution if path.suffix.lower() == ".vtr" else whole).save(path)

@@ -104,17 +104,25 @@ class Sections:
 class Reported(Protocol):
     """A result that a report can be written of."""
 
-    def _sections(self) -> Sections: ...
+    @property
+    def _sections(self) -> Callable[..., Sections]: ...
 
 
 def write(
-    path: Path, results: Sequence[Reported], case: str | None = None, inputs: Rows = ()
+    path: Path,
+    results: Sequence[Reported],
+    case: str | None = None,
+    inputs: Rows = (),
+    stress: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
+    """Write the report of results of one case, whose file is `case`; its name is that of `path`.
+
+    The first result takes keywords of stresses for its picture over depth.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", core.NacreWarning)
         judgements = list(verdicts(results))
-        parts = [result._sections() for result in results]
+        parts = [results[0]._sections(**(stress or {})), *(one._sections() for one in results[1:])]
     notes = [Sections("", inputs, warnings=[str(one.message) for one in caught])]
     today = datetime.date.today().isoformat()
     path.write_text(page(path.stem, today, [*parts, *notes], judgements, case), encoding="utf-8")
