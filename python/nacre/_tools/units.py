@@ -312,8 +312,13 @@ class Scale:
     @classmethod
     def _chosen(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
-        if not dimension or largest == 0 or not math.isfinite(largest) or dimension[0] == "1":
-            return cls(1.0, own)  # nobody writes k1/m
+        if (
+            not dimension
+            or largest == 0
+            or not math.isfinite(largest)
+            or dimension.startswith(("1", "kg"))
+        ):
+            return cls(1.0, own)  # nobody writes k1/m or kkg
         # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
         power = POWERS[FACTORS.findall(dimension)[0][2]]
         low, high = (bound**power for bound in READABLE)

@@ -21,9 +21,19 @@ from nacre.bearing.rating_life import BearingLife, Duty, life_of
 from nacre.bearing.static import StaticLoad, static_load_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
+from nacre.contact.stresses import SIZE_ERRORS
 from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.quantities import BEARING, PER_CONTACT, Quantity
+from nacre.results.report import (
+    Picture,
+    Sections,
+    contact_pictures,
+    input_rows,
+    table,
+    writer,
+)
+from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.table_results import Tabular
 from nacre.results.values import encode, refusing
 
@@ -57,6 +67,8 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
+NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
+"""What a report says of the model."""
 
 
 def edge_pressure(pressures: Array) -> Array:
@@ -497,7 +509,8 @@ class BearingSolution(Tabular):
         path : str or os.PathLike
             File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
             ``nacre-contact[files]``; ``.csv`` for the table of the elements; ``.png``, ``.pdf`` and
-            ``.svg`` for the picture that `plot` draws.
+            ``.svg`` for the picture that `plot` draws; ``.html`` for a report on a page to print
+            and to sign.
 
         Returns
         -------
@@ -520,7 +533,7 @@ class BearingSolution(Tabular):
         True
         """
         writers = files.tabular(self, self._file_rows(), **self._comments())
-        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        writers |= files.pictures(lambda: next(iter(self.plot().values()))) | writer(self)
         return files.save(path, writers)
 
     def _comments(self) -> dict[str, object]:
@@ -548,6 +561,64 @@ class BearingSolution(Tabular):
         yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
         for j in range(self.bearing.elements):
             yield [j, *(float(values[j]) for _, _, values in columns)]
+
+    @display.in_si
+    def _sections(self) -> Sections:
+        names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
+        inputs = input_rows({name: getattr(self, name) for name in names})
+        rows = self._rows()
+        model = [row for row in rows if row[0] in ("contacts", "ended")]
+        numbers = [*(row for row in rows if row not in model), *self._geometry()]
+        stiffness = [[f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]]
+        head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
+        matrix = zip(stiffness[0], self.tangent.tolist(), strict=True)
+        tables = [
+            table("Elements and rings", self._element_rows()),
+            table("Stiffness in N, N m, m and rad", [head, *([n, *row] for n, row in matrix)]),
+        ]
+        errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
+        limits = [*model, *errors, ("not counted", NOT_COUNTED)]
+        warnings = self.report.warnings
+        return Sections(self._TITLE, inputs, numbers, self._pictures(), tables, limits, warnings)
+
+    def _geometry(self) -> list[tuple[str, str]]:
+        """Return the dimensions that follow from others, and the rating."""
+        dimensions = {"pitch diameter": self.bearing.pitch, "clearance": self.bearing.play}
+        rows = [(name, display.number(value, "m")) for name, value in dimensions.items()]
+        return [*rows, ("rating", display.number(float(self.bearing.capacity or 0.0), "N"))]
+
+    def _element_rows(self) -> list[list[Any]]:
+        """Return the table of the elements as it is printed: rounding is 0."""
+        head, *rows = ([*row] for row in self._file_rows())
+        names = ["", *(row.name for row, _, _ in self._columns())]
+        return [head] + [
+            [self._rounded(name, value) for name, value in zip(names, row, strict=True)]
+            for row in rows
+        ]
+
+    def _pictures(self) -> list[Picture]:
+        """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
+        axis = Axis("load of each element", "N")
+        count, rows = self.bearing.count, self.bearing.rows
+        loads = self.loads.reshape(rows, count, 2).transpose(1, 0, 2).reshape(count, 2 * rows)
+        angles = np.repeat(self.angles.reshape(rows, count).T, 2, axis=1)
+        labels = [
+            f"row {k + 1}, {name}" if rows > 1 else name for k in range(rows) for name in RINGS
+        ]
+        ring = bars(angles, loads, axis, [f"{label} ring" for label in labels])
+        pictures = [Picture("Loads of the elements, x to the right.", ring)]
+        heaviest = int(self.loads[:, 0].argmax())
+        if self.lamina_pressures is None:
+            contact = self.contact(heaviest, "inner") if self.model == "solved" else None
+            return pictures + ([] if contact is None else contact_pictures(contact))
+        count = self.lamina_pressures.shape[-1]
+        x = ((np.arange(count) + 0.5) / count - 0.5) * getattr(self.bearing, "length", 1.0)
+        curves = [
+            Curve(x, self.lamina_pressures[heaviest, k], f"{name} ring", look)
+            for k, (name, look) in enumerate(zip(RINGS, ("line", "dashed"), strict=True))
+        ]
+        drawing = lines(curves, (Axis("x along the element", "m"), Axis("pressure", "Pa")))
+        return [*pictures, Picture(f"Largest pressure along element {heaviest}.", drawing)]
 
     @display.in_si
     def _rows(self) -> list[tuple[str, str]]:

@@ -44,7 +44,7 @@ import copy
 import math
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -166,6 +166,10 @@ class Case:
             return table.arguments()
         except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
+
+    def measured(self) -> list[Path]:
+        """Return the files that the case reads: those of measured surfaces."""
+        return [self.folder / path for path in _paths(self.data)]
 
     def stress(self) -> dict[str, Any] | None:
         """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
@@ -289,6 +293,16 @@ class Case:
             return table_for(data).model_validate(data)
         except ValidationError as error:
             raise CaseError(f"{self.name}: {_first(error, data)}") from None
+
+
+def _paths(data: object) -> Iterator[str]:
+    """Yield the paths in the tables of shapes."""
+    if isinstance(data, Mapping):
+        if data.get("kind") == "height_map":
+            yield data["path"]
+        yield from (path for value in data.values() for path in _paths(value))
+    elif isinstance(data, list):
+        yield from (path for value in data for path in _paths(value))
 
 
 def _first(error: ValidationError, data: object) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import warnings
 from pathlib import Path
@@ -23,12 +24,13 @@ from nacre.case import templates as _templates
 from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
-from nacre.results import tables
+from nacre.results import files, report, tables
 from nacre.results.display import SLIGHT, shown_in
 from nacre.results.quantities import BEARING, ERROR
 from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
+from nacre.studies.report import save_report
 
 
 class Command(TyperCommand):
@@ -57,6 +59,8 @@ Units = Annotated[
     ),
 ]
 ARTICLES = {"bearing": "a bearing", "indent": "an indentation"}
+DEPTH_OPTIONS = ("body", "friction", "direction", "residual")
+"""Keywords of stresses that the picture over depth in a report takes."""
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
@@ -103,7 +107,7 @@ def solve(
         typer.Option(
             metavar="FILE",
             callback=_in_folder,
-            help="File to write: .nc, .vtr, .csv, or a picture. May be repeated.",
+            help="File to write: .nc, .vtr, .csv, a picture, or .html, a report. May be repeated.",
         ),
     ] = None,
     initial: Annotated[
@@ -138,14 +142,7 @@ def solve(
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(case_file.units):
-        _solve(
-            case,
-            case_file.friction,
-            arguments,
-            (stress_options, fatigue_options),
-            save or [],
-            as_json,
-        )
+        _solve(case, case_file, arguments, (stress_options, fatigue_options), save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -158,7 +155,9 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     """Solve a bearing, save and print it, with its life and a film where they are asked for."""
     for path in save:
         if path.suffix.lower() == ".vtr":
-            raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
+            raise CaseError(
+                f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
+            )
         _check_ending(path)
     arguments = case_file.arguments()
     bearing, life_options = arguments.pop("bearing"), case_file.life()
@@ -186,7 +185,33 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
         with shown_in(case_file.units):
             print("\n\n".join(map(str, (solution, *added.values()))))
     for path in save:
-        solution.save(path)
+        if path.suffix.lower() == ".html":
+            with shown_in(case_file.units):
+                _save_report(path, [solution, *added.values()], case, case_file)
+        else:
+            solution.save(path)
+
+
+def _save_report(
+    path: Path,
+    parts: list[Any],
+    case: Path,
+    case_file: Case,
+    inputs: report.Rows = (),
+    stress: dict[str, Any] | None = None,
+) -> None:
+    """Write a report with the case file, and the files that it names."""
+    text, rows = case.read_text(encoding="utf-8-sig"), [*_files(case_file), *inputs]
+    files.save(path, {".html": lambda file: report.write(file, parts, text, rows, stress)})
+
+
+def _files(case_file: Case) -> list[tuple[str, str]]:
+    """Return the units of a case, and the measured files that it names with their SHA-256."""
+    digests = [
+        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
+        for path in case_file.measured()
+    ]
+    return [("units of the case", case_file.units), *digests]
 
 
 def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
@@ -217,7 +242,7 @@ def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
 
 def _solve(
     case: Path,
-    friction: str | None,
+    case_file: Case,
     arguments: dict[str, Any],
     options: tuple[dict[str, Any] | None, dict[str, Any] | None],
     save: list[Path],
@@ -225,6 +250,7 @@ def _solve(
 ) -> None:
     """Solve, save and print in the units that are set."""
     stress_options, fatigue_options = options
+    friction = case_file.friction
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
@@ -258,9 +284,16 @@ def _solve(
         if steps:
             print(f"{steps}\n\nlast step")
         print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
+    whole = solution if steps is None else steps
+    sliding = {k: v for k, v in (stress_options or {}).items() if k in DEPTH_OPTIONS}
+    keywords = dict(zip(("stress", "fatigue"), options, strict=True))
+    parts = [whole, *(one for one in (stress, fatigue) if one is not None)]
     for path in save:
-        # The fields of ParaView's file are those of the last step.
-        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
+        if path.suffix.lower() == ".html":
+            _save_report(path, parts, case, case_file, report.input_rows(keywords), sliding)
+        else:
+            # The fields of ParaView's file are those of the last step.
+            (solution if path.suffix.lower() == ".vtr" else whole).save(path)
 
 
 @app.command(cls=Command)
@@ -277,7 +310,9 @@ def sweep(
     save: Annotated[
         list[Path] | None,
         typer.Option(
-            metavar="FILE", callback=_in_folder, help="File to write: .csv. May be repeated."
+            metavar="FILE",
+            callback=_in_folder,
+            help="File to write: .csv or .html. May be repeated.",
         ),
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
@@ -288,8 +323,8 @@ def sweep(
     case_file = _read_case(case, units)
     study = case_file.study(store)
     for path in save or []:
-        if path.suffix.lower() != ".csv":
-            raise CaseError(f"--save must end in .csv, got {str(path)!r}")
+        if path.suffix.lower() not in (".csv", ".html"):
+            raise CaseError(f"--save must end in .csv or .html, got {str(path)!r}")
     with nacre.display_units(case_file.units), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
@@ -307,6 +342,10 @@ def sweep(
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     for path in save or []:
+        if path.suffix.lower() == ".html":
+            text = case.read_text(encoding="utf-8-sig")
+            save_report(dataset, path, case=text, inputs=_files(case_file))
+            continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
     if failed:
@@ -319,7 +358,9 @@ def indent(
     save: Annotated[
         list[Path] | None,
         typer.Option(
-            metavar="FILE", callback=_in_folder, help="File to write: .nc or .csv. May be repeated."
+            metavar="FILE",
+            callback=_in_folder,
+            help="File to write: .nc, .csv or .html. May be repeated.",
         ),
     ] = None,
     units: Units = None,
@@ -335,8 +376,10 @@ def indent(
 def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: bool) -> None:
     """Solve an indentation, save and print it."""
     for path in save:
-        if path.suffix.lower() not in (".nc", ".csv"):
-            raise CaseError(f"--save must end in .nc or .csv for an indentation, got {str(path)!r}")
+        if path.suffix.lower() not in (".nc", ".csv", ".html"):
+            raise CaseError(
+                f"--save must end in .nc, .csv or .html for an indentation, got {str(path)!r}"
+            )
     arguments = case_file.arguments()
     with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
@@ -348,7 +391,10 @@ def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: b
             raise CaseError(f"{case}: indent: {error}") from error
         print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
         for path in save:
-            solution.save(path)
+            if path.suffix.lower() == ".html":
+                _save_report(path, [solution], case, case_file)
+            else:
+                solution.save(path)
 
 
 @app.command(cls=Command)
@@ -441,7 +487,7 @@ def _plain(data: object) -> object:
 
 
 def _check_ending(path: Path) -> None:
-    endings = {".nc", ".vtr", ".csv", *PICTURES}
+    endings = {".nc", ".vtr", ".csv", ".html", *PICTURES}
     if path.suffix.lower() not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")

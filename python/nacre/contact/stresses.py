@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -18,6 +19,8 @@ from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.quantities import EXTREMES
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -31,6 +34,14 @@ Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
+STRESSES = "Fourier transforms of the stress below pressure and traction, exact in the depth"
+SIZE_ERRORS = "errors due to the size of the cells, estimated"
+"""What a report says of stresses."""
+DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
+"""Depths of the picture of a report, in all, fewest and most, and in each layer; their number times
+that of the cells, which takes 0.2 s; most cells of a grid for it."""
+DEEPEST, THIN = 1.25, 0.1
+"""Its depth over the width of the contact; thickness over that below which it has an inset."""
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
@@ -496,6 +507,14 @@ class StressSummary(Tabular, Warned):
                 limit = np.nan if factor is None else factor
                 rows.append((display.part(part), name, value, error, *place, limit))
         return rows
+
+    def _sections(self) -> Sections:
+        (part, name, value, _, *rest), *rows = self._file_rows()
+        cells = [(*r[:3], display.share(r[3], r[2]) if r[3] == r[3] else "", *r[4:]) for r in rows]
+        extremes = table("Extremes", [(part, name, value, "±", *rest), *cells], EXTREMES)
+        notes = [("traction", text) for text in _notes(self)]
+        model = [("theory", STRESSES), ("±", SIZE_ERRORS)]
+        return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
 
     def __str__(self) -> str:
         """Return a table, in the units that are set."""
@@ -972,6 +991,45 @@ def _warned(result: StressResult) -> StressResult:
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     return result
+
+
+def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> Iterator[Picture]:
+    """Yield the picture of the von Mises stress against depth below the largest pressure.
+
+    There is none of bodies without stresses, of surfaces that have yielded and of large grids.
+    """
+    normal = getattr(solution, "normal", solution)
+    member = normal.report.counterbody if body == "counterbody" else normal.report.body
+    if (
+        not isinstance(member, core.HalfSpace)
+        or not isinstance(member.substrate, core.Elastic)
+        or not normal.contact_area > 0
+        or normal.indentation.any()
+        or normal.pressure.size > MOST_CELLS
+    ):
+        return
+    widths = [high - low for low, high in normal.contact_extent if high > low]
+    bottom = DEEPEST * min(widths, default=min(normal.grid.size))
+    faces = [0.0, *(z for z in member.interfaces if z < bottom), bottom]
+    inset = (0.0, 3 * faces[1]) if faces[1] < THIN * bottom else None
+    ends = sorted({*faces, *(inset or ())})
+    count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
+    counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
+    plan, (x, y) = solution.stress_plan(body), normal.peak_position
+    parts = zip(pairwise(ends), counts, strict=True)
+    within = np.concatenate([np.linspace(top, end, n, endpoint=False) for (top, end), n in parts])
+    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces[1:]), "above"))
+    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
+    depths = np.concatenate([within, faces[1:]])
+    # An interface occurs twice: its upper side, which comes last here, stands first.
+    order = np.lexsort((-np.arange(depths.size), depths))
+    curve = Curve(depths[order], np.concatenate([one.von_mises for one in fields])[order])
+    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
+    words = ["Von Mises stress below the largest pressure"]
+    words += ["dotted: interfaces"] if faces[1:-1] else []
+    words += ["inset: the first three thicknesses of the coat"] if inset else []
+    caption = "; ".join(words) + "."
+    yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
 
 
 def _notes(summary: StressSummary) -> list[str]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +19,7 @@ from nacre._tools.progress import lasting
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
-from nacre.results import display
+from nacre.results import display, files, report, svg, tables
 from nacre.results.base import Fields
 
 if TYPE_CHECKING:
@@ -97,6 +99,57 @@ class Optimum(Fields):
         (head, *rows), lines = self._table()
         picture = display.drawn(self.plot)
         return display.markup(rows, (), picture, head, lines, widest=display.WIDE)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.html`` for a report on a page to print and to sign, ``.csv`` for the
+            course, or ``.png``, ``.pdf`` or ``.svg`` for the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+        """
+        rows = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
+        table = {".csv": lambda file: tables.write_rows(file, rows, source=tables.SOURCE)}
+        return files.save(path, table | files.pictures(self.plot) | report.writer(self))
+
+    def _sections(self) -> report.Sections:
+        (head, *rows), lines = self._table()
+        x = self.course["solves"]
+        curves = [
+            svg.Curve(x, self.course[name] / (self.course[name][0] or 1.0), name)
+            for name in ("objective", *self.values)
+        ]
+        drawing = svg.lines(curves, (svg.Axis("solves"), svg.Axis("share of the start")))
+        cases = [one._sections() for one in self.solutions]
+        course = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
+        return report.Sections(
+            "optimum of a contact",
+            [
+                (f"case {k}: {name}", text)
+                for k, case in enumerate(cases)
+                for name, text in case.inputs
+            ],
+            [
+                (f"case {k}: {name}", text)
+                for k, case in enumerate(cases)
+                for name, text in case.numbers
+            ],
+            [report.Picture("Course.", drawing), *(p for case in cases for p in case.pictures)],
+            [report.Table("Optimum", head, rows), report.table("Course", course)],
+            [("minimised", text) for text in lines if not text.startswith("warning: ")],
+            self.warnings,
+        )
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the course; see `nacre.plot.course`."""

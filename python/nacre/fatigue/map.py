@@ -33,6 +33,8 @@ from nacre.fatigue.summary import (
 from nacre.results import display, files
 from nacre.results.base import Warned
 from nacre.results.quantities import SHAKEDOWN
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -162,6 +164,28 @@ class ShakedownMap(Tabular, Warned):
             parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
             for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
                 yield [name, friction, *columns]
+
+    def _sections(self) -> Sections:
+        order = np.argsort(self.friction)
+        curves = [
+            Curve(self.friction[order], values[order], f"{name}: {words}", look)
+            for k, name in enumerate(self.names)
+            for values, words, look in (
+                (self.limits[k], "shakedown", "line"),
+                (self.first_yield[k], "first yield", "dashed"),
+            )
+        ]
+        axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
+        _, notes = self._printed()
+        return Sections(
+            "shakedown map",
+            [("rule", self.rule)],
+            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
+            [Picture("Limits over friction.", lines(curves, axes))],
+            [table("Limits", self._file_rows(), SHAKEDOWN)],
+            [("theory", note) for note in notes],
+            self.warnings,
+        )
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""

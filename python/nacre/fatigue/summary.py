@@ -23,6 +23,8 @@ from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import FATIGUE, PROFILE
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -315,6 +317,26 @@ class FatigueSummary(Tabular, Warned):
                 value = getattr(face, name)
                 rows.append((display.part(face), name, value, np.nan, np.nan, face.depth, np.nan))
         return rows
+
+    def _sections(self) -> Sections:
+        labels = {row.name: row.label for row in PROFILE}
+        curves = [
+            Curve(self.depths, values, labels.get(name, name))
+            for name, values in self.profiles.items()
+        ]
+        marks = [face.depth for face in self.interfaces]
+        drawing = lines(curves, (Axis("depth", "m"), Axis("stress", "Pa")), marks)
+        _, notes = self._printed()
+        comments = ((name, str(self._comments()[name])) for name in ("rule", "criteria"))
+        return Sections(
+            "shakedown and fatigue",
+            list(comments),
+            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
+            [Picture("What a material needs at each depth; dotted: interfaces.", drawing)],
+            [table("What layers and interfaces need", self._file_rows(), FATIGUE)],
+            [("theory", note) for note in notes],
+            self.warnings,
+        )
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""

@@ -20,6 +20,8 @@ from nacre._tools.units import printable, written
 from nacre.results import display
 from nacre.results.base import Fields, Warned
 from nacre.results.quantities import INDENT, units
+from nacre.results.report import Picture, Sections, input_rows, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 
@@ -45,6 +47,15 @@ KINDS: tuple[type | types.UnionType, ...] = (
     core.Adhesion | None,
 )
 """Classes of the arguments."""
+MODEL = (
+    (
+        "theory",
+        "linear elasticity of layered half-spaces under an axisymmetric tip, without friction and "
+        "without a grid: integral equations, to rounding",
+    ),
+    ("not counted", "plastic flow, creep, viscosity, roughness, pile-up, tilt of the sample"),
+)
+"""What a report says of the model."""
 ROWS = 30
 """Largest number of contacts that are printed."""
 
@@ -348,6 +359,21 @@ class IndentSolution(Tabular, Warned):
         from nacre.indent._files import contact_rows
 
         return contact_rows(self)
+
+    def _sections(self) -> Sections:
+        inputs = {name: getattr(self, name) for name in ARGUMENTS}
+        inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
+        inputs["counterbody"] = self.counterbody or "rigid"
+        numbers = [(name, self._range(name)) for name in NUMBERS[:4]]
+        if self.adhesion is not None:
+            numbers += [(n.replace("_", " "), with_unit(v, n)) for n, v in self._pulled.items()]
+        x, y = np.ravel(self.approach), np.ravel(self.load)
+        axes = Axis("approach", "m"), Axis("load", "N")
+        pictures = [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
+        contacts = [table("Contacts", self._file_rows())]
+        title = "indentation of a coated body"
+        rows = input_rows(inputs)
+        return Sections(title, rows, numbers, pictures, contacts, MODEL, self.warnings)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the load as a function of the approach, or of one contact the pressure.

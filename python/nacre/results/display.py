@@ -113,11 +113,34 @@ def shown_in(units: str) -> Iterator[None]:
 
 def number(value: float, unit: str, digits: int = 4) -> str:
     """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
-    if (units := _units.get()) is None:
-        return written(value, unit, digits)
-    with display_units(units):
-        scale = Scale.in_unit(value, unit)
+    scale = scale_of(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
+
+
+def scale_of(largest: float, unit: str) -> Scale:
+    """Return the scale of numbers, whose SI unit is given, in units set or `shown_in`."""
+    if (units := _units.get()) is None:
+        return Scale.of(largest, unit)
+    with display_units(units):
+        return Scale.in_unit(largest, unit)
+
+
+def scale_in(largest: float, unit: str) -> Scale:
+    """Return the scale of numbers in any unit, in units set or `shown_in`."""
+    if (units := _units.get()) is None:
+        return Scale.in_unit(largest, unit)
+    with display_units(units):
+        return Scale.in_unit(largest, unit)
+
+
+def share(error: float, value: float) -> str:
+    """Return an error in per cent of a value; "" where there is none."""
+    if error == 0:
+        return ""
+    if error >= abs(value):
+        return "> 100 %"
+    percent = 100 * error / abs(value)
+    return f"{rounded(percent, 2)} %" if percent >= 0.01 else "< 0.01 %"
 
 
 def rows(
@@ -222,6 +245,17 @@ def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
     ]
 
 
+def loaded_parts(pressure: npt.NDArray[np.float64]) -> list[tuple[int, int]]:
+    """Return the first and last cells along x and y of the contact and a margin around it."""
+    parts = []
+    for axis, cells in enumerate(pressure.shape):
+        loaded = np.flatnonzero(pressure.any(axis=1 - axis))
+        low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
+        margin = 1 + (high - low) // 10
+        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    return parts
+
+
 def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
     """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches.
 
@@ -232,12 +266,7 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
         from matplotlib.image import imsave
     except ImportError:
         return None
-    parts = []
-    for axis, cells in enumerate(pressure.shape):
-        loaded = np.flatnonzero(pressure.any(axis=1 - axis))
-        low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
-        margin = 1 + (high - low) // 10
-        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    parts = loaded_parts(pressure)
     spans = [high - low + 1 for low, high in parts]
     # A narrow contact stays legible: its map is at least a quarter as high as wide.
     size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]

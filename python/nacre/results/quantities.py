@@ -406,6 +406,29 @@ PARAMETERS = {
     "force_slope": "N/m",
 }
 """SI units of parameters of studies and fits, by the last part of their names."""
+LENGTHS = (
+    *(
+        "amplitude",
+        "apex",
+        "center",
+        "corners",
+        "drop",
+        "ends",
+        "heights",
+        "radii",
+        "size",
+        "width",
+    ),
+    *("counter_radius", "counter_radius_x", "counter_radius_y", "radius_x", "radius_y", "spacing"),
+    *("groove_radius", "profile_radius", "raceway_crown", "raceway_diameters", "shoulder_height"),
+    *("shift", "smoothing", "x"),
+)
+INPUTS = PARAMETERS | dict.fromkeys(LENGTHS, "m")
+INPUTS |= {"normal": "Pa/m", "tangential": "Pa/m", "bending": "Pa", "torsion": "Pa"}
+INPUTS |= {"capacity": "N", "force": "N", "rotation": "rad", "speed": "rad/s", "density": "kg/m³"}
+INPUTS |= {"yield_stress": "Pa", "residual": "Pa", "poisson": "", "exponent": "", "slope": ""}
+INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
+"""SI units of all arguments of contacts, indentations and bearings, by their names."""
 
 
 def units(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from nacre._tools.units import printable
-from nacre.results import display, files
+from nacre.results import display, files, report
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import AXIS, Quantity
 from nacre.results.tables import heading
@@ -34,7 +34,8 @@ class Tabular(Result, ABC, is_base=True):
         ----------
         path : str or os.PathLike
             File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, or ``.csv`` for the table.
+            ``nacre-contact[files]``, ``.csv`` for the table, or ``.html`` for a report: verdict,
+            inputs, numbers, pictures, limits and warnings on a page to print and to sign.
 
         Returns
         -------
@@ -57,7 +58,12 @@ class Tabular(Result, ABC, is_base=True):
         ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
         True
         """
-        return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
+        writers = files.tabular(self, self._file_rows(), **self._comments())
+        return files.save(path, writers | report.writer(self))
+
+    @abstractmethod
+    def _sections(self) -> report.Sections:
+        """Return what stands in a report."""
 
     @abstractmethod
     def _file_rows(self) -> Iterable[Iterable[object]]:
@@ -107,6 +113,12 @@ class TableResult(Tabular, Warned, is_base=True):
             heads = [heading(row, self, name) for name in (names if row.dims else [""])]
             cells += zip(heads, values, strict=True)
         return zip(*cells, strict=True)
+
+    def _sections(self) -> report.Sections:
+        model = [("theory", text) for text in [getattr(self, "model", "")] if text]
+        rows = [row for row in self._rows() if row not in [("model", text) for _, text in model]]
+        numbers = [*rows, *report.other_numbers(self)]
+        return report.Sections(self._TITLE, (), numbers, model=model, warnings=self.warnings)
 
     def _si(self, row: Quantity) -> str:
         """Return the SI unit of a quantity of this result; that in a line contact may differ."""
