@@ -31,6 +31,7 @@ from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
+from nacre.results.verdict import SINGULAR
 
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None] | None
@@ -46,8 +47,6 @@ STEEPEST = 0.02
 UNKNOWN_RATE = 0.75
 """Power of the size of the cells with which errors fall, where one change shows none: as that of a
 contact's own estimate."""
-SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
-"""Warnings of contacts whose pressure has no limit on ever finer cells."""
 REMEDIES = {
     "iteration limit": "raise max_iterations or the tolerance",
     "no descent": "no step lowers the energy by more than rounding: raise the tolerance",

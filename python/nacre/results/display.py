@@ -112,11 +112,26 @@ def shown_in(units: str) -> Iterator[None]:
 
 def number(value: float, unit: str, digits: int = 4) -> str:
     """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
-    if (units := _units.get()) is None:
-        return written(value, unit, digits)
-    with display_units(units):
-        scale = Scale.in_unit(value, unit)
+    scale = scale_of(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
+
+
+def scale_of(largest: float, unit: str) -> Scale:
+    """Return the scale of numbers, whose SI unit is given, in units set or `shown_in`."""
+    if (units := _units.get()) is None:
+        return Scale.of(largest, unit)
+    with display_units(units):
+        return Scale.in_unit(largest, unit)
+
+
+def share(error: float, value: float) -> str:
+    """Return an error in per cent of a value; "" where there is none."""
+    if error == 0:
+        return ""
+    if error >= abs(value):
+        return "> 100 %"
+    percent = 100 * error / abs(value)
+    return f"{rounded(percent, 2)} %" if percent >= 0.01 else "< 0.01 %"
 
 
 def rows(
@@ -190,8 +205,12 @@ def markup(
     head: Sequence[str] = (),
     notes: Sequence[str] = (),
     widest: int = WIDEST,
+    verdict: Sequence[str] = (),
 ) -> str:
-    """Return what a notebook shows of any result: a table, a picture beside it, and notes below."""
+    """Return what a notebook shows of any result: a table, a picture beside it, and notes below.
+
+    The sentences of a verdict stand above the table.
+    """
     lines = [*notes, *(f"warning: {text}" for text in warnings)]
     cells = [*([_cells("th", head)] if head else []), *(_cells("td", row) for row in rows)]
     encoded = "" if picture is None else base64.b64encode(picture).decode()
@@ -200,7 +219,8 @@ def markup(
         f"src='data:image/png;base64,{encoded}'>"
     )
     return (
-        f"<div style='display:flex; gap:16px; align-items:flex-start'>"
+        "".join(f"<p>{html.escape(sentence)}</p>" for sentence in verdict)
+        + f"<div style='display:flex; gap:16px; align-items:flex-start'>"
         f"<table>{''.join(cells)}</table>{image or ''}</div>"
         + "".join(f"<p>{html.escape(note)}</p>" for note in lines)
     )
