@@ -7,6 +7,7 @@ from nacre.contact.solution import Report
 from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 from nacre.fatigue import FatigueSummary, InterfaceFatigue, LayerFatigue, ShakedownMap
 from nacre.friction import CreepCoefficients
+from nacre.results.verdict import Verdict
 
 __all__ = [
     "CreepCoefficients",
@@ -26,4 +27,5 @@ __all__ = [
     "Stress",
     "StressPlan",
     "StressSummary",
+    "Verdict",
 ]

@@ -614,7 +614,11 @@ class BearingSolution(Tabular):
             texts = (display.number(v, row.si(), self._digits(row.name)) for row, v in values)
             lines.append([f"{j}", *texts])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
-        return f"{self.verdict}\n\n" + display.text(self._rows(), self.report.warnings) + printable(table)
+        return (
+            f"{self.verdict}\n\n"
+            + display.text(self._rows(), self.report.warnings)
+            + printable(table)
+        )
 
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -165,7 +166,9 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
                 raise CaseError(f"{case}: bearing.film: {error}") from error
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
-        state = {k: v for k, v in solution.to_dict().items() if k not in left}
+        with shown_in(described.units):
+            state = _verdicts({"bearing": solution} | added)
+        state |= {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
         print(json.dumps(_plain(_in_units(state, added, described.units)), indent=2))
     else:
@@ -191,6 +194,13 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
     columns = np.array([sizes["m"]] * 3 + [1.0] * 2)
     record["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
     return record
+
+
+def _verdicts(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the verdicts on results, by the names of these; some have none."""
+    judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
+    verdicts = {name: one._state() for name, one in judged.items()}
+    return {"verdict": verdicts} if verdicts else {}
 
 
 def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
@@ -238,6 +248,7 @@ def _solve(
     if as_json:
         summaries = {"stress": stress, "fatigue": fatigue}
         extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
+        extremes |= _verdicts(summaries)
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:

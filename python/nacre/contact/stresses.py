@@ -883,8 +883,10 @@ class Stressed:
 
         Parameters
         ----------
-        body, yield_stress, strength, friction, direction, residual, refine, threads, progress : optional
+        body, yield_stress, strength, friction, direction, residual, refine : optional
             As in `stress_summary`.
+        threads, progress : optional
+            Likewise.
 
         Returns
         -------
