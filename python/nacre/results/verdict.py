@@ -185,7 +185,7 @@ def beside(value: float, limit: float, unit: str = "Pa") -> str:
 
 def measured(value: float, error: float | None, unit: str = "Pa") -> str:
     """Return a number with its error, as a share, where that is known."""
-    share = display.share(error or 0.0, value)
+    share = display.share(error or 0.0, value).replace("< ", "").replace(">", "over")
     return number(value, unit) + (f" ± {share}" if share else "")
 
 
