@@ -8,6 +8,7 @@ from nacre.contact.solution import Report
 from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 from nacre.fatigue import FatigueSummary, InterfaceFatigue, LayerFatigue, ShakedownMap
 from nacre.friction import CreepCoefficients
+from nacre.results.verdict import Verdict
 
 __all__ = [
     "Card",
@@ -29,4 +30,5 @@ __all__ = [
     "Stress",
     "StressPlan",
     "StressSummary",
+    "Verdict",
 ]

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass
+from decimal import Decimal
 from types import TracebackType
 
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
@@ -357,6 +358,16 @@ def written(value: float, unit: str, digits: int = 4) -> str:
     """
     scale = Scale.of(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
+
+
+def plain(value: float, digits: int) -> str:
+    """Return a number of so many digits, never with an exponent, in thousands from 10 000 on.
+
+    >>> plain(14203.0, 3), plain(1.2345e-5, 3), plain(1739.0, 3)
+    ('14 200', '0.0000123', '1740')
+    """
+    number = Decimal(f"{value:.{digits}g}").normalize()
+    return f"{number:,f}".replace(",", " ") if abs(number) >= 1e4 else f"{number:f}"
 
 
 def rounded(value: float, digits: int) -> str:

@@ -50,9 +50,6 @@ hundred units in its last place."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
 
-SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
-"""Warnings of contacts whose pressure has no limit on ever finer cells."""
-
 
 class Reaction(NamedTuple):
     """Energy, force and stiffness of the contacts of all elements with both rings."""

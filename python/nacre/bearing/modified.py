@@ -14,11 +14,12 @@ import warnings
 from typing import Any, Literal, NamedTuple
 
 import nacre._core as core
-from nacre.bearing.contact_laws import SINGULAR, bodies_of, ellipse_of, grid_of
+from nacre.bearing.contact_laws import bodies_of, ellipse_of, grid_of
 from nacre.bearing.geometry import RINGS, Ring, above
 from nacre.bearing.iso import is_thrust
 from nacre.bearing.static import STEEL, check_bearing, element_load, static_rating, total_load
 from nacre.contact import Contact
+from nacre.results.verdict import SINGULAR
 
 RELIABILITY = {0.9: 1.0, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.999: 0.093}
 """Factors a_1 by reliability: ISO 281:2007, table 12."""

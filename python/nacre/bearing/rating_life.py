@@ -20,9 +20,11 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
+from nacre.bearing.verdict import life_verdict
 from nacre.results import display
 from nacre.results.quantities import BEARING_LIFE
 from nacre.results.table_results import TableResult
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from nacre.bearing.solution import BearingSolution
@@ -107,6 +109,11 @@ class BearingLife(TableResult):
             fields |= {"l10": state["revolutions"], "revolutions": state["revolutions"] * 1e6}
             fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
         return super()._restored(fields)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: how long the bearing lives; no life is required of it."""
+        return life_verdict(self)
 
     @display.in_si
     def _rows(self) -> list[tuple[str, str]]:

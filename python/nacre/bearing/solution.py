@@ -19,6 +19,7 @@ from nacre.bearing.iso import Edge, pressure_factors
 from nacre.bearing.modified import Lubrication
 from nacre.bearing.rating_life import BearingLife, Duty, life_of
 from nacre.bearing.static import StaticLoad, static_load_of
+from nacre.bearing.verdict import bearing_verdict
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import SIZE_ERRORS
@@ -36,6 +37,7 @@ from nacre.results.report import (
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.table_results import Tabular
 from nacre.results.values import encode, refusing
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
@@ -232,6 +234,15 @@ class BearingSolution(Tabular):
     def reference_life(self) -> float:
         """Life of ISO/TS 16281 with the standard's edge factors [million revolutions]."""
         return self.life().l10
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: life, and the largest pressure against that of the static rating of ISO 76.
+
+        It is bad above that pressure, which is 4000 MPa of rollers and 4200 MPa of balls, fair
+        where less than 1.5 times below it or where the largest pressure is at an edge.
+        """
+        return bearing_verdict(self)
 
     def stiffness(self) -> Array:
         """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
@@ -541,7 +552,14 @@ class BearingSolution(Tabular):
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
         error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        return {"model": self.model, **vectors, **error_columns, **notes}
+        verdict = " ".join(self.verdict.sentences)
+        return {
+            "verdict": verdict,
+            "model": self.model,
+            **vectors,
+            **error_columns,
+            **notes,
+        }
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""
@@ -673,7 +691,7 @@ class BearingSolution(Tabular):
 
     @display.in_si
     def __str__(self) -> str:
-        """Return the main numbers, and a table of the loaded elements."""
+        """Return the verdict, the main numbers, and a table of the loaded elements."""
         columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
         lines = [["element", *(name for _, name, _ in columns)]]
         for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
@@ -681,10 +699,15 @@ class BearingSolution(Tabular):
             texts = (display.number(v, row.si(), self._digits(row.name)) for row, v in values)
             lines.append([f"{j}", *texts])
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
-        return display.text(self._rows(), self.report.warnings) + printable(table)
+        return (
+            f"{self.verdict}\n\n"
+            + display.text(self._rows(), self.report.warnings)
+            + printable(table)
+        )
 
     def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.report.warnings)
+        verdict = self.verdict.sentences
+        return display.markup(self._rows(), self.report.warnings, verdict=verdict)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""

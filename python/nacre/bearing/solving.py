@@ -19,7 +19,6 @@ from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
     LINE,
-    SINGULAR,
     STANDARD,
     Hertzian,
     Law,
@@ -33,6 +32,7 @@ from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
+from nacre.results.verdict import SINGULAR
 
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None] | None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -178,7 +179,9 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
                 raise CaseError(f"{case}: bearing.film: {error}") from error
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
-        state = {k: v for k, v in solution.to_dict().items() if k not in left}
+        with shown_in(case_file.units):
+            state = _verdicts({"bearing": solution} | added)
+        state |= {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
         print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
     else:
@@ -232,6 +235,13 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
     return record
 
 
+def _verdicts(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the verdicts on results, by the names of these; some have none."""
+    judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
+    verdicts = {name: one._state() for name, one in judged.items()}
+    return {"verdict": verdicts} if verdicts else {}
+
+
 def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
     """Return the film in the heaviest contact of a ring."""
     heaviest = solution.loads[:, RINGS.index(ring)].argmax()
@@ -278,6 +288,7 @@ def _solve(
     if as_json:
         summaries = {"stress": stress, "fatigue": fatigue}
         extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
+        extremes |= _verdicts(summaries)
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:

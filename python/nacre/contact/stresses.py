@@ -22,6 +22,7 @@ from nacre.results.quantities import EXTREMES
 from nacre.results.report import Picture, Sections, table
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
+from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdict, judged
 
 if TYPE_CHECKING:
     import xarray
@@ -42,6 +43,10 @@ DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
 that of the cells, which takes 0.2 s; most cells of a grid for it."""
 DEEPEST, THIN = 1.25, 0.1
 """Its depth over the width of the contact; thickness over that below which it has an inset."""
+WORDS = {"von_mises": "von Mises", "tension": "tension"}
+"""Words for these extremes."""
+MISES = "von Mises stress"
+"""The same where no limit is given."""
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
@@ -440,7 +445,7 @@ class StressSummary(Tabular, Warned):
 
     _COMPILED = True
     _DERIVED = ("warnings",)
-    _LATER = ("friction",)
+    _LATER = ("friction", "doubt")
 
     layers: list[LayerStress]
     """Extremes in the layers from the surface down, and in the substrate."""
@@ -454,21 +459,38 @@ class StressSummary(Tabular, Warned):
     Its direction is the given one, or that in which the shape rolls. `None` in files of earlier
     versions.
     """
+    doubt: str | None
+    """What leaves the pressure without a certain value, and so the extremes; None without.
+
+    It has no limit at an edge, or the solution has not converged.
+    """
     warnings: list[str]
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
-    def _from_fields(cls, fields: dict[str, Any], friction: Pair | None = None) -> Self:
+    def _from_fields(
+        cls, fields: dict[str, Any], friction: Pair | None = None, doubt: str | None = None
+    ) -> Self:
         layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
         interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
-        parts = {"layers": layers, "interfaces": interfaces}
-        return cls(**fields | parts | {"friction": friction})
+        parts = {"layers": layers, "interfaces": interfaces, "friction": friction, "doubt": doubt}
+        return cls(**fields | parts)
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
-        friction = cls._checked({"friction": state.pop("friction")})["friction"]
+        contact = cls._checked({name: state.pop(name) for name in cls._LATER})
         fields = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
-        return cls._from_fields(fields, friction)
+        return cls._from_fields(fields, **contact)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: the part with the smallest safety factor, and what parts without a limit need.
+
+        Where no yield stress and no strength is given, layers need the largest tension, and the
+        substrate the largest von Mises stress.
+        """
+        doubt = self.doubt if self.finished else UNFINISHED
+        return judged(_demands(self), doubt)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -491,7 +513,9 @@ class StressSummary(Tabular, Warned):
     def _comments(self) -> dict[str, Any]:
         """Return what stands beside the table."""
         warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
-        return {"finished": self.finished, "friction": self.friction, **warnings}
+        verdict = " ".join(self.verdict.sentences)
+        state = {"finished": self.finished, "friction": self.friction}
+        return {"verdict": verdict, **state, **warnings}
 
     def _file_rows(self) -> list[tuple[Any, ...]]:
         """Return the rows of the table, the heading first."""
@@ -517,13 +541,15 @@ class StressSummary(Tabular, Warned):
         return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
 
     def __str__(self) -> str:
-        """Return a table, in the units that are set."""
-        lines = [*display.aligned(_peak_rows(self), "<"), *_notes(self)]
+        """Return the verdict and a table, in the units that are set."""
+        table = [*display.aligned(_peak_rows(self), "<"), *_notes(self)]
+        lines = [*self.verdict.sentences, "", *table]
         return printable("\n".join([*lines, *(f"warning: {text}" for text in self.warnings)]))
 
     def _repr_html_(self) -> str:
         head, *rows = _peak_rows(self)
-        return display.markup(rows, self.warnings, head=head, notes=_notes(self))
+        verdict, notes = self.verdict.sentences, _notes(self)
+        return display.markup(rows, self.warnings, head=head, notes=notes, verdict=verdict)
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""
@@ -663,7 +689,8 @@ class StressPlan:
             options = StressOptions(self._member, friction, direction, residual, None, tell)
             fields = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
-        return _warned(StressSummary._from_fields(fields, sliding))
+        doubt = doubt_of(self._solution)
+        return _warned(StressSummary._from_fields(fields, sliding, doubt))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -845,7 +872,60 @@ class Stressed:
         with lasting("stresses", progress) as tell:
             options = StressOptions(body, friction, direction, residual, threads, tell)
             fields = core.stress_summary(self._solved, limits, options)
-        return _warned(StressSummary._from_fields(fields, self._sliding(friction, direction, body)))
+        sliding = self._sliding(friction, direction, body)
+        return _warned(StressSummary._from_fields(fields, sliding, doubt_of(self)))
+
+    def verdict(
+        self,
+        *,
+        body: Member = "body",
+        yield_stress: ByLayer | None = None,
+        strength: ByLayer | None = None,
+        friction: float = 0.0,
+        direction: Direction | None = None,
+        residual: ByLayer | None = None,
+        refine: float | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Verdict:
+        """Verdict on the layers: whether they hold, by which factor, and which of them decides.
+
+        Parameters
+        ----------
+        body, yield_stress, strength, friction, direction, residual, refine : optional
+            As in `stress_summary`.
+        threads, progress : optional
+            Likewise.
+
+        Returns
+        -------
+        Verdict
+            That of the summary, `StressSummary.verdict`; printing it shows its sentences.
+
+        Raises
+        ------
+        ValueError
+            As `stress_summary`.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=5.0, max_cells=4096)
+        >>> solution.verdict(yield_stress={"substrate": 0.5e9}).level
+        'bad'
+        """
+        summary = self.stress_summary(
+            body=body,
+            yield_stress=yield_stress,
+            strength=strength,
+            friction=friction,
+            direction=direction,
+            residual=residual,
+            refine=refine,
+            threads=threads,
+            progress=progress,
+        )
+        return summary.verdict
 
     def _sliding(
         self, friction: float, direction: Direction | None, body: Member
@@ -1042,14 +1122,35 @@ def _notes(summary: StressSummary) -> list[str]:
     return sliding if summary.finished else [*sliding, UNFINISHED]
 
 
-def _share(error: float, value: float) -> str:
-    """Return an error in per cent of a value."""
-    if error == 0:
-        return ""
-    if error >= abs(value):
-        return "> 100 %"
-    percent = 100 * error / abs(value)
-    return f"{percent:.2g} %" if percent >= 0.01 else "< 0.01 %"
+def doubt_of(solution: Any) -> str | None:
+    """Return what leaves the pressure of a solution without a certain value, or None."""
+    normal = getattr(solution, "normal", solution)
+    if not (solution.report.converged and normal.report.converged):
+        return UNCONVERGED
+    return None if SINGULAR.isdisjoint(normal.report.warning_kinds) else NO_LIMIT
+
+
+def _demands(summary: StressSummary) -> Iterator[Demand]:
+    """Yield the stresses that layers and interfaces have to bear, with their limits."""
+    noise = display.SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
+    for layer in summary.layers:
+        peaks = {name: _demand(layer, name, words) for name, words in WORDS.items()}
+        limited = [one for one in peaks.values() if one.factor is not None]
+        pulled = layer.tension[0] > noise and layer.depths[1] < np.inf
+        need = peaks["tension"] if pulled else peaks["von_mises"]._replace(quantity=MISES)
+        yield from limited or ([need] if need.value > 0 else [])
+    for face in summary.interfaces:
+        for one in (_demand(face, name, name) for name in ("shear", "tension")):
+            if one.value > noise:
+                yield one
+
+
+def _demand(part: LayerStress | InterfaceStress, name: str, words: str) -> Demand:
+    """Return an extreme as a demand."""
+    value, (_, _, depth) = getattr(part, name)
+    factor = getattr(part, FACTORS.get(name, ""), None)
+    place = display.part(part).removeprefix("the ")
+    return Demand(place, words, value, part.uncertainty.get(name), depth, factor)
 
 
 def _peak_rows(summary: StressSummary) -> list[list[str]]:
@@ -1068,7 +1169,7 @@ def _peak_rows(summary: StressSummary) -> list[list[str]]:
             share = written(error, "Pa") if error is not None and error > noise else ""
             rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
             return
-        share = "" if error is None else _share(error, value)
+        share = "" if error is None else display.share(error, value)
         place = ", ".join(written(one if abs(one) > dust else 0.0, "m", 3) for one in (x, y))
         number = "" if factor is None else rounded(factor, 3)
         rows.append(["", name, written(value, "Pa"), share, written(z, "m"), place, number])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
@@ -26,6 +26,7 @@ from nacre.results.quantities import FATIGUE, PROFILE
 from nacre.results.report import Picture, Sections, table
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
+from nacre.results.verdict import Demand, Verdict, judged, times
 
 if TYPE_CHECKING:
     import xarray
@@ -60,6 +61,8 @@ ESTIMATE = (
     "shakedown is an estimate: in a point contact, residual stresses along x and y that depend on "
     "the depth alone are not all that are in equilibrium"
 )
+SHAKES = ("Does not shake down", "Cannot tell", "Shakes down")
+"""Outcomes of the shakedown of a layer, in place of those of a limit of strength."""
 PLASTICITY = "shakedown of a perfectly plastic material, without hardening, in steady rolling"
 
 
@@ -100,6 +103,13 @@ class LayerFatigue(Result):
 
     Those of criteria are of the substrate alone, whose limits the user gives.
     """
+    uncertainty: dict[str, float] = field(default_factory=dict)
+    """Estimated errors of the values [Pa], by name, due to the size of the cells.
+
+    Each is that of the stresses at the depth of the value. Empty in files of earlier versions.
+    """
+
+    _LATER = ("uncertainty",)
 
     @property
     def is_substrate(self) -> bool:
@@ -116,7 +126,7 @@ class LayerFatigue(Result):
         return cls(
             **read_fields(
                 cls.__name__,
-                state,
+                state | {"uncertainty": state.get("uncertainty") or {}},
                 layer=int,
                 name=lambda name: None if name is None else word(name),
                 depths=lambda ends: (float(ends[0]), np.inf if ends[1] is None else float(ends[1])),
@@ -124,7 +134,8 @@ class LayerFatigue(Result):
                 first_yield=_peak,
                 orthogonal_shear=_peak,
                 criteria=lambda peaks: {name: _peak(peak) for name, peak in peaks.items()},
-                safety_factors=lambda factors: {name: float(one) for name, one in factors.items()},
+                safety_factors=_by_name,
+                uncertainty=_by_name,
             )
         )
 
@@ -209,6 +220,13 @@ class FatigueSummary(Tabular, Warned):
     """
     warnings: list[str] = field(default_factory=list)
     """Warnings, each also issued as `NacreWarning`."""
+    doubt: str | None = None
+    """What leaves the pressure without a certain value, and so all values; None without.
+
+    It has no limit at an edge, or the solution has not converged.
+    """
+
+    _LATER = ("doubt",)
 
     @property
     def shear_yield(self) -> Array:
@@ -236,6 +254,7 @@ class FatigueSummary(Tabular, Warned):
                 profiles=lambda columns: {name: numbers(one) for name, one in columns.items()},
                 is_estimate=flag,
                 warnings=lambda texts: [word(text) for text in texts],
+                doubt=lambda text: None if text is None else word(text),
             )
         )
 
@@ -244,6 +263,29 @@ class FatigueSummary(Tabular, Warned):
         if not isinstance(other, FatigueSummary):
             return NotImplemented
         return self._state() == other._state()
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: the smallest safety factor of shakedown and criteria, and what else is needed.
+
+        First yield alone is no failure, as residual stresses may end it.
+        """
+        factors = [layer.safety_factors.get("shakedown", 0.0) for layer in self.layers]
+        notes = [_yields(layer) for layer, f in zip(self.layers, factors, strict=True) if f >= 1]
+        if self.is_estimate:
+            notes.append(f"{ESTIMATE[0].upper()}{ESTIMATE[1:]}.")
+        return judged(self._demands(), self.doubt, notes)
+
+    def _demands(self) -> Iterator[Demand]:
+        """Yield what layers and interfaces need, with the limits."""
+        for layer in self.layers:
+            demands = {name: _demand(layer, name) for name in ("shakedown", *layer.criteria)}
+            limited = [one for one in demands.values() if one.factor is not None]
+            need = demands["shakedown"]
+            yield from limited or ([need] if need.value > 0 else [])
+        for face in self.interfaces:
+            if face.shear_range > NOISE * self.peak_pressure:
+                yield Demand(display.part(face), "shear range", face.shear_range, depth=face.depth)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw what each depth needs; needs ``nacre-contact[plot]``.
@@ -299,8 +341,10 @@ class FatigueSummary(Tabular, Warned):
 
     def _comments(self) -> dict[str, object]:
         """Return what stands beside the table."""
+        verdict = " ".join(self.verdict.sentences)
         settings = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
         return {
+            "verdict": verdict,
             **settings,
             **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)},
         }
@@ -360,19 +404,22 @@ class FatigueSummary(Tabular, Warned):
                 rows.append([head, label, written(stress, "Pa"), "", "", ""])
                 head = ""
         plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
-        notes = [PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]
-        return rows, notes
+        return rows, [PLASTICITY + plane]
 
     def __str__(self) -> str:
-        """Return a table, in the units that are set."""
+        """Return the verdict and a table, in the units that are set."""
         rows, notes = self._printed()
-        lines = [*display.aligned(rows, "<"), *notes]
+        lines = [*self.verdict.sentences, "", *display.aligned(rows, "<"), *notes]
         return printable("\n".join(lines + [f"warning: {text}" for text in self.warnings]))
 
     def _repr_html_(self) -> str:
         (head, *rows), notes = self._printed()
         picture = display.drawn(self.plot)
-        return display.markup(rows, self.warnings, picture, head, notes, widest=display.WIDE)
+        return display.markup(
+            *(rows, self.warnings, picture, head, notes),
+            widest=display.WIDE,
+            verdict=self.verdict.sentences,
+        )
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""
@@ -380,6 +427,27 @@ class FatigueSummary(Tabular, Warned):
             f"<FatigueSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces, "
             f"criteria {', '.join(type(one).__name__ for one in self.criteria) or 'none'}>"
         )
+
+
+def _demand(layer: LayerFatigue, name: str) -> Demand:
+    """Return a value of a layer as a demand."""
+    value, (_, _, depth) = layer._peaks()[name]
+    words = next((row.label for row in PROFILE if row.name == name), name)
+    part = display.part(layer).removeprefix("the ")
+    demand = Demand(
+        part, words, value, layer.uncertainty.get(name), depth, layer.safety_factors.get(name)
+    )
+    if name == "shakedown":
+        return demand._replace(outcomes=SHAKES, need="no limit given, needs")
+    return demand
+
+
+def _yields(layer: LayerFatigue) -> str:
+    """Return whether a layer that shakes down ever yields."""
+    shaken, first = (layer.safety_factors[name] for name in ("shakedown", "first_yield"))
+    part = display.part(layer).removeprefix("the ")
+    yields = "never yields" if first >= 1 else "yields at first"
+    return f"{part}: shakes down ({times(shaken)} below the limit), {yields} ({times(first)})."
 
 
 def read_fields(
@@ -421,6 +489,10 @@ def rule_of(name: Any) -> Rule:
 def numbers(sequence: Iterable[float]) -> Array:
     """Return an array of numbers, or raise."""
     return np.array([float(one) for one in sequence])
+
+
+def _by_name(entries: Mapping[str, Any]) -> dict[str, float]:
+    return {name: float(one) for name, one in entries.items()}
 
 
 def _balanced(entry: Any) -> Balanced:
@@ -839,6 +911,7 @@ def _summarise(
         {name: np.array([row.values[name] for row in all_rows]) for name in names},
         assessment.rolling.x is not None,
         warning_texts,
+        assessment.rolling.doubt,
     )
     for text in warning_texts:
         warnings.warn(text, core.NacreWarning, stacklevel=3)
@@ -886,6 +959,7 @@ def _layer(
         peaks["orthogonal_shear"],
         {name: peaks[name] for name in criteria},
         factors,
+        {name: row.uncertainty for name, row in best.items()},
     )
     place = display.part(layer)
     warning_texts = unresolved(place, best)

@@ -79,6 +79,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
         fit.to_dict(),
         **_arguments(fit),
         **{name: getattr(fit, name) for name in ("chi2", "dof", "sigma", "noise", "floor")},
+        **fit._comments(),
         warnings="\n".join(fit.warnings),
         reasons="\n".join(f"{name}: {text}" for name, text in fit.reasons.items()),
     )

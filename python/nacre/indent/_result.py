@@ -18,6 +18,7 @@ from nacre._tools.units import printable, written
 from nacre.indent._files import unit_of
 from nacre.indent._model import NUISANCES, OF_FORCE
 from nacre.indent._residuals import ROUNDING
+from nacre.indent._verdict import fit_verdict
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
@@ -27,6 +28,7 @@ from nacre.results.svg import Axis, lines
 from nacre.results.svg import Curve as Line
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
@@ -115,6 +117,15 @@ class Fit(Tabular):
     def is_identifiable(self) -> bool:
         """Whether the data tell all free parameters."""
         return not self.reasons
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: each free parameter with its standard error, the least certain one first.
+
+        It is good where all are known to 5 %, fair to 20 % or where a warning doubts the model,
+        and bad beyond, or where a parameter is not identifiable.
+        """
+        return fit_verdict(self)
 
     def classical(self, curve: int = 0) -> list[Classical]:
         """Return what customary formulae would have said, with their bias against the fit.
@@ -205,14 +216,18 @@ class Fit(Tabular):
         return f"<Fit of {estimates_text}: {verdict}>"
 
     def __str__(self) -> str:
-        """Return the table."""
+        """Return the verdict and the table."""
         head, rows, notes = self._table()
-        return printable("\n".join([*display.aligned([head, *rows], "<"), *notes]))
+        table = display.aligned([head, *rows], "<")
+        return printable("\n".join([*self.verdict.sentences, "", *table, *notes]))
 
     def _repr_html_(self) -> str:
         head, rows, notes = self._table()
         picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
+        sentences = self.verdict.sentences
+        return display.markup(
+            rows, (), picture, head, notes, widest=display.WIDE, verdict=sentences
+        )
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
         rows = []
@@ -274,6 +289,9 @@ class Fit(Tabular):
         from nacre.indent._files import estimates
 
         return estimates(self)
+
+    def _comments(self) -> dict[str, object]:
+        return {"verdict": " ".join(self.verdict.sentences)}
 
     def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import parameter_rows

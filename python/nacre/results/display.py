@@ -214,8 +214,12 @@ def markup(
     head: Sequence[str] = (),
     notes: Sequence[str] = (),
     widest: int = WIDEST,
+    verdict: Sequence[str] = (),
 ) -> str:
-    """Return what a notebook shows of any result: a table, a picture beside it, and notes below."""
+    """Return what a notebook shows of any result: a table, a picture beside it, and notes below.
+
+    The sentences of a verdict stand above the table.
+    """
     lines = [*notes, *(f"warning: {text}" for text in warnings)]
     cells = [*([_cells("th", head)] if head else []), *(_cells("td", row) for row in rows)]
     encoded = "" if picture is None else base64.b64encode(picture).decode()
@@ -224,7 +228,8 @@ def markup(
         f"src='data:image/png;base64,{encoded}'>"
     )
     return (
-        f"<div style='display:flex; gap:16px; align-items:flex-start'>"
+        "".join(f"<p>{html.escape(sentence)}</p>" for sentence in verdict)
+        + f"<div style='display:flex; gap:16px; align-items:flex-start'>"
         f"<table>{''.join(cells)}</table>{image or ''}</div>"
         + "".join(f"<p>{html.escape(note)}</p>" for note in lines)
     )

@@ -138,8 +138,17 @@ class TableResult(Tabular, Warned, is_base=True):
         return printable(f"<{type(self).__name__}: {rows}>")
 
     def __str__(self) -> str:
-        """Return a table."""
-        return display.text(self._rows(), [])
+        """Return the verdict, if there is one, and a table."""
+        verdict = "".join(f"{sentence}\n" for sentence in self._sentences())
+        return printable(f"{verdict}\n" if verdict else "") + display.text(self._rows(), [])
 
     def _repr_html_(self) -> str:
-        return display.markup(self._rows())
+        return display.markup(self._rows(), verdict=self._sentences())
+
+    def _comments(self) -> dict[str, object]:
+        sentences = " ".join(self._sentences())
+        return {"verdict": sentences} if sentences else {}
+
+    def _sentences(self) -> tuple[str, ...]:
+        """Return the sentences of the verdict, if there is one."""
+        return self.verdict.sentences if hasattr(self, "verdict") else ()

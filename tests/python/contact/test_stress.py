@@ -294,7 +294,7 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution, tmp_path: Path
     with summary.save(tmp_path / "a.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if line[0] != "#"))
     assert [float(row["value"]) for row in rows] == frame.value.tolist()
-    lines = str(summary).splitlines()
+    lines = str(summary).split("\n\n")[1].splitlines()  # below the verdict
     assert max(len(line) for line in lines if not line.startswith("warning")) <= 100
     assert [line.split("  ")[0] for line in lines if line[0] not in " w"] == [
         "layers[0], 0 m to 20 µm",

@@ -94,7 +94,7 @@ def test_tables(tmp_path: Path) -> None:
         assert "MPa" in str(summary)
     rows = summary._file_rows()
     path = summary.save(tmp_path / "summary.csv")
-    assert len(path.read_text(encoding="utf-8").splitlines()) == len(rows) + 3  # comments
+    assert len(path.read_text(encoding="utf-8").splitlines()) == len(rows) + 4  # comments
     frame = summary.to_xarray()[["quantity", "value", "safety_factor"]].to_dataframe()
     assert len(frame) == len(rows) - 1 == 10
     assert "FatigueSummary of 2 layers" in repr(summary)

@@ -92,7 +92,7 @@ def test_the_files_of_a_fit_say_what_its_numbers_are(tmp_path: Path) -> None:
         assert list(read.parameter.values) == list(found.estimates)
         np.testing.assert_array_equal(read.force[read.curve == 1], found.curves[1].force)
     with found.save(tmp_path / "fit.csv").open(encoding="utf-8") as file:
-        _, head, *rows = csv.reader(file)
+        _, _, head, *rows = csv.reader(file)
     assert head[:3] == ["parameter", "unit", "estimate"]
     assert [float(row[2]) for row in rows] == list(found.estimates.values())
     assert rows[0][1] == "Pa"

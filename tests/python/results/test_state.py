@@ -73,7 +73,7 @@ def test_a_state_is_plain_data_that_gives_the_result_back(kind: str) -> None:
     assert repr(state) == before  # reading leaves it alone
 
 
-LATER = {"rolling_direction", "uncertainty"}
+LATER = {"rolling_direction", "uncertainty", "doubt"}
 """Keys that states of format 1 did not have at first: without them they are None."""
 LATER_OF = {
     "StressSummary": {"friction"},

@@ -1,0 +1,124 @@
+"""Verdicts on bearings: life, and the largest pressure against that of the static rating."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from nacre._tools.units import plain
+from nacre.results import display
+from nacre.results.verdict import (
+    DIGITS,
+    NO_LIMIT,
+    UNCONVERGED,
+    Verdict,
+    beside,
+    level_of,
+    measured,
+    outcome_of,
+    times,
+)
+
+if TYPE_CHECKING:
+    from nacre.bearing.rating_life import BearingLife
+    from nacre.bearing.solution import BearingSolution
+
+MILLION = 1e6
+MINUTES = 60.0
+"""Those of an hour."""
+STATIC = {True: 4.0e9, False: 4.2e9}
+"""Pressure of the static rating of roller bearings, and of ball bearings [Pa], ISO 76:2006.
+
+Self-aligning ball bearings, of 4.6 GPa, are not among nacre's."""
+UNKNOWN = "The error of the peak pressure is not known: a warning says why."
+BARE = "Layers are not counted in the life: it is that of bare rings."
+
+
+def life_verdict(life: BearingLife) -> Verdict:
+    """Return the verdict on a life, of which nothing is required."""
+    lines = ("No limit given: no life is required.",)
+    return Verdict("unknown", _lives(life), lines, None, None, None)
+
+
+@display.in_si
+def bearing_verdict(solution: BearingSolution) -> Verdict:
+    """Return the verdict on a bearing: its largest pressure decides."""
+    lives = _lives(solution.life())
+    bare = [BARE] if solution.bearing.layered else []
+    peak, edge = (_Pressure.of(solution, name) for name in ("peak_pressure", "edge_pressure"))
+    if not peak.value > 0:
+        return Verdict("unknown", lives, tuple(bare), None, None, None)
+    factor = STATIC[solution.bearing.rolls] / peak.value
+    level = level_of(factor, peak.share)
+    pressure, has_edge_stress = _compared(peak, factor), edge.largest >= peak.value
+    sentences = [pressure, lives] if level == "bad" else [lives, pressure]
+    if not math.isnan(edge.value):
+        sentences.append(_beside_peak(edge, peak))
+    if not peak.is_known:
+        sentences.append(f"{NO_LIMIT[0].upper()}{NO_LIMIT[1:]}." if solution._sharp else UNKNOWN)
+    if level == "good" and (has_edge_stress or not peak.is_known):
+        level = "fair"
+    if not solution.report.converged:
+        level, sentences = "unknown", [f"Cannot tell: {UNCONVERGED}.", *sentences]
+    words, *lines = [*sentences, *bare]
+    decided_by = "edge pressure" if edge.value >= peak.value else "peak pressure"
+    return Verdict(level, words, tuple(lines), factor, decided_by, peak.share)
+
+
+class _Pressure(NamedTuple):
+    """A largest pressure and its estimated error."""
+
+    value: float
+    error: float | None
+    is_known: bool
+    """Whether it has an error that is known, or none is estimated at all."""
+
+    @classmethod
+    def of(cls, solution: BearingSolution, name: str) -> _Pressure:
+        """Return a pressure of a bearing."""
+        errors = solution.report.discretisation or {}
+        return cls(getattr(solution, name), errors.get(name), errors.get(name, 0.0) is not None)
+
+    @property
+    def share(self) -> float | None:
+        """Error as a share of the value."""
+        return None if self.error is None else self.error / self.value
+
+    @property
+    def largest(self) -> float:
+        """Value with its error."""
+        return self.value + (self.error or 0.0)
+
+
+def _lives(life: BearingLife) -> str:
+    """Return how long a bearing lives, in hours where it turns."""
+    if not math.isfinite(life.revolutions):
+        return "Lives without end: no element is loaded."
+    is_modified = life.modification_factor is not None
+    name = f"L{plain(100 * (1 - life.reliability), DIGITS)}{'m' if is_modified else 'r'}"
+    model = "ISO 281, with a_ISO" if is_modified else "ISO/TS 16281, without lubrication"
+    basis = f"{plain(100 * life.reliability, DIGITS)} %, {model}"
+    turns = f"{plain(life.revolutions / MILLION, DIGITS)} million revolutions"
+    if not math.isfinite(life.hours):
+        return f"Lives {turns} ({name}; {basis})."
+    rate = plain(life.revolutions / life.hours / MINUTES, DIGITS)
+    return f"Lives {plain(life.hours, DIGITS)} h ({name} {turns} at {rate}/min; {basis})."
+
+
+def _compared(peak: _Pressure, factor: float) -> str:
+    """Return the largest pressure against that of the static rating."""
+    limit = f"the {beside(peak.value, factor * peak.value)} of ISO 76"
+    comparisons = (
+        f"above {limit} ({times(factor)})",
+        f"about {limit} ({times(factor)})",
+        f"{times(factor)} below {limit}",
+    )
+    comparison = comparisons[outcome_of(factor, peak.share)]
+    return f"Peak pressure {measured(peak.value, peak.error)}, {comparison}."
+
+
+def _beside_peak(edge: _Pressure, peak: _Pressure) -> str:
+    """Return the pressure at the edges of rollers against the peak."""
+    words = "edge stress" if edge.largest >= peak.value else "no edge stress"
+    ratio = plain(edge.value / peak.value, DIGITS)
+    return f"Edge {measured(edge.value, edge.error)}, {ratio} of the peak: {words}."

@@ -1,0 +1,82 @@
+"""Verdict on a fit: which parameters the curves tell, and how well."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import nacre._core as core
+from nacre.indent._files import unit_of
+from nacre.results import display
+from nacre.results.verdict import DIGITS, Level, Verdict, number
+
+if TYPE_CHECKING:
+    from nacre.indent._result import Fit
+
+GOOD, FAIR = 0.05, 0.20
+"""Largest standard errors of good and of fair estimates, as shares of them; chosen here."""
+MOST_DIGITS = 6
+"""Largest number of digits of an estimate."""
+WORDS = {"young": "modulus", "poisson": "Poisson's ratio"}
+"""Words for parameters that paths name otherwise."""
+
+
+def fit_verdict(fit: Fit) -> Verdict:
+    """Return the verdict on a fit: the least certain parameter decides."""
+    shares = {name: _share(fit, name) for name in dict.fromkeys((*fit.free, *fit.reasons))}
+    worst, *others = sorted(shares, key=lambda name: -shares[name])
+    share, owners = shares[worst], dict(_owners(fit))
+    level: Level = "bad" if share > FAIR else "fair" if share > GOOD or fit.warnings else "good"
+    words, *lines = [_sentence(fit, name, owners) for name in (worst, *others)]
+    uncertainty = share if math.isfinite(share) else None
+    return Verdict(level, words, tuple(lines), None, _words(worst, owners), uncertainty)
+
+
+def _share(fit: Fit, name: str) -> float:
+    """Return the standard error as a share of the estimate, infinite where the data do not tell."""
+    estimate, error = fit.estimates[name], fit.standard_errors[name]
+    if name in fit.reasons or not estimate or not math.isfinite(error):
+        return math.inf
+    return error / abs(estimate)
+
+
+def _sentence(fit: Fit, name: str, owners: dict[str, str]) -> str:
+    """Return a parameter with its error, and whether it is identified."""
+    unit, estimate, words = unit_of(name), fit.estimates[name], _words(name, owners)
+    if (reason := fit.reasons.get(name)) is not None:
+        return f"{words} {number(estimate, unit)}, not identified: {reason}."
+    return f"{words} {_with_error(estimate, fit.standard_errors[name], unit)}, identified."
+
+
+def _with_error(value: float, error: float, unit: str) -> str:
+    """Return a number of three digits or more, as many as its error tells."""
+    scale = display.scale_of(value, unit)
+    value, error = scale.factor * value, scale.factor * error
+    first = math.floor(math.log10(abs(value))) if value else 0
+    decimals = DIGITS - 1 - first
+    if math.isfinite(error) and error > 0:
+        decimals = max(decimals, -math.floor(math.log10(error)))
+    decimals = max(min(decimals, MOST_DIGITS - 1 - first), 0)
+    errors = f" ± {error:.{decimals}f}" if round(error, decimals) else ""
+    return f"{value:.{decimals}f}{errors} {scale.unit}".rstrip()
+
+
+def _words(name: str, owners: dict[str, str]) -> str:
+    """Return a parameter in words; those of curves have the names that they are given by."""
+    place, _, last = name.replace(".material", "").rpartition(".")
+    if place not in owners:
+        return name
+    return f"{WORDS.get(last, last.replace('_', ' '))} of {owners[place]}"
+
+
+def _owners(fit: Fit) -> Iterator[tuple[str, str]]:
+    """Yield the paths of what has parameters, with words."""
+    yield from {"tip": "the tip", "adhesion": "adhesion"}.items()
+    for place, body in (("body", fit.body), ("counterbody", fit.counterbody)):
+        further = "" if place == "body" else " of the counterbody"
+        layers = body.layers if isinstance(body, core.HalfSpace) else ()
+        yield f"{place}.substrate", f"the substrate{further}"
+        for k, layer in enumerate(layers):
+            only = "the film" if len(layers) == 1 else f"layers[{k}]"
+            yield f"{place}.layers[{k}]", (f"the {layer.name}" if layer.name else only) + further

@@ -1,0 +1,593 @@
+"""A verdict says whether a result holds, by which factor, and which limits are missing."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import math
+import pickle
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+from bodies import STEEL, quiet
+from nacre import fatigue
+from nacre._tools.units import plain
+from nacre.bearing import BearingSolution, CylindricalRoller, DeepGrooveBall
+from nacre.bearing.verdict import life_verdict
+from nacre.indent import Fit
+from nacre.results.verdict import Demand, Verdict, judged
+from results import solved
+from support import command
+
+DLC = nacre.Layer(nacre.Elastic(300e9, 0.25), 2e-6, name="DLC")
+COATED = nacre.HalfSpace(STEEL, [DLC])
+SENTENCE = re.compile(
+    r"(?P<outcome>[A-Z][a-z ]+), (?P<factor>[\d. ]+) times: (?P<part>[^,]+), [^\d]+"
+    r"(?P<value>[\d.][\d. ]*) (?P<unit>\S+)( ± [^a-z]+ %)?( at [^,]+)?, of (?P<limit>[\d. ]+) \S+\."
+)
+"""A sentence on a limit."""
+HALF_DIGIT = 0.005
+"""Largest rounding of three digits, relative: 1.005 is printed as 1 or 1.01."""
+
+
+def number(text: str) -> float:
+    return float(text.replace(" ", ""))
+
+
+@functools.cache
+def ball(body: Any = COATED, load: float = 5.0) -> nacre.Solution:
+    solution: nacre.Solution = quiet(
+        nacre.solve, nacre.Sphere(5e-3), body, load=load, max_cells=4096
+    )
+    return solution
+
+
+@functools.cache
+def summary(friction: float = 0.0) -> nacre.types.StressSummary:
+    found: nacre.types.StressSummary = quiet(
+        ball().stress_summary, friction=friction, direction=(0.0, 1.0)
+    )
+    return found
+
+
+def limited(
+    friction: float = 0.0, **factors: tuple[float | None, float | None]
+) -> nacre.types.StressSummary:
+    """Return a summary in which parts have safety factors of yield and of strength."""
+    found = summary(friction)
+    layers = [
+        dataclasses.replace(layer, yield_safety_factor=pair[0], strength_safety_factor=pair[1])
+        for layer, pair in zip(
+            found.layers,
+            (factors.get(name, (None, None)) for name in ("coat", "substrate")),
+            strict=True,
+        )
+    ]
+    return dataclasses.replace(found, layers=layers)
+
+
+# Contacts.
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.4])
+@pytest.mark.parametrize("part", ["coat", "substrate"])
+@pytest.mark.parametrize("kind", [0, 1])
+@pytest.mark.parametrize("factor", [0.25, 2.0, 40.0])
+def test_a_factor_is_the_ratio_of_the_printed_numbers(
+    friction: float, part: str, kind: int, factor: float
+) -> None:
+    pair = (factor, None) if kind == 0 else (None, factor)
+    found = limited(friction, **{part: pair})
+    layer = found.layers[part == "substrate"]
+    value, name = ((layer.von_mises, "von_mises"), (layer.tension, "tension"))[kind]
+    verdict = found.verdict
+    (match,) = filter(None, map(SENTENCE.fullmatch, verdict.sentences))
+    assert number(match["factor"]) == factor
+    assert number(match["limit"]) / number(match["value"]) == pytest.approx(
+        factor, rel=2.1 * HALF_DIGIT
+    )
+    assert match["part"] == ("layers[0] DLC" if part == "coat" else "substrate")
+    sizes = {"kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+    assert sizes[match["unit"]] * number(match["value"]) == pytest.approx(value[0], rel=HALF_DIGIT)
+    assert verdict.factor == factor
+    assert verdict.uncertainty == pytest.approx(layer.uncertainty[name] / abs(value[0]), rel=1e-12)
+    other = "substrate" if part == "coat" else "layers[0] DLC"
+    assert any(line.startswith(f"{other}: no limit given, needs to bear") for line in verdict.lines)
+
+
+@pytest.mark.parametrize("side", [0.98, 1.02])
+@pytest.mark.parametrize("bound", [1.0, 1.5])
+@pytest.mark.parametrize("part", [0, "substrate"])
+def test_limits_on_either_side_of_a_bound(side: float, bound: float, part: Any) -> None:
+    # Errors of the von Mises stress are below 1 % here, so that 2 % from a bound is beyond them.
+    layer = summary().layers[part == "substrate"]
+    value, _ = layer.von_mises
+    verdict = quiet(ball().verdict, yield_stress={part: side * bound * value})
+    error = layer.uncertainty["von_mises"] / value
+    assert verdict.factor == pytest.approx(side * bound, rel=1e-12)
+    if abs(verdict.factor - 1) < verdict.factor * error:
+        assert (verdict.level, verdict.words[:11]) == ("fair", "Cannot tell")
+    elif side * bound < 1:
+        assert (verdict.level, verdict.words[:5]) == ("bad", "Fails")
+    else:
+        assert verdict.level == ("good" if side * bound >= 1.5 else "fair")
+        assert verdict.words.startswith("Holds")
+
+
+@pytest.mark.parametrize(
+    ("factor", "error", "level", "word"),
+    [
+        (0.5, None, "bad", "Fails"),
+        (0.999, None, "bad", "Fails"),
+        (1.0, None, "fair", "Holds"),
+        (1.0, 0.0, "fair", "Holds"),
+        (1.499, None, "fair", "Holds"),
+        (1.5, None, "good", "Holds"),
+        (2.77, 0.0002, "good", "Holds"),
+        (0.98, 0.01, "bad", "Fails"),
+        (0.98, 0.03, "fair", "Cannot tell"),
+        (1.02, 0.01, "fair", "Holds"),
+        (1.02, 0.03, "fair", "Cannot tell"),
+        (1.0, 1e-6, "fair", "Cannot tell"),
+        (1.49, 0.3, "fair", "Holds"),
+        (1.6, 0.3, "good", "Holds"),
+        (1.6, 0.4, "fair", "Cannot tell"),
+        (5.0, 1.1, "fair", "Cannot tell"),
+        (0.1, 0.9, "bad", "Fails"),
+        (0.5, 1.2, "fair", "Cannot tell"),
+    ],
+)
+def test_levels(factor: float, error: float | None, level: str, word: str) -> None:
+    value = 795e6
+    demand = Demand("substrate", "von Mises", value, error and error * value, 41e-6, factor)
+    verdict = judged([demand])
+    assert (verdict.level, verdict.factor) == (level, factor)
+    assert verdict.words.startswith(f"{word}, ")
+    assert ("±" in verdict.words) == bool(error)
+
+
+def test_the_sentence_has_value_error_place_and_limit() -> None:
+    demand = Demand("substrate", "von Mises", 795e6, 0.0002 * 795e6, 41e-6, 2200 / 795)
+    assert judged([demand]).words == (
+        "Holds, 2.77 times: substrate, von Mises 795 MPa ± 0.02 % at 41 µm, of 2200 MPa."
+    )
+    shallow = demand._replace(depth=0.0, factor=0.9996)
+    assert judged([shallow]).words == (
+        "Fails, 0.999 times: substrate, von Mises 795 MPa ± 0.02 % at the surface, of 795 MPa."
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "decides"),
+    [
+        ([(3.0, 0.0), (2.0, 0.0)], 1),
+        ([(0.9, 0.0), (0.8, 0.0)], 1),
+        # What fails decides before what may fail, and that before what holds.
+        ([(0.9, 0.5), (0.95, 0.01)], 1),
+        ([(1.6, 0.01), (2.0, 0.6)], 1),
+        ([(0.5, 0.0), (1.1, 0.5), (4.0, 0.0)], 0),
+    ],
+)
+def test_the_worst_part_decides(rows: list[tuple[float, float]], decides: int) -> None:
+    demands = [
+        Demand(f"layers[{k}]", "tension", 1e8, error * 1e8, 0.0, factor)
+        for k, (factor, error) in enumerate(rows)
+    ]
+    verdict = judged(demands)
+    assert verdict.decided_by == f"layers[{decides}], tension"
+    assert (verdict.factor, verdict.uncertainty) == rows[decides]
+    assert len(verdict.sentences) == len(rows)
+
+
+def test_without_a_limit_nothing_is_judged_and_each_part_says_what_it_needs() -> None:
+    verdict = summary(0.1).verdict
+    assert (verdict.level, verdict.factor, verdict.decided_by) == ("unknown", None, None)
+    coat, substrate = summary(0.1).layers
+    tension, mises = (f"{plain(v / 1e6, 3)} MPa" for v in (coat.tension[0], substrate.von_mises[0]))
+    share = 100 * coat.uncertainty["tension"] / coat.tension[0]
+    assert verdict.words == (
+        f"layers[0] DLC: no limit given, needs to bear {tension} ± {share:.2g} % of tension at "
+        "the surface."
+    )
+    assert f"substrate: no limit given, needs to bear {mises} ± " in verdict.lines[0]
+    assert "of von Mises stress at" in verdict.lines[0]
+    assert any(line.startswith("interfaces[0]: no limit given") for line in verdict.lines)
+
+
+def test_of_many_parts_without_a_limit_the_largest_are_named() -> None:
+    demands = [Demand(f"layers[{k}]", "tension", (k + 1) * 1e6, None, 0.0) for k in range(20)]
+    (words,) = judged(demands).sentences
+    assert words == (
+        "layers[19]: no limit given, needs to bear 20 MPa of tension at the surface, "
+        "the largest of 20."
+    )
+
+
+def test_nothing_is_loaded() -> None:
+    grid = nacre.Grid((8, 8), (1e-4, 1e-4))
+    apart = nacre.solve(nacre.Sphere(5e-3), STEEL, grid=grid, approach=-1e-6)
+    verdict = quiet(apart.verdict, yield_stress={"substrate": 1e9})
+    assert (verdict.level, verdict.words) == ("unknown", "Cannot tell: nothing is loaded.")
+
+
+def singular() -> nacre.Solution:
+    grid = nacre.Grid((32, 32), (3e-3, 3e-3))
+    solution: nacre.Solution = quiet(nacre.solve, nacre.FlatPunch(1e-3), STEEL, grid=grid, load=1e2)
+    return solution
+
+
+def test_where_the_pressure_has_no_limit_nothing_holds() -> None:
+    verdict = quiet(singular().verdict, yield_stress={"substrate": 100e9})
+    assert verdict.level == "unknown"
+    assert verdict.words.startswith("Cannot tell: the pressure at an edge has no limit")
+    assert verdict.lines[0].startswith("As it stands, ")
+    failing = quiet(singular().verdict, yield_stress={"substrate": 1e6})
+    assert failing.level == "bad"
+    assert "no limit" in failing.lines[0]
+
+
+def test_what_has_not_converged_or_is_unfinished_holds_nowhere() -> None:
+    found = quiet(solved("not converged").stress_summary, yield_stress={"substrate": 100e9})
+    assert found.verdict.level == "unknown"
+    assert "not converged" in found.verdict.words
+    assert nacre.types.StressSummary.from_dict(found.to_dict()) == found
+    stopped = dataclasses.replace(limited(substrate=(2.0, None)), finished=False)
+    assert stopped.verdict.level == "unknown"
+    assert stopped.verdict.words.startswith("Cannot tell: stopped before")
+
+
+def test_with_friction_a_solution_has_a_verdict_of_its_summary() -> None:
+    slid = solved("slid")
+    found = quiet(slid.verdict, yield_stress={"substrate": 2e9})
+    assert found == quiet(slid.stress_summary, yield_stress={"substrate": 2e9}).verdict
+    assert found.factor is not None
+
+
+SYSTEMS = {"SI": (1.0, 1.0), "N-mm-MPa": (1e3, 1.0), "mN-µm-GPa": (1e6, 1e3)}
+"""Numbers of a metre and of a newton in systems of units."""
+SYSTEMS |= {"lbf-in-psi": (1 / 0.0254, 1 / 4.4482216152605)}
+
+
+@pytest.mark.parametrize("units", SYSTEMS)
+def test_numbers_are_in_the_units_that_are_set(units: str) -> None:
+    metre, newton = SYSTEMS[units]
+    pascal = newton / metre**2
+    grid = nacre.Grid((32, 32), (2.4e-4 * metre, 2.4e-4 * metre))
+    steel = nacre.Elastic(210e9 * pascal, 0.3)
+    body = nacre.HalfSpace(steel, [nacre.Layer(steel, 2e-6 * metre)])
+    solution = nacre.solve(nacre.Sphere(5e-3 * metre), body, grid=grid, load=5.0 * newton)
+    with nacre.display_units(units):
+        verdict = quiet(solution.verdict, yield_stress={"substrate": 2.2e9 * pascal})
+    match = SENTENCE.fullmatch(verdict.words)
+    assert match
+    assert match["unit"] == {"lbf-in-psi": "psi", "mN-µm-GPa": "GPa"}.get(units, "MPa")
+    assert number(match["limit"]) / number(match["value"]) == pytest.approx(
+        verdict.factor, rel=2.1 * HALF_DIGIT
+    )
+    assert not re.search(r"\de[+-]?\d", str(verdict))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        *((1.28e9, "1 280 000 000"), (14203, "14 200"), (9996, "10 000"), (9994, "9990")),
+        *((1.2345e-7, "0.000000123"), (5.0, "5"), (0.0, "0"), (1739.0, "1740")),
+    ],
+)
+def test_numbers_have_no_exponent(value: float, text: str) -> None:
+    assert plain(value, 3) == text
+
+
+def test_a_verdict_is_plain_data() -> None:
+    verdict = limited(coat=(None, 3.0), substrate=(2.0, None)).verdict
+    assert pickle.loads(pickle.dumps(verdict)) == verdict
+    assert Verdict.from_dict(json.loads(json.dumps(verdict.to_dict()))) == verdict
+    assert repr(verdict) == f"<Verdict: good. {verdict.words}>"
+    with pytest.raises(ValueError, match='"level" does not fit'):
+        Verdict.from_dict(verdict.to_dict() | {"level": "great"})
+
+
+# Shakedown and fatigue.
+
+
+def assessed(**factors: float) -> nacre.types.FatigueSummary:
+    found = solved("fatigue")
+    (coat, substrate) = found.layers
+    layers = [coat, dataclasses.replace(substrate, safety_factors=factors)]
+    layers[0] = dataclasses.replace(coat, safety_factors={})
+    result: nacre.types.FatigueSummary = dataclasses.replace(found, layers=layers)
+    return result
+
+
+@pytest.mark.parametrize(
+    ("shakedown", "first", "criterion", "level", "words", "yields"),
+    [
+        (4.8, 3.9, None, "good", "Shakes down, 4.8 times: ", "never yields (3.9 times)"),
+        (1.2, 0.9, None, "fair", "Shakes down, 1.2 times: ", "yields at first (0.9 times)"),
+        (0.8, 0.6, None, "bad", "Does not shake down, 0.8 times: ", None),
+        (4.8, 3.9, 1.3, "fair", "Holds, 1.3 times: substrate, Dang Van ", "never yields"),
+        (4.8, 3.9, 0.7, "bad", "Fails, 0.7 times: substrate, Dang Van ", "never yields"),
+        (1.6, 1.1, 2.0, "good", "Shakes down, 1.6 times: ", "never yields"),
+    ],
+)
+def test_shakedown_and_criteria_decide(
+    shakedown: float, first: float, criterion: float | None, level: str, words: str, yields: Any
+) -> None:
+    factors = {"shakedown": shakedown, "first_yield": first}
+    factors |= {} if criterion is None else {"DangVan": criterion}
+    verdict = assessed(**factors).verdict
+    assert (verdict.level, verdict.factor) == (level, min(shakedown, criterion or math.inf))
+    assert verdict.words.startswith(words)
+    line = f"substrate: shakes down ({shakedown:g} times below the limit), {yields}"
+    assert any(one.startswith(line) for one in verdict.lines) == (yields is not None)
+    assert any("layers[0]: no limit given, needs" in one for one in verdict.lines)
+    for match in filter(None, map(SENTENCE.fullmatch, verdict.sentences)):
+        assert number(match["limit"]) / number(match["value"]) == pytest.approx(
+            number(match["factor"]), rel=3 * HALF_DIGIT
+        )
+
+
+def test_the_factor_of_an_assessment_is_that_of_its_limit() -> None:
+    found = solved("fatigue")
+    needed = found.layers[-1].shakedown[0]
+    shaken = found.layers[-1].safety_factors["shakedown"]
+    assert shaken == pytest.approx(6e8 / needed, rel=1e-12)
+    assert 0 <= found.layers[-1].uncertainty["shakedown"] < 0.25 * needed
+    assert f"of {plain(6e8 / 1e6, 3)} MPa." in str(found.verdict)
+    assert fatigue.FatigueSummary.from_dict(found.to_dict()) == found
+
+
+# Bearings.
+
+ROLLERS: dict[str, Any] = {"count": 14, "diameter": 10e-3, "length": 9.6e-3}
+ROLLERS |= {"pitch_diameter": 65e-3, "clearance": 41e-6}
+BALLS: dict[str, Any] = {"count": 7, "diameter": 11.5e-3, "pitch_diameter": 43.5e-3}
+
+
+@functools.cache
+def borne(kind: str, speed: float = 0.0) -> BearingSolution:
+    bearing = CylindricalRoller(**ROLLERS) if kind == "rollers" else DeepGrooveBall(**BALLS)
+    return bearing.solve(force=(1000.0, 0.0, None), speed=speed, model="iso16281")
+
+
+def at_pressure(
+    kind: str, peak: float, edge: float = 0.0, errors: dict[str, float | None] | None = None
+) -> BearingSolution:
+    """Return a solved bearing with other pressures, of which the edge is a share of the peak."""
+    solution = borne(kind)
+    edges = np.full_like(solution.edge_pressures, edge * peak if kind == "rollers" else np.nan)
+    return dataclasses.replace(
+        solution,
+        peak_pressures=np.full_like(solution.peak_pressures, peak),
+        edge_pressures=edges,
+        report=dataclasses.replace(solution.report, discretisation=errors),
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "peak", "edge", "error", "level"),
+    [
+        ("rollers", 1739e6, 0.83, None, "good"),
+        ("rollers", 2660e6, 0.83, None, "good"),
+        ("rollers", 2670e6, 0.83, None, "fair"),  # 4000/2670 < 1.5
+        ("rollers", 3990e6, 0.83, None, "fair"),
+        ("rollers", 4010e6, 0.83, None, "bad"),
+        ("rollers", 3990e6, 0.83, 0.01, "fair"),
+        ("rollers", 4010e6, 0.83, 0.01, "fair"),  # the error decides
+        ("rollers", 1739e6, 0.99, None, "good"),
+        ("rollers", 1739e6, 1.0, None, "fair"),  # edge stress
+        ("balls", 2790e6, 0.0, None, "good"),
+        ("balls", 2810e6, 0.0, None, "fair"),  # 4200/2810 < 1.5
+        ("balls", 4190e6, 0.0, None, "fair"),
+        ("balls", 4210e6, 0.0, None, "bad"),
+    ],
+)
+def test_pressures_of_bearings(
+    kind: str, peak: float, edge: float, error: float | None, level: str
+) -> None:
+    errors: dict[str, float | None] = {"peak_pressure": error and error * peak}
+    solution = at_pressure(kind, peak, edge, errors if error else None)
+    verdict = solution.verdict
+    limit = 4.0e9 if kind == "rollers" else 4.2e9
+    assert verdict.level == level
+    assert verdict.factor == pytest.approx(limit / peak, rel=1e-12)
+    assert verdict.words.startswith("Peak pressure" if level == "bad" else "Lives ")
+    assert f"the {plain(limit / 1e9, 3)} GPa of ISO 76" in str(verdict)
+    assert ("no edge stress" in str(verdict)) == (kind == "rollers" and edge < 1)
+
+
+def test_an_edge_within_its_error_of_the_peak_is_edge_stress() -> None:
+    errors: dict[str, float | None] = {"peak_pressure": 1e6, "edge_pressure": 20e6}
+    assert at_pressure("rollers", 1.7e9, 0.98, errors).verdict.level == "good"
+    assert at_pressure("rollers", 1.7e9, 0.99, errors).verdict.level == "fair"
+
+
+def test_sharp_ends_are_never_good() -> None:
+    sharp = CylindricalRoller(**ROLLERS, profile=None)
+    solution = quiet(sharp.solve, force=(4450.0, 0.0, None), cells=(40, 16))
+    assert solution.verdict.level == "fair"
+    assert "the pressure at an edge has no limit" in str(solution.verdict).lower()
+
+
+def test_an_unfinished_bearing_is_not_judged() -> None:
+    found = at_pressure("balls", 1e9)
+    report = dataclasses.replace(found.report, termination="iteration limit")
+    verdict = dataclasses.replace(found, report=report).verdict
+    assert verdict.level == "unknown"
+    assert verdict.words == "Cannot tell: the solution has not converged."
+
+
+def test_lives() -> None:
+    still, turning = borne("balls"), borne("balls", 2 * math.pi * 25)
+    millions = still.life().revolutions
+    assert still.verdict.words == (
+        f"Lives {plain(millions, 3)} million revolutions (L10r; 90 %, ISO/TS 16281, without "
+        "lubrication)."
+    )
+    # 25 turns a second are 1500 a minute.
+    millions = turning.life().revolutions
+    hours = plain(1e6 * millions / 1500 / 60, 3)
+    assert turning.verdict.words == (
+        f"Lives {hours} h (L10r {plain(millions, 3)} million revolutions at 1500/min; 90 %, "
+        "ISO/TS 16281, without lubrication)."
+    )
+    life = still.life().verdict
+    assert (life.level, life.words) == ("unknown", still.verdict.words)
+    assert "no life is required" in life.lines[0]
+    infinite = dataclasses.replace(still.life(), revolutions=math.inf).verdict
+    assert infinite.words == "Lives without end: no element is loaded."
+
+
+def test_a_life_that_knows_hours_and_lubrication_tells_them() -> None:
+    life: Any = SimpleNamespace(revolutions=1.28e9, hours=14200.0, l10=1280.0)
+    assert life_verdict(life).words == (
+        "Lives 14 200 h (L10r 1280 million revolutions at 1500/min; 90 %, ISO/TS 16281, without "
+        "lubrication)."
+    )
+    life = SimpleNamespace(
+        **vars(life) | {"reliability": 0.95, "modification_factor": 2.0, "hours": math.inf}
+    )
+    assert life_verdict(life).words == (
+        "Lives 1280 million revolutions (L5m; 95 %, ISO 281, with a_ISO)."
+    )
+
+
+def test_a_coated_bearing_says_what_its_life_is_of() -> None:
+    bearing = DeepGrooveBall(**BALLS, inner=COATED)
+    solution = quiet(bearing.solve, force=(1000.0, 0.0, None), model="iso16281")
+    assert "Layers are not counted in the life: it is that of bare rings." in (
+        solution.verdict.lines
+    )
+
+
+# Fits.
+
+YOUNG = "body.layers[0].material.young"
+
+
+def fitted(estimate: float, error: float, **fields: Any) -> Fit:
+    fit: Fit = solved("fit")
+    return dataclasses.replace(
+        fit,
+        estimates=fit.estimates | {YOUNG: estimate},
+        standard_errors=fit.standard_errors | {YOUNG: error},
+        **fields,
+    )
+
+
+@pytest.mark.parametrize(
+    ("estimate", "error", "level", "words"),
+    [
+        (5e9, 0.04e9, "good", "modulus of the film 5.00 ± 0.04 GPa, identified."),
+        (5e9, 0.249e9, "good", "modulus of the film 5.00 ± 0.25 GPa, identified."),
+        (5e9, 0.251e9, "fair", "modulus of the film 5.00 ± 0.25 GPa, identified."),
+        (5e9, 0.99e9, "fair", "modulus of the film 5.00 ± 0.99 GPa, identified."),
+        (5e9, 1.01e9, "bad", "modulus of the film 5.00 ± 1.01 GPa, identified."),
+        (3.14159e9, 0.0004e9, "good", "modulus of the film 3.1416 ± 0.0004 GPa, identified."),
+        (123.4e9, 0.7e9, "good", "modulus of the film 123.4 ± 0.7 GPa, identified."),
+        (5e9, 0.0, "good", "modulus of the film 5.00 GPa, identified."),
+    ],
+)
+def test_fits(estimate: float, error: float, level: str, words: str) -> None:
+    verdict = fitted(estimate, error).verdict
+    assert (verdict.level, verdict.words) == (level, words)
+    assert verdict.uncertainty == pytest.approx(error / estimate, rel=1e-12)
+    assert verdict.decided_by == "modulus of the film"
+
+
+def test_a_fit_says_what_is_not_identified_and_what_is_in_doubt() -> None:
+    verdict = fitted(5e9, 1e6, reasons={YOUNG: "the forces hardly depend on it"}).verdict
+    assert (verdict.level, verdict.uncertainty) == ("bad", None)
+    assert verdict.words == (
+        "modulus of the film 5 GPa, not identified: the forces hardly depend on it."
+    )
+    assert fitted(5e9, 1e6, warnings=("the model may be another",)).verdict.level == "fair"
+
+
+def test_a_second_parameter_is_a_line_and_the_least_certain_one_decides() -> None:
+    thickness = "body.layers[0].thickness"
+    fit = fitted(5e9, 0.04e9, free=(YOUNG, thickness))
+    estimates, errors = fit.estimates | {thickness: 1e-6}, fit.standard_errors | {thickness: 1e-7}
+    verdict = dataclasses.replace(fit, estimates=estimates, standard_errors=errors).verdict
+    assert verdict.sentences == (
+        "thickness of the film 1.00 ± 0.10 µm, identified.",
+        "modulus of the film 5.00 ± 0.04 GPa, identified.",
+    )
+
+
+# Prints and files.
+
+
+def printed() -> dict[str, Any]:
+    return {
+        "summary": limited(substrate=(2.0, None)),
+        "assessment": solved("fatigue"),
+        "bearing": borne("rollers"),
+        "life": borne("rollers").life(),
+        "fit": solved("fit"),
+    }
+
+
+@pytest.mark.parametrize("name", ["summary", "assessment", "bearing", "life", "fit"])
+def test_a_print_and_a_file_begin_with_the_verdict(name: str, tmp_path: Path) -> None:
+    result = printed()[name]
+    sentences = result.verdict.sentences
+    assert str(result).startswith("\n".join(sentences) + "\n\n")
+    assert result._repr_html_().count("<p>") >= len(sentences)
+    assert "verdict" not in result.to_dict()
+    file = quiet(result.save, tmp_path / "a.csv")
+    assert f"# verdict: {' '.join(sentences)}" in file.read_text(encoding="utf-8")
+
+
+CASE = """
+[solve]
+load = 5.0
+max_cells = 4096
+[body.substrate]
+young = 210e9
+poisson = 0.3
+yield_stress = 2.2e9
+[shape]
+kind = "sphere"
+radius = 5e-3
+[stress]
+"""
+
+
+def test_the_command_prints_the_verdict(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    assert command("solve", path) == 0
+    assert "\n\nHolds, " in capsys.readouterr().out
+    assert command("solve", path, "--json") == 0
+    verdict = json.loads(capsys.readouterr().out)["verdict"]["stress"]
+    assert verdict["level"] == "good"
+    assert verdict["words"].startswith("Holds, ")
+    assert Verdict(**verdict | {"lines": tuple(verdict["lines"])}).factor == verdict["factor"]
+
+
+def test_the_command_judges_bearings_in_the_units_of_the_case(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(
+        'units = "N-mm-MPa"\n[bearing]\nkind = "deep_groove_ball"\ncount = 7\ndiameter = 11.5\n'
+        "pitch_diameter = 43.5\n[bearing.life]\n[bearing.solve]\nmodel = 'iso16281'\n"
+        "force = { x = 1000.0, y = 0.0 }\n",
+        encoding="utf-8",
+    )
+    assert command("solve", path) == 0
+    printed_text = capsys.readouterr().out
+    assert printed_text.startswith("Lives ")
+    assert "times below the 4200 MPa of ISO 76." in printed_text
+    assert command("solve", path, "--json") == 0
+    verdicts = json.loads(capsys.readouterr().out)["verdict"]
+    assert set(verdicts) == {"bearing", "life"}
+    assert "4200 MPa of ISO 76" in verdicts["bearing"]["lines"][0]
