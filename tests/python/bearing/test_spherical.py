@@ -22,6 +22,7 @@ from nacre.bearing import (
     rating,
 )
 from nacre.bearing.contact_laws import Solved, binned
+from nacre.bearing.equilibrium import Barrels
 from nacre.bearing.iso import reference_life
 
 SIZE: dict[str, Any] = {
@@ -135,6 +136,14 @@ def test_clearance_is_that_of_the_radius() -> None:
     # the same, whatever their angle, so that it is a little more.
     change = loose.displacement[0] - tight.displacement[0]
     assert 0.5e-9 < change < 0.7e-9
+
+
+def test_half_of_the_diametral_clearance_brings_a_barrel_to_both_rings() -> None:
+    # Along the radius, whatever the contact angle: what it leaves is of second order in it.
+    bearing = spherical(contact_angle=0.3, clearance=1e-6)
+    barrels = Barrels(bearing, np.zeros(38))
+    apart = np.linalg.norm(barrels.start + np.array([0.5e-6, 0.0]), axis=1) - barrels.groove.sum()
+    np.testing.assert_allclose(apart, 0.0, atol=1e-11)
 
 
 def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
