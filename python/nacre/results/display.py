@@ -6,6 +6,7 @@ import base64
 import functools
 import html
 import io
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -113,11 +114,25 @@ def shown_in(units: str) -> Iterator[None]:
 
 def number(value: float, unit: str, digits: int = 4) -> str:
     """Return a number, whose SI unit is given, with the unit that is set or `shown_in`."""
-    if (units := _units.get()) is None:
-        return written(value, unit, digits)
-    with display_units(units):
-        scale = Scale.in_unit(value, unit)
+    scale = _scale(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
+
+
+def column(
+    heading: str, values: Sequence[float], unit: str, digits: int = 4
+) -> tuple[str, list[str]]:
+    """Return the heading of a column of numbers, with their one unit, and their texts."""
+    scale = _scale(max((abs(v) for v in values if math.isfinite(v)), default=0.0), unit)
+    texts = [rounded(scale.factor * value, digits) for value in values]
+    return f"{heading} [{scale.unit}]" if scale.unit else heading, texts
+
+
+def _scale(largest: float, unit: str) -> Scale:
+    """Return the scale for numbers in a unit, in the units that are set or `shown_in`."""
+    if (units := _units.get()) is None:
+        return Scale.of(largest, unit)
+    with display_units(units):
+        return Scale.in_unit(largest, unit)
 
 
 def rows(
