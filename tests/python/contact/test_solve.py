@@ -365,6 +365,22 @@ def test_each_warning_is_issued_and_reported(
     assert solution.report.converged
 
 
+@pytest.mark.parametrize("body", [STEEL, coated(20e9, 20e-6)])
+def test_the_error_of_a_cylinder_without_a_grid_names_one(
+    body: nacre.Elastic | nacre.HalfSpace,
+) -> None:
+    cylinder = nacre.Cylinder(5e-3)
+    with pytest.raises(ValueError, match=r"grid must be given") as caught:
+        nacre.solve(cylinder, body, load=1e5)
+    named = re.search(r"Grid\.line\((\d+), (\S+)\)", str(caught.value))
+    assert named is not None
+    solution = nacre.solve(
+        cylinder, body, load=1e5, grid=nacre.Grid.line(int(named[1]), float(named[2]))
+    )
+    assert solution.report.warnings == []
+    assert solution.in_contact.mean() > 0.25
+
+
 def test_a_warning_can_be_made_an_error() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", nacre.NacreWarning)
