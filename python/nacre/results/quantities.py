@@ -197,6 +197,15 @@ ASSESSMENT = (
 )
 """Numbers of fatigue that studies keep."""
 
+EXTREME_UNITS = dict.fromkeys(("depth", "depths"), "m") | dict.fromkeys(
+    (
+        *("von_mises", "max_shear", "tension", "compression", "shear", "jump", "uncertainty"),
+        *("shakedown", "first_yield", "orthogonal_shear", "criteria", "shear_range"),
+    ),
+    "Pa",
+)
+"""SI units of fields of a layer or an interface in summaries of stress and fatigue."""
+
 EXTREMES = (
     Quantity("part", "layer or interface"),
     Quantity("quantity", "name of the extreme"),
