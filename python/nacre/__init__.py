@@ -42,6 +42,7 @@ from nacre._core import (
     __version__,
 )
 from nacre._tools.units import display_units
+from nacre.cards import materials as materials
 from nacre.contact import Contact, roll, slide, solve
 from nacre.contact.compliance import (
     Convolution,
@@ -139,4 +140,4 @@ if not TYPE_CHECKING:  # a type checker would take any name
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *_LAZY, "types"})
+    return sorted({*__all__, *_LAZY, "materials", "types"})

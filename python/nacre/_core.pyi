@@ -15,6 +15,7 @@ from nacre.contact.arguments import (
     Setup,
     SolveOptions,
 )
+from nacre.contact.solution import Numbers
 from nacre.contact.stresses import StressFields, StressLimits, StressOptions
 
 __all__ = [
@@ -89,7 +90,8 @@ _Pair: TypeAlias = tuple[float, float]
 _Fields: TypeAlias = dict[str, Any]
 _Planned: TypeAlias = HalfSpace | Response
 _Body: TypeAlias = HalfSpace | Elastic | Response
-_Report: TypeAlias = tuple[str, Grid, _Planned, _Planned | None]
+_Report: TypeAlias = tuple[dict[str, Any], Grid, _Planned, _Planned | None]
+_ReportState: TypeAlias = tuple[str, Grid, _Planned, _Planned | None]
 _Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"] | Spring
 _Substrate: TypeAlias = Elastic | Rigid | Free
@@ -473,7 +475,7 @@ class Solved:
     def __new__(
         cls,
         position: str,
-        report: _Report,
+        report: _ReportState,
         *,
         pressure: _Matrix,
         gap: _Matrix,
@@ -482,7 +484,7 @@ class Solved:
         indentation: _Matrix | None = None,
         coefficients: _Matrix | None = None,
     ) -> Self: ...
-    def numbers(self) -> dict[str, Any]: ...
+    def numbers(self) -> Numbers: ...
     @overload
     def field(self, name: Literal["pressure", "gap", "displacement", "line_load"]) -> _Field: ...
     @overload
@@ -524,7 +526,7 @@ class FrictionSolved:
         rest: str,
     ) -> Self: ...
     def normal(self) -> Solved: ...
-    def numbers(self) -> str: ...
+    def numbers(self) -> dict[str, Any]: ...
     @overload
     def field(self, name: Literal["stick"]) -> npt.NDArray[np.bool_]: ...
     @overload
@@ -545,6 +547,7 @@ class FrictionSteps:
 
 @final
 class StressPlan:
+    def __new__(cls, body: _Body, grid: Grid, pressure: _Matrix, threads: int | None) -> Self: ...
     @property
     def body(self) -> HalfSpace: ...
     @property
@@ -697,16 +700,16 @@ def slide(
 def roll(
     shape: Shape, rolling: Rolling, options: FrictionOptions, on: Plan | Setup
 ) -> FrictionSteps: ...
-def checked(kind: str, given: str) -> str: ...
+def checked(kind: str, text: str) -> dict[str, Any]: ...
 def checked_report(
-    told: str, grid: Grid, body: _Planned, counterbody: _Planned | None
+    text: str, grid: Grid, body: _Planned, counterbody: _Planned | None
 ) -> _Report: ...
 def creep_coefficients(
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None,
     semi_axes: _Pair,
     cells: int,
-) -> str: ...
+) -> dict[str, Any]: ...
 def stress(
     of: Solved | FrictionSolved | StressPlan,
     z: Any,
@@ -723,7 +726,7 @@ def stress_under(
 ) -> _Fields: ...
 def stress_summary(
     of: Solved | FrictionSolved | StressPlan, limits: StressLimits, options: StressOptions
-) -> str: ...
+) -> dict[str, Any]: ...
 def stress_plan(of: Solved | FrictionSolved, body: Member, threads: int | None) -> StressPlan: ...
 def layer_values(
     body: HalfSpace, name: str, values: ByLayer | float | None

@@ -104,7 +104,7 @@ def creep_coefficients(
     >>> coated.c11 < 0.5 * nacre.creep_coefficients(steel, steel, (1e-3, 1e-3)).c11
     True
     """
-    return CreepCoefficients._from_text(
+    return CreepCoefficients._from_fields(
         core.creep_coefficients(body, counterbody, semi_axes, cells)
     )
 
@@ -225,7 +225,7 @@ def creep_curve(
     line = contact.grid.is_line
     unit = symbol("N/m" if line else "N")
     touching = np.array([np.count_nonzero(s.pressure) for s in solutions])
-    columns: dict[str, tuple[Any, str]] = {
+    columns: dict[str, tuple[object, str]] = {
         "longitudinal_force": (sign * forces[:, axis], unit),
         "lateral_force": (across[1] * forces[:, across[0]], unit),
         "torque": ([s.torque for s in solutions], symbol("N" if line else "N m")),

@@ -6,10 +6,12 @@ They hold for smooth homogeneous bodies, on a contact that is small compared wit
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, overload
+from typing import Self, overload
 
 import nacre._core as core
 from nacre._tools.typing import Field, Matrix, Pair, Vector
+
+Places = float | Vector | Matrix
 
 __all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius", "relative_radii"]
 
@@ -131,7 +133,7 @@ class _Hertzian:
     _contact: core.Hertz
     __match_args__: tuple[str, ...]
 
-    def _keep(self, contact: core.Hertz, **fields: Any) -> None:
+    def _keep(self, contact: core.Hertz, **fields: float | Pair | None) -> None:
         """Keep the contact, its arguments as floats, and what was found."""
         for name in self.__match_args__:
             argument = getattr(self, name)
@@ -165,7 +167,7 @@ class _Hertzian:
         """
         return self._contact.max_shear(poisson)
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         """Return the class and the arguments that make the contact again."""
         return type(self), tuple(getattr(self, name) for name in self.__match_args__)
 
@@ -220,7 +222,7 @@ class Point(_Hertzian):
     def pressure(self, r: float) -> float: ...
     @overload
     def pressure(self, r: Vector | Matrix) -> Field: ...
-    def pressure(self, r: Any) -> Any:
+    def pressure(self, r: Places) -> float | Field:
         """Pressure at distances from the axis.
 
         Parameters
@@ -244,7 +246,8 @@ class Point(_Hertzian):
         >>> contact.pressure(0.0) == contact.peak_pressure
         True
         """
-        return self._contact.pressure(["r"], [r])
+        pressure: float | Field = self._contact.pressure(["r"], [r])
+        return pressure
 
 
 @dataclass(frozen=True)
@@ -302,7 +305,7 @@ class Line(_Hertzian):
     def pressure(self, y: float) -> float: ...
     @overload
     def pressure(self, y: Vector | Matrix) -> Field: ...
-    def pressure(self, y: Any) -> Any:
+    def pressure(self, y: Places) -> float | Field:
         """Pressure at distances from the middle.
 
         Parameters
@@ -326,7 +329,8 @@ class Line(_Hertzian):
         >>> contact.pressure(0.0) == contact.peak_pressure
         True
         """
-        return self._contact.pressure(["y"], [y])
+        pressure: float | Field = self._contact.pressure(["y"], [y])
+        return pressure
 
 
 @dataclass(frozen=True)
@@ -399,7 +403,7 @@ class Ellipse(_Hertzian):
     def pressure(self, x: float, y: float) -> float: ...
     @overload
     def pressure(self, x: Vector | Matrix, y: Vector | Matrix) -> Field: ...
-    def pressure(self, x: Any, y: Any) -> Any:
+    def pressure(self, x: Places, y: Places) -> float | Field:
         """Pressure at points of the surface.
 
         Parameters
@@ -426,4 +430,5 @@ class Ellipse(_Hertzian):
         >>> contact.pressure([0.0, a, 0.0], [0.0, 0.0, b]) / contact.peak_pressure
         array([1., 0., 0.])
         """
-        return self._contact.pressure(["x", "y"], [x, y])
+        pressure: float | Field = self._contact.pressure(["x", "y"], [x, y])
+        return pressure

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, NoReturn, Protocol, TypeAlias
 
 import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre._tools.typing import Body
+from nacre._tools.typing import Body, Matrix, Vector
 from nacre.design.differentiable import SECOND, Array, Differentiable, Outputs
 
 with extra("jax"):
@@ -20,6 +20,8 @@ with extra("jax"):
 __all__ = ["Result", "solver"]
 
 Product = Callable[[tuple[str, ...], Array, Array], Array]
+Linear: TypeAlias = "Callable[[jax.Array, jax.Array], jax.Array]"
+Value: TypeAlias = "float | Vector | Matrix | jax.Array"
 
 
 class Result(NamedTuple):
@@ -37,16 +39,16 @@ class Result(NamedTuple):
         Whether the solve succeeded; it has no derivative. If not, pressure and outputs are NaN.
     """
 
-    pressure: Any
-    outputs: dict[str, Any]
-    in_contact: Any
-    ok: Any
+    pressure: jax.Array
+    outputs: dict[str, jax.Array]
+    in_contact: jax.Array
+    ok: jax.Array
 
 
 class Solver(Protocol):
     """Function that `solver` returns."""
 
-    def __call__(self, parameters: Mapping[str, Any], gap: Any = None) -> Result: ...
+    def __call__(self, parameters: Mapping[str, Value], gap: Value | None = None) -> Result: ...
 
 
 def solver(
@@ -57,7 +59,7 @@ def solver(
     grid: core.Grid,
     outputs: Outputs = ("approach",),
     keep: int = 16,
-    **arguments: Any,
+    **arguments: object,
 ) -> Solver:
     """Return a contact as a function of some of its numbers, with derivatives of both modes.
 
@@ -119,9 +121,9 @@ def solver(
     """
     keywords = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
     contact = Differentiable(keywords, outputs, keep)
-    functions: dict[tuple[str, ...], Any] = {}
+    functions: dict[tuple[str, ...], Callable[[jax.Array], jax.Array]] = {}
 
-    def solve(parameters: Mapping[str, Any], gap: Any = None) -> Result:
+    def solve(parameters: Mapping[str, Value], gap: Value | None = None) -> Result:
         if not isinstance(parameters, Mapping):
             raise TypeError(f"parameters must be a dict of paths and numbers, got {parameters!r}")
         if jax.dtypes.canonicalize_dtype(np.float64) != np.float64:
@@ -145,7 +147,7 @@ def solver(
     return solve
 
 
-def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+def _checked(name: str, value: Value, shape: tuple[int, ...]) -> jax.Array:
     """Return an array of float64."""
     array = value if isinstance(value, jax.Array) else jnp.asarray(core.real_array(name, value))
     if array.dtype != np.float64 or array.shape != shape:
@@ -155,19 +157,19 @@ def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     return array
 
 
-def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
+def _function(contact: Differentiable, names: tuple[str, ...]) -> jax.custom_jvp[jax.Array]:
     """Return the function of a vector to (1, pressures, outputs), with its derivatives."""
     cells, count = contact.cells, len(contact.outputs)
 
     def values(x: Array) -> Array:
         return np.concatenate([[1.0], *contact.values(names, x)])
 
-    def primal(x: Any) -> Any:
+    def primal(x: jax.Array) -> jax.Array:
         if not isinstance(x, jax.core.Tracer):
             return jnp.asarray(values(np.asarray(x)))  # A solve that fails raises its error.
         return _callback(values, 1 + cells + count, x)
 
-    def rule(primals: tuple[Any], tangents: tuple[Any]) -> tuple[Any, Any]:
+    def rule(primals: tuple[jax.Array], tangents: tuple[jax.Array]) -> tuple[jax.Array, jax.Array]:
         (x,), (rate,) = primals, tangents
         at = first(x)
         return function(x), jnp.concatenate([jnp.zeros(1), pressure(at, rate), outputs(at, rate)])
@@ -181,10 +183,10 @@ def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
     return function
 
 
-def _first() -> Any:
+def _first() -> jax.custom_jvp[jax.Array]:
     """Return the identity, which raises where it is differentiated."""
 
-    def rule(primals: Any, tangents: Any) -> Any:
+    def rule(primals: object, tangents: object) -> NoReturn:
         raise TypeError(SECOND)
 
     identity = jax.custom_jvp(lambda x: x)
@@ -192,7 +194,7 @@ def _first() -> Any:
     return identity
 
 
-def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -> Any:
+def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -> Linear:
     """Return the product J `rate` of a Jacobian (count, len(x)), which JAX may transpose.
 
     JAX transposes and maps a linear solve whose two solvers are given: here that of a matrix
@@ -205,13 +207,13 @@ def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -
     def backward(x: Array, weights: Array) -> Array:
         return pull(names, x, weights)
 
-    def product(x: Any, rate: Any) -> Any:
+    def product(x: jax.Array, rate: jax.Array) -> jax.Array:
         size = len(x)
 
-        def solve(_: Any, b: Any) -> Any:
+        def solve(_: object, b: jax.Array) -> jax.Array:
             return b.at[size:].add(_callback(forward, count, x, b[:size]))
 
-        def transposed(_: Any, b: Any) -> Any:
+        def transposed(_: object, b: jax.Array) -> jax.Array:
             return b.at[:size].add(_callback(backward, size, x, b[size:]))
 
         b = jnp.concatenate([rate, jnp.zeros(count)])
@@ -221,10 +223,10 @@ def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -
     return product
 
 
-def _callback(function: Callable[..., Array], size: int, *arrays: Any) -> Any:
+def _callback(function: Callable[..., Array], size: int, *arrays: jax.Array) -> jax.Array:
     """Return what a function of arrays returns, NaN where it fails, as an array of JAX."""
 
-    def values_or_nan(*arrays: Any) -> Array:
+    def values_or_nan(*arrays: jax.Array) -> Array:
         try:
             return function(*(np.asarray(array, dtype=np.float64) for array in arrays))
         except Exception as error:

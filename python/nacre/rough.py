@@ -107,10 +107,10 @@ def random_surface(
             f"{finest:g}, and below longest, got {shortest} and {longest}"
         )
     targets = {"rms_slope": rms_slope, "rms_height": rms_height}
-    known = {name: value for name, value in targets.items() if value is not None}
-    if len(known) != 1:
+    rms = {name: value for name, value in targets.items() if value is not None}
+    if len(rms) != 1:
         raise ValueError("exactly one of rms_slope and rms_height must be given")
-    (name, target), *_ = known.items()
+    (name, target), *_ = rms.items()
     if not (np.isfinite(target) and target > 0):
         raise ValueError(f"{name} must be above 0, got {target}")
     topography = fourier_synthesis(
@@ -578,7 +578,7 @@ def spectrum(solution: Solution | core.HeightMap) -> xarray.Dataset:
 
 
 def _spectra(
-    fields: dict[str, Array], grid: core.Grid, attributes: dict[str, Any]
+    fields: dict[str, Array], grid: core.Grid, attributes: dict[str, object]
 ) -> xarray.Dataset:
     """Return the spectra of heights on a grid."""
     with extra("files"):

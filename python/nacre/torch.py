@@ -2,18 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, NoReturn, Protocol, TypeAlias
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre._tools.typing import Body
+from nacre._tools.typing import Body, Matrix, Vector
 from nacre.design.differentiable import SECOND, Array, Differentiable, Outputs
 
 with extra("torch"):
     import torch
 
 __all__ = ["Result", "solver"]
+
+Value: TypeAlias = "float | Vector | Matrix | torch.Tensor"
+Tensors: TypeAlias = "torch.Tensor | tuple[torch.Tensor, ...]"
+Dimensions = tuple[int | None, ...]
+"""Dimension of each argument that a map goes along; None where it is the same for all."""
+Looped: TypeAlias = "tuple[Tensors, Dimensions | int]"
+Inputs: TypeAlias = "tuple[Differentiable, tuple[str, ...], torch.Tensor]"
+
+
+class Batch(Protocol):
+    """What PyTorch says of a map."""
+
+    batch_size: int
+
+
+class Context(Protocol):
+    """What PyTorch keeps of a call for its derivatives."""
+
+    contact: Differentiable
+    names: tuple[str, ...]
+    saved_tensors: tuple[torch.Tensor, ...]
+
+    def mark_non_differentiable(self, *tensors: torch.Tensor) -> None:
+        """Say which results have no derivative."""
+
+    def save_for_backward(self, *tensors: torch.Tensor) -> None:
+        """Keep tensors for the reverse mode."""
+
+    def save_for_forward(self, *tensors: torch.Tensor) -> None:
+        """Keep tensors for the forward mode."""
 
 
 class Result(NamedTuple):
@@ -29,15 +59,15 @@ class Result(NamedTuple):
         Whether each cell has a pressure ``(nx, ny)``; it has no derivative.
     """
 
-    pressure: Any
-    outputs: dict[str, Any]
-    in_contact: Any
+    pressure: torch.Tensor
+    outputs: dict[str, torch.Tensor]
+    in_contact: torch.Tensor
 
 
 class Solver(Protocol):
     """Function that `solver` returns."""
 
-    def __call__(self, parameters: Mapping[str, Any], gap: Any = None) -> Result: ...
+    def __call__(self, parameters: Mapping[str, Value], gap: Value | None = None) -> Result: ...
 
 
 def solver(
@@ -48,7 +78,7 @@ def solver(
     grid: core.Grid,
     outputs: Outputs = ("approach",),
     keep: int = 16,
-    **arguments: Any,
+    **arguments: object,
 ) -> Solver:
     """Return a contact as a function of some of its numbers, with derivatives of both modes.
 
@@ -109,7 +139,7 @@ def solver(
     keywords = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
     contact = Differentiable(keywords, outputs, keep)
 
-    def solve(parameters: Mapping[str, Any], gap: Any = None) -> Result:
+    def solve(parameters: Mapping[str, Value], gap: Value | None = None) -> Result:
         if not isinstance(parameters, Mapping):
             raise TypeError(f"parameters must be a dict of paths and numbers, got {parameters!r}")
         names = tuple(sorted(parameters))
@@ -127,7 +157,7 @@ def solver(
     return solve
 
 
-def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+def _checked(name: str, value: Value, shape: tuple[int, ...]) -> torch.Tensor:
     """Return a tensor of float64 on the CPU."""
     if not isinstance(value, torch.Tensor):
         try:
@@ -142,14 +172,16 @@ def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     return value
 
 
-def _tensor(array: Array) -> Any:
+def _tensor(array: Array) -> torch.Tensor:
     return torch.tensor(array, dtype=torch.float64)
 
 
-def _looped(function: Any, info: Any, in_dims: Any, *arguments: Any) -> tuple[Any, Any]:
+def _looped(
+    function: Callable[..., Tensors], info: Batch, in_dims: Dimensions, *arguments: torch.Tensor
+) -> Looped:
     """Return the results of a function for each element of a batch, stacked."""
 
-    def element(k: int) -> Any:
+    def element(k: int) -> Tensors:
         pairs = zip(arguments, in_dims, strict=True)
         return function(*(a.select(dim, k) if isinstance(dim, int) else a for a, dim in pairs))
 
@@ -163,29 +195,29 @@ class _Solve(torch.autograd.Function):  # type: ignore[misc]
     """Pressures, outputs and flags of contact at a vector."""
 
     @staticmethod
-    def forward(contact: Differentiable, names: tuple[str, ...], x: Any) -> Any:
+    def forward(contact: Differentiable, names: tuple[str, ...], x: torch.Tensor) -> Tensors:
         pressure, values = contact.values(names, x.detach().numpy())
         return _tensor(pressure), _tensor(values), torch.tensor(pressure > 0)
 
     @staticmethod
-    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+    def setup_context(ctx: Context, inputs: Inputs, output: tuple[torch.Tensor, ...]) -> None:
         ctx.contact, ctx.names, x = inputs
         ctx.mark_non_differentiable(output[2])
         ctx.save_for_backward(x)
         ctx.save_for_forward(x)
 
     @staticmethod
-    def backward(ctx: Any, *weights: Any) -> Any:
+    def backward(ctx: Context, *weights: torch.Tensor) -> tuple[None, None, torch.Tensor]:
         (x,) = ctx.saved_tensors
         return None, None, _Pull.apply(ctx.contact, ctx.names, x, *weights[:2])
 
     @staticmethod
-    def jvp(ctx: Any, *rates: Any) -> Any:
+    def jvp(ctx: Context, *rates: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
         (x,) = ctx.saved_tensors
         return *_Push.apply(ctx.contact, ctx.names, x, rates[2]), None
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+    def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
         return _looped(_Solve.apply, info, in_dims, *arguments)
 
 
@@ -193,15 +225,15 @@ class _First(torch.autograd.Function):  # type: ignore[misc]
     """A derivative, which has no derivatives itself."""
 
     @staticmethod
-    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+    def setup_context(ctx: object, inputs: object, output: object) -> None:
         pass
 
     @staticmethod
-    def backward(ctx: Any, *weights: Any) -> Any:
+    def backward(ctx: object, *weights: object) -> NoReturn:
         raise TypeError(SECOND)
 
     @staticmethod
-    def jvp(ctx: Any, *rates: Any) -> Any:
+    def jvp(ctx: object, *rates: object) -> NoReturn:
         raise TypeError(SECOND)
 
 
@@ -210,14 +242,18 @@ class _Pull(_First):
 
     @staticmethod
     def forward(
-        contact: Differentiable, names: tuple[str, ...], x: Any, pressure: Any, outputs: Any
-    ) -> Any:
+        contact: Differentiable,
+        names: tuple[str, ...],
+        x: torch.Tensor,
+        pressure: torch.Tensor,
+        outputs: torch.Tensor,
+    ) -> torch.Tensor:
         x, pressure, outputs = (one.detach().numpy() for one in (x, pressure, outputs))
         pulled = contact.pressure_pull(names, x, pressure)
         return _tensor(pulled + contact.outputs_pull(names, x, outputs))
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+    def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
         return _looped(_Pull.apply, info, in_dims, *arguments)
 
 
@@ -225,11 +261,13 @@ class _Push(_First):
     """Rates of pressures and outputs along a rate of the vector."""
 
     @staticmethod
-    def forward(contact: Differentiable, names: tuple[str, ...], x: Any, rate: Any) -> Any:
+    def forward(
+        contact: Differentiable, names: tuple[str, ...], x: torch.Tensor, rate: torch.Tensor
+    ) -> Tensors:
         x, rate = x.detach().numpy(), rate.detach().numpy()
         pressure = contact.pressure_push(names, x, rate)
         return _tensor(pressure), _tensor(contact.outputs_push(names, x, rate))
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+    def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
         return _looped(_Push.apply, info, in_dims, *arguments)

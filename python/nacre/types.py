@@ -1,6 +1,7 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import Shape
+from nacre.cards import Card, Number
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
@@ -10,6 +11,7 @@ from nacre.friction import CreepCoefficients
 from nacre.results.verdict import Verdict
 
 __all__ = [
+    "Card",
     "CreepCoefficients",
     "Direction",
     "FatigueSummary",
@@ -21,6 +23,7 @@ __all__ = [
     "InterfaceStress",
     "LayerFatigue",
     "LayerStress",
+    "Number",
     "Report",
     "ShakedownMap",
     "Shape",

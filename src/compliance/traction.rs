@@ -34,8 +34,7 @@ mod convolution;
 pub(crate) use convolution::{Tangential, TangentialWindow};
 
 /// What friction asks of bodies.
-pub(crate) const GO_ON: &str =
-    "friction needs bodies that go on along x: what tractions do near free ends is not known";
+pub(crate) const FRICTION_NEEDS_ENDLESS_BODIES: &str = "friction needs bodies without free ends along x: what tractions do near such ends is not known";
 
 /// Displacement \[m/Pa\] of the surface at cell offsets (i, j) ≥ 0 from a cell under a unit traction. Arrays are (nx, ny).
 ///

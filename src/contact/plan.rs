@@ -140,7 +140,7 @@ impl Contact {
         if let Some(known) = self.tangential.get() {
             return Ok(Arc::clone(known));
         }
-        refuse_if(self.ends.any(), crate::compliance::traction::GO_ON)?;
+        refuse_if(self.ends.any(), crate::compliance::traction::FRICTION_NEEDS_ENDLESS_BODIES)?;
         refuse_if(
             self.grid.is_periodic() != [false; 2],
             "friction needs a grid that is not periodic: give a wider grid",

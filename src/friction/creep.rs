@@ -94,7 +94,7 @@ pub fn creep_coefficients(
     for body in std::iter::once(&body).chain(&counterbody) {
         refuse_if(
             body.half_space().is_some_and(|layers| layers.ends() != [None; 2]),
-            crate::compliance::traction::GO_ON,
+            crate::compliance::traction::FRICTION_NEEDS_ENDLESS_BODIES,
         )?;
     }
     let shear = shear(&body, counterbody.as_ref())?;

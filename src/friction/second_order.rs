@@ -174,3 +174,50 @@ impl SecondOrder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use ndarray::Array2;
+
+    use super::SecondOrder;
+    use crate::compliance::response::Body;
+    use crate::compliance::traction::Tangential;
+    use crate::error::Result;
+    use crate::friction::RollingDirection;
+    use crate::model::grid::{Grid, full_window};
+    use crate::model::material::Elastic;
+    use crate::numerics::parallel::Threads;
+
+    /// Γ has the axes of the slope of p², here of an ellipse: (2x − d)/a² towards the cell behind, 2y/b² between those
+    /// on both sides.
+    #[test]
+    fn the_edge_is_normal_to_the_slope_of_the_squared_pressure() -> Result<()> {
+        let (body, grid) = (Body::from(Elastic::new(1.0, 0.3)?), Grid::new([24, 20], [2.4, 1.6])?);
+        let tangential = Tangential::plan(&body, None, &grid, &Arc::new(Threads::new(Some(1))?))?;
+        let (x, y, d, [a, b]) = (grid.x(), grid.y(), grid.spacing()[0], [1.0, 0.7]);
+        let squared = |i: usize, j: usize| 1.0 - (x[i] / a).powi(2) - (y[j] / b).powi(2);
+        let pressure = Array2::from_shape_fn(grid.shape(), |(i, j)| squared(i, j).max(0.0).sqrt());
+        let gap = pressure.mapv(|p| if p > 0.0 { 0.0 } else { 0.01 });
+        let order = SecondOrder::new(
+            RollingDirection::PlusX,
+            0.0,
+            [&pressure, &gap],
+            (&grid, &full_window(grid.shape())),
+            (&tangential, [1.0; 2]),
+        );
+        let mut compared = 0;
+        for (place, [xx, xy, yy]) in &order.leading {
+            let [i, j] = [place / y.len(), place % y.len()];
+            if squared(i, j - 1).min(squared(i, j + 1)) > 0.0 {
+                let n = [(2.0 * x[i] - d) / (a * a), 2.0 * y[j] / (b * b)];
+                let turned = xy * (n[0] * n[0] - n[1] * n[1]) - (xx - yy) * n[0] * n[1];
+                assert!(turned.abs() < 1e-12 * (xx + yy) * (n[0] * n[0] + n[1] * n[1]));
+                compared += 1;
+            }
+        }
+        assert!(compared > 4, "{compared}");
+        Ok(())
+    }
+}

@@ -12,7 +12,6 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyException, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBool, PyComplex, PyDict, PyFloat, PyList, PyTuple};
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde::de::value::StrDeserializer;
 
@@ -471,12 +470,6 @@ impl serde::de::Error for Unknown {
     fn unknown_variant(_: &str, expected: &'static [&'static str]) -> Self {
         Self(expected)
     }
-}
-
-/// Word that stands for a value.
-pub(super) fn word_of(value: &impl Serialize) -> String {
-    let json = serde_json::to_value(value).unwrap_or_default();
-    json.as_str().unwrap_or_default().to_owned()
 }
 
 /// Hash of a value from its `repr`, which equal values share.

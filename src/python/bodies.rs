@@ -269,7 +269,7 @@ class! {
     ///     Layers from the surface down.
     /// ends : tuple of float, optional
     ///     Coordinates x of free ends [m], the lower one first: the body is cut off there, and nothing holds
-    ///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides. A body with ends
+    ///     the end face. None, -inf or inf where it has no end, the default on both sides. A body with ends
     ///     needs bonded interfaces.
     ///
     /// Raises
@@ -293,7 +293,7 @@ class! {
     /// >>> nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)]).interfaces
     /// [2e-06]
     ///
-    /// A roller of 10 mm on a raceway that goes on:
+    /// A roller of 10 mm on a raceway that extends beyond it:
     ///
     /// >>> roller = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
     /// >>> counterbody = nacre.HalfSpace(steel, ends=roller.ends)
@@ -312,7 +312,7 @@ class! {
         layers: Bound<'py, PyTuple> = PyTuple::new(py, of.layers().iter().cloned().map(PyLayer))?;
         /// Depths of the interfaces [m], from the surface down.
         interfaces: Vec<f64> = of.interfaces();
-        /// Coordinates x of the free ends [m]; None where the body goes on.
+        /// Coordinates x of the free ends [m]; None where the body has no end.
         ends: (Option<f64>, Option<f64>) = of.ends().into();
     }
     methods {

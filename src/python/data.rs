@@ -1,16 +1,26 @@
-//! Results as JSON text, in which they cross to Python and back. `src/data.rs` says which fields they have.
+//! Results as fields, in which they cross to Python, and as JSON text of files, in which they come back. `src/data.rs`
+//! says which fields they have.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde::Serialize;
+use pythonize::pythonize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::friction::{CreepCoefficients, FrictionReport};
 use crate::stress::{InterfaceSummary, LayerSummary, StressSummary};
 
-/// JSON text of `value`.
-pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
-    serde_json::to_string(value).map_err(|error| PyValueError::new_err(error.to_string()))
+/// A value that is numbers, words, tuples, lists and dicts of fields in Python.
+pub(super) struct Plain<T>(pub(super) T);
+
+impl<'py, T: Serialize> IntoPyObject<'py> for Plain<T> {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        Ok(pythonize(py, &self.0)?)
+    }
 }
 
 /// Value that the JSON `text` describes; `kind` names it in the error.
@@ -34,29 +44,39 @@ fn key_before(text: &str, column: usize) -> Option<&str> {
     Some(before.rsplit_once('"')?.1)
 }
 
-/// JSON text of a summary and its warnings.
-pub(super) fn summary_text(summary: &StressSummary) -> PyResult<String> {
-    #[derive(Serialize)]
-    struct SummaryWithWarnings<'a> {
-        #[serde(flatten)]
-        summary: &'a StressSummary,
-        warnings: Vec<String>,
-    }
-    text(&SummaryWithWarnings { summary, warnings: summary.warnings() })
+/// A summary and its warnings.
+#[derive(Serialize, Deserialize)]
+#[serde(from = "StressSummary")]
+pub(super) struct SummaryWithWarnings {
+    #[serde(flatten)]
+    summary: StressSummary,
+    warnings: Vec<String>,
 }
 
-/// JSON text of the result of a `kind` that `given` describes, read and written again: checked.
+impl From<StressSummary> for SummaryWithWarnings {
+    fn from(summary: StressSummary) -> Self {
+        Self { warnings: summary.warnings(), summary }
+    }
+}
+
+/// Fields of the result of a `kind` that JSON text of a file describes, checked.
 #[pyfunction]
-pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
-    fn again<T: Serialize + DeserializeOwned>(kind: &str, json: &str) -> PyResult<String> {
-        text(&read::<T>(kind, json)?)
-    }
-    match kind {
-        "CreepCoefficients" => again::<CreepCoefficients>(kind, given),
-        "StressSummary" => summary_text(&read(kind, given)?),
-        "LayerStress" => again::<LayerSummary>(kind, given),
-        "InterfaceStress" => again::<InterfaceSummary>(kind, given),
-        "FrictionReport" => again::<FrictionReport>(kind, given),
-        _ => Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
-    }
+pub(super) fn checked<'py>(py: Python<'py>, kind: &str, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    let fields = match kind {
+        "CreepCoefficients" => fields::<CreepCoefficients>,
+        "StressSummary" => fields::<SummaryWithWarnings>,
+        "LayerStress" => fields::<LayerSummary>,
+        "InterfaceStress" => fields::<InterfaceSummary>,
+        "FrictionReport" => fields::<FrictionReport>,
+        _ => return Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
+    };
+    fields(py, kind, text)
+}
+
+fn fields<'py, T: Serialize + DeserializeOwned>(
+    py: Python<'py>,
+    kind: &str,
+    text: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    Plain(read::<T>(kind, text)?).into_pyobject(py)
 }

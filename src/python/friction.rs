@@ -11,14 +11,14 @@ use super::arguments::{Argument, Pair, count, read_only, real_array, real_matrix
 use super::background::{self, Caller};
 use super::bodies::half_space;
 use super::contact::{PyMotion, PyOn, PySetup, shape_of};
-use super::data::{read, text};
+use super::data::{Plain, read};
 use super::shapes::Shape;
 use super::solved::PySolved;
 use crate::compliance::response::Body;
 use crate::contact::{Contact, Motion, Options, Solution, choose_grid};
 use crate::friction::{
-    Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Rolling,
-    RollingDirection, Step, TangentialMotion,
+    CreepCoefficients, Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move,
+    Rolling, RollingDirection, Step, TangentialMotion,
 };
 use crate::model::body::HalfSpace;
 use crate::model::surface::Surface;
@@ -65,14 +65,14 @@ struct Rest {
 
 /// Numbers that follow from the fields, with the rest.
 #[derive(Serialize)]
-struct Numbers<'a> {
+struct Numbers {
     force: [f64; 2],
     torque: f64,
     dissipated: f64,
     tangential_energy: f64,
     #[serde(flatten)]
     motion: TangentialMotion,
-    report: &'a FrictionReport,
+    report: FrictionReport,
 }
 
 #[pymethods]
@@ -104,15 +104,15 @@ impl PyFrictionSolved {
         self.0.normal.clone().into()
     }
 
-    /// JSON text of all numbers, with motion and report.
-    fn numbers(&self) -> PyResult<String> {
-        text(&Numbers {
+    /// All numbers, with motion and report.
+    fn numbers(&self) -> Plain<Numbers> {
+        Plain(Numbers {
             force: self.0.force(),
             torque: self.0.torque(),
             dissipated: self.0.dissipated(),
             tangential_energy: self.0.tangential_energy(),
             motion: self.0.motion,
-            report: &self.0.report,
+            report: self.0.report.clone(),
         })
     }
 
@@ -207,10 +207,9 @@ impl PyFrictionSteps {
         let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
         let last = self.last.take();
         let solution =
-            background::run(py, progress, move |caller: &mut Caller<(usize, String)>| {
-                let mut tell = |report: &FrictionReport| {
-                    caller.ask(|| (number, text(report).unwrap_or_default()))
-                };
+            background::run(py, progress, move |caller: &mut Caller<(usize, Plain<_>)>| {
+                let mut tell =
+                    |report: &FrictionReport| caller.ask(|| (number, Plain(report.clone())));
                 // The first step begins where another call ended.
                 let last = last.as_deref().map(|solution| Last { solution, is_own: number > 0 });
                 let Problem { contact, shape, moves, options } = &*problem;
@@ -441,7 +440,7 @@ fn cells(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count("cells", 8, value)
 }
 
-/// JSON text of Kalker's linear coefficients of two bodies with any layers; `nacre.creep_coefficients`.
+/// Kalker's linear coefficients of two bodies with any layers; `nacre.creep_coefficients`.
 #[pyfunction]
 pub(super) fn creep_coefficients(
     py: Python<'_>,
@@ -449,12 +448,12 @@ pub(super) fn creep_coefficients(
     counterbody: Option<&Bound<'_, PyAny>>,
     semi_axes: Pair,
     #[pyo3(from_py_with = cells)] cells: usize,
-) -> PyResult<String> {
+) -> PyResult<Plain<CreepCoefficients>> {
     let counterbody = counterbody.map(half_space).transpose()?.map(Body::from);
     let Pair(axes) = semi_axes;
     let coefficients = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());
         crate::friction::creep_coefficients(body, counterbody, axes, Some(cells), Some(&mut watch))
     })??;
-    text(&coefficients)
+    Ok(Plain(coefficients))
 }

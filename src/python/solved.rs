@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::arguments::{read_only, real_array, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::PyBody;
-use super::data::{read, text};
+use super::data::{Plain, read};
 use super::grid::PyGrid;
 use crate::compliance::response::Body;
 use crate::contact::{
@@ -50,21 +50,24 @@ struct FreeEndsData {
     error: Option<f64>,
 }
 
-/// Report for Python: its data, the sentences of its warnings, and how free ends are counted.
+/// Fields of a report: its data, the sentences of its warnings, and how free ends are counted.
 #[derive(Serialize)]
-struct ReportJson {
+pub(super) struct ReportFields {
     data: ReportData,
     messages: Vec<String>,
     free_ends: Option<FreeEndsData>,
 }
 
-/// JSON text of a report, its grid and its bodies.
-pub(super) type ReportParts = (String, PyGrid, PyBody, Option<PyBody>);
+/// Fields of a report, its grid and its bodies.
+pub(super) type ReportParts = (Plain<ReportFields>, PyGrid, PyBody, Option<PyBody>);
+
+/// JSON text of a report's data, its grid and its bodies.
+type ReportState = (String, PyGrid, PyBody, Option<PyBody>);
 
 /// The report for `nacre.types.Report`.
 pub(super) fn report_parts(report: &Report) -> ReportParts {
     let of = report.clone();
-    let report_json = ReportJson {
+    let fields = ReportFields {
         messages: report.warnings.iter().map(ToString::to_string).collect(),
         free_ends: report
             .free_ends()
@@ -86,13 +89,12 @@ pub(super) fn report_parts(report: &Report) -> ReportParts {
         },
     };
     let counterbody = report.counterbody.as_ref().map(PyBody::from);
-    let report_text = text(&report_json).unwrap_or_default();
-    (report_text, PyGrid(report.grid), (&report.body).into(), counterbody)
+    (Plain(fields), PyGrid(report.grid), (&report.body).into(), counterbody)
 }
 
 /// Report of JSON text, a grid and bodies, checked.
-fn report_of((json, grid, body, counterbody): ReportParts) -> PyResult<Report> {
-    let of: ReportData = read("Report", &json)?;
+fn report_of((text, grid, body, counterbody): ReportState) -> PyResult<Report> {
+    let of: ReportData = read("Report", &text)?;
     for (name, value) in [
         ("convolutions", of.convolutions),
         ("residual", of.residual.min(f64::MAX)),
@@ -122,15 +124,15 @@ fn report_of((json, grid, body, counterbody): ReportParts) -> PyResult<Report> {
     })
 }
 
-/// A report read and told again: checked.
+/// Parts of the report that JSON text, a grid and bodies describe, checked.
 #[pyfunction]
 pub(super) fn checked_report(
-    told: String,
+    text: String,
     grid: PyGrid,
     body: PyBody,
     counterbody: Option<PyBody>,
 ) -> PyResult<ReportParts> {
-    Ok(report_parts(&report_of((told, grid, body, counterbody))?))
+    Ok(report_parts(&report_of((text, grid, body, counterbody))?))
 }
 
 /// Position of a solution from a state.
@@ -141,9 +143,9 @@ struct Position {
     tilt: [f64; 2],
 }
 
-/// Numbers of a solution, a dict for Python.
-#[derive(IntoPyObject)]
-struct Numbers {
+/// Numbers of a solution.
+#[derive(Serialize)]
+pub(super) struct Numbers {
     load: f64,
     eccentricity: [f64; 2],
     moment: [f64; 2],
@@ -179,7 +181,7 @@ pub(super) fn hardness(value: &Bound<'_, PyAny>) -> PyResult<Hardness> {
 
 #[pymethods]
 impl PySolved {
-    /// Solution with JSON text of its position, the parts of its report, and its fields.
+    /// Solution with JSON text of its position, the state of its report, and its fields.
     #[new]
     #[pyo3(signature = (
         position, report, *, pressure, gap, displacement, hardness=None, indentation=None, coefficients=None
@@ -187,7 +189,7 @@ impl PySolved {
     #[expect(clippy::too_many_arguments, reason = "one for each field of a state")]
     fn new(
         position: &str,
-        report: ReportParts,
+        report: ReportState,
         pressure: Option<Bound<'_, PyAny>>,
         gap: Option<Bound<'_, PyAny>>,
         displacement: Option<Bound<'_, PyAny>>,
@@ -216,9 +218,9 @@ impl PySolved {
         Ok(solution.yielding(hardness, field("indentation", indentation)?)?.into())
     }
 
-    fn numbers(&self) -> Numbers {
+    fn numbers(&self) -> Plain<Numbers> {
         let of = &self.0;
-        Numbers {
+        Plain(Numbers {
             load: of.load(),
             eccentricity: of.eccentricity(),
             moment: of.moment(),
@@ -230,7 +232,7 @@ impl PySolved {
             peak_position: of.peak_position(),
             central_pressure: of.central_pressure(),
             plastic_work: of.plastic_work(),
-        }
+        })
     }
 
     /// Array of that name, or `None`; the hardness may be a number.

@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use super::arguments::{Argument, Pair, Real, Repr, count, listed, real_array, real_matrix};
 use super::background;
 use super::bodies::{PyHalfSpace, half_space};
-use super::data::summary_text;
+use super::data::{Plain, SummaryWithWarnings};
 use super::friction::PyFrictionSolved;
 use super::grid::PyGrid;
 use super::solved::PySolved;
@@ -30,6 +30,22 @@ pub(super) struct PyStressPlan(Arc<StressPlan>);
 
 #[pymethods]
 impl PyStressPlan {
+    /// Plan for a body under a pressure that is uniform over each cell.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = half_space)] body: HalfSpace,
+        grid: PyGrid,
+        pressure: &Bound<'_, PyAny>,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let pressure = real_matrix("pressure", pressure)?;
+        let plan = background::run(py, None, move |_: &mut background::Caller<()>| {
+            StressPlan::plan(&body, &grid.0, &pressure, threads)
+        })??;
+        Ok(Self(Arc::new(plan)))
+    }
+
     #[getter]
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace(self.0.body().clone())
@@ -172,14 +188,14 @@ fn evaluated<'py>(
     field::fields(z.py(), stress, [one, x, y])
 }
 
-/// JSON text of the summary of the stress.
+/// Summary of the stress.
 #[pyfunction]
 pub(super) fn stress_summary(
     py: Python<'_>,
     of: Of,
     limits: PyStressLimits<'_>,
     options: PyStressOptions<'_>,
-) -> PyResult<String> {
+) -> PyResult<Plain<SummaryWithWarnings>> {
     let (member, body) = of.body(&options.body)?;
     let strengths = Strengths {
         yield_stress: by_layer("yield_stress", &limits.yield_stress, &body)?,
@@ -195,7 +211,7 @@ pub(super) fn stress_summary(
             Of::Plan(plan) => plan.get().0.summary(&strengths, options),
         }
     })?;
-    summary_text(&summary)
+    Ok(Plain(summary.into()))
 }
 
 /// Plan of the stress in a body of a solved contact.

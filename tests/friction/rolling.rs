@@ -279,6 +279,20 @@ fn kalkers_coefficients_of_his_table() -> Result<()> {
     Ok(())
 }
 
+/// Ellipses of that table on few cells, to 1 % and half of its last digit.
+#[test]
+fn kalkers_coefficients_of_ellipses_on_few_cells() -> Result<()> {
+    for (semi_axes, printed) in
+        [([0.4, 1.0], [3.53, 2.88, 0.823]), ([1.0, 0.4], [5.57, 5.48, 3.24])]
+    {
+        for ((name, found), printed) in named(&bare(0.25, semi_axes, 24)?).into_iter().zip(printed)
+        {
+            near!(found, printed, 0.012, name, semi_axes);
+        }
+    }
+    Ok(())
+}
+
 /// A circle, extrapolated from up to 256 cells by another program: four digits.
 #[test]
 fn kalkers_coefficients_of_a_circle() -> Result<()> {

@@ -1,13 +1,14 @@
 //! Adjoint and tangent solves agree, and derivatives satisfy the sum rules of the discrete contact.
 
 use nacre::gradient::Output;
-use nacre::{Result, Surface};
+use nacre::{Elastic, Grid, Motion, Result, Roller, Surface};
 use ndarray::Array2;
 
 use super::cases::{Case, linearised};
 
 use crate::support::checks::largest;
 use crate::support::contacts::Random;
+use crate::support::settings::Controls;
 
 /// Linear solves to 1e-12, and sums of some hundred terms.
 const EXACT: f64 = 1e-9;
@@ -115,6 +116,27 @@ fn moduli_and_load_scale_together() -> Result<()> {
         seen += 1;
     }
     assert!(seen > 12, "{seen}");
+    Ok(())
+}
+
+/// The same of the tilt under one load off the middle, whose moment grows with it.
+#[test]
+fn the_moment_of_a_load_off_the_middle_grows_with_it() -> Result<()> {
+    let load = 0.02;
+    let case = Case {
+        body: Elastic::new(1.0, 0.3)?.into(),
+        counterbody: None,
+        grid: Grid::new([20, 16], [2.4, 2.4])?,
+        shape: Box::new(Roller::new(10.0, 0.6, 10.0)?),
+        motion: Motion::load(load).with_eccentricity([Some(0.05), None]),
+    };
+    let solution = case.solve(1e-10)?;
+    let plan = linearised(&solution, Some(&*case.shape))?;
+    let gradient = plan.gradient(&Output::Tilt(0), None)?;
+    let paths = [("load", load), ("body.substrate.young", 1.0)];
+    let terms = paths.map(|(path, number)| gradient.get(path).unwrap_or(f64::NAN) * number);
+    below!((terms[0] + terms[1]).abs(), 1e-8 * terms[0].abs());
+    below!(0.1 * gradient.value.abs(), terms[0].abs());
     Ok(())
 }
 

@@ -1,5 +1,7 @@
 //! Derivatives of states against two programs and differences.
 
+use std::f64::consts::PI;
+
 use nacre::indent::{
     Adhesion, Form, Held, Indent, IndentParameter, Point, Stack, Tip, TipParameter, Variable,
 };
@@ -8,6 +10,9 @@ use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result};
 use crate::support::claims::claim;
 use crate::support::reference::{list, number, read};
 use crate::support::settings;
+
+/// Closed forms of a few dozen operations.
+const ROUNDING: f64 = 1e-12;
 
 /// Derivatives of ln a and ln δ to 1e-9, of the logarithm of the central pressure to 1e-7, under a given load: eleven coated
 /// spheres, of complex steps and of polynomials.
@@ -167,6 +172,30 @@ fn differences() -> Result<()> {
                 below!((found[i] * size - due[i]).abs(), bar, k, adheres, held, variable, i);
             }
         }
+    }
+    Ok(())
+}
+
+/// The sphere of Derjaguin, Muller and Toporov on a bare body: F = 4/3 E* √R δ^{3/2} − 2πwR at a given approach; κ times the
+/// area of all sections is κ times the radius.
+#[test]
+fn force_around_the_contact() -> Result<()> {
+    let body = Elastic::new(1.0, 0.3)?;
+    let (radius, work, approach) = (10.0, 1e-3, 0.02_f64);
+    let tip = Tip::paraboloid(radius)?;
+    let indent =
+        Indent::new(&Stack::plan(&[body.into()])?, &tip).with_adhesion(Adhesion::Dmt { work })?;
+    let point = indent.at_approach(approach)?;
+    let pressed = 4.0 / 3.0 * body.plane_strain_modulus() * radius.sqrt() * approach.powf(1.5);
+    near!(point.load, pressed - 2.0 * PI * work * radius, ROUNDING);
+    let by_radius = 0.5 * pressed / radius - 2.0 * PI * work;
+    for (parameter, due) in [
+        (IndentParameter::Tip(TipParameter::Number(0)), by_radius),
+        (IndentParameter::Tip(TipParameter::Area), radius * by_radius),
+        (IndentParameter::Work, -2.0 * PI * radius),
+    ] {
+        let change = point.derivative(Variable::Parameter(parameter), Held::Approach)?;
+        near!(change.load, due, ROUNDING, parameter);
     }
     Ok(())
 }

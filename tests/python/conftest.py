@@ -15,7 +15,8 @@ docs examples functions fuzz fuzz_contacts fuzz_ends fuzz_files fuzz_fits fuzz_i
 indent_extremes indent_fit indent_residuals notebook optimise paper peers rough stress_ends
 studies typing
 """.split()
-"""Files that `make quick` leaves out, as tests with the mark: random cases, examples, long fits."""
+"""Files of which `make quick` runs the tests marked quick alone: random cases, examples, long fits.
+"""
 # Jobs that shells start in the background ignore Ctrl-C, and so do their processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
@@ -23,7 +24,8 @@ CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        if item.path.stem.removeprefix("test_") in SLOW:
+        is_slow = item.path.stem.removeprefix("test_") in SLOW
+        if is_slow and not item.get_closest_marker("quick"):
             item.add_marker(pytest.mark.slow)
 
 

@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 use crate::support::claims::claim;
 use crate::support::huber::huber;
 use crate::support::stresses::{displaced, on, sliding};
-use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, stress};
+use nacre::stress::Strengths;
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, StressPlan, stress};
 use ndarray::{Array2, Array3};
 
 const NU: f64 = 0.3;
@@ -238,6 +239,19 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     let Some(peak) = field.peak(&shear) else { panic!("no depths") };
     claim("largest-shear", peak.value - 0.300_28);
     claim("largest-shear-depth", peak.position[2] - 0.7862);
+    Ok(())
+}
+
+/// The peak of a summary, of which most cells need no principal stresses.
+#[test]
+fn a_summary_has_the_largest_shear_below_a_line_contact() -> Result<()> {
+    let grid = Grid::line(201, 2.5)?;
+    let y = grid.y();
+    let pressure = Array2::from_shape_fn((1, 201), |(_, j)| (1.0 - y[j] * y[j]).max(0.0).sqrt());
+    let plan = StressPlan::plan(&steel()?, &grid, &pressure, None)?;
+    let peak = plan.summary(&Strengths::default(), &StressOptions::default())?.layers[0].shear;
+    assert!((peak.value / 0.300_28 - 1.0).abs() < 2e-3, "{peak:?}");
+    assert!((peak.position[2] - 0.7862).abs() < 0.03, "{peak:?}");
     Ok(())
 }
 

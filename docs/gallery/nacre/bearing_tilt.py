@@ -49,9 +49,9 @@ with plt.rc_context(plot.STYLE):
         if name == "coated":
             continue
         lives = {
-            "ISO's factors": [one.life("standard").revolutions for one in solved],
-            "solved": [one.life("pressure").revolutions for one in solved],
-            "none": [one.life(None).revolutions for one in solved],
+            "ISO's factors": [one.life("standard").l10 for one in solved],
+            "solved": [one.life("pressure").l10 for one in solved],
+            "none": [one.life(None).l10 for one in solved],
         }
         for (words, life), dashes in zip(lives.items(), ("-", "--", ":"), strict=True):
             right.plot(minutes, life, dashes, label=words, **style)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -30,7 +32,7 @@ def read_fields(frozen: Any) -> None:
             object.__setattr__(frozen, name, tuple(core.vector(name, 2, value)))
 
 
-def name_or_number(name: str, value: Any) -> str | int:
+def name_or_number(name: str, value: object) -> str | int:
     """Return the name or the number of a part of a file, or raise a `TypeError`."""
     if isinstance(value, str):
         return value
@@ -38,3 +40,9 @@ def name_or_number(name: str, value: Any) -> str | int:
         return core.integer(name, value)
     except TypeError:
         raise TypeError(f"{name} must be a name or a number, got {value!r}") from None
+
+
+def keywords_of(function: Callable[..., object]) -> set[str]:
+    """Return the names of the arguments that a function takes by name only."""
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}

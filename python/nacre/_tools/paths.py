@@ -15,19 +15,24 @@ DIFFERENTIABLE = (*BODIES, "load", "approach", "eccentricity", "moment", "tilt")
 """Arguments of a solve, beside the shape, that have derivatives."""
 
 
-def numbers(arguments: Mapping[str, Any]) -> dict[str, float]:
+def numbers(arguments: Mapping[str, object]) -> dict[str, float]:
     """Return all numbers of arguments by path."""
-    return dict(core.numbers(described(arguments)))
+    return dict(core.numbers(with_half_spaces(arguments)))
 
 
 def put(
-    arguments: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
+    arguments: dict[str, object],
+    path: str,
+    value: float,
+    *,
+    names: str = "start",
+    of: str = "build",
 ) -> None:
     """Replace the number at a path of arguments, with the errors of `holder`."""
     arguments |= core.with_value(holder(arguments, path, names, of), path, value)
 
 
-def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict[str, Any]:
+def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> dict[str, object]:
     """Return the argument that holds the number at a path, by name.
 
     Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
@@ -36,7 +41,7 @@ def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict
     message = f"{names} must name parameters of {of} by path, got {path!r}"
     if name not in arguments:
         raise ValueError(message)
-    argument = described({name: arguments[name]})
+    argument = with_half_spaces({name: arguments[name]})
     try:
         number = core.at(argument, path)
     except LookupError as missing:
@@ -46,7 +51,9 @@ def holder(arguments: Mapping[str, Any], path: str, names: str, of: str) -> dict
     return argument
 
 
-def described(arguments: Mapping[str, Any]) -> dict[str, Any]:
+def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, Any]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
-    bare = {name for name in BODIES if isinstance(arguments.get(name), core.Elastic)}
-    return {k: core.HalfSpace(one) if k in bare else one for k, one in arguments.items()}
+    return {
+        name: core.HalfSpace(one) if name in BODIES and isinstance(one, core.Elastic) else one
+        for name, one in arguments.items()
+    }

@@ -21,7 +21,7 @@ EVERY = 60.0
 """Shortest time between two lines in a log [s]: a night has a few hundred of them."""
 
 
-def check_progress(progress: Any) -> None:
+def check_progress(progress: object) -> None:
     """Raise a `TypeError` unless an argument is a function, or None."""
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {progress!r}")
@@ -66,7 +66,7 @@ def case_progress(progress: bool | None, total: int, stored: int) -> Iterator[Ca
 
 
 @contextmanager
-def lasting(what: str, progress: Any = None) -> Iterator[Any]:
+def lasting(what: str, progress: object = None) -> Iterator[Any]:
     """Yield what is called with the progress: `progress`, or a bar in a terminal or a notebook.
 
     It is called with the share that is done or with a text. Nothing is shown in the first two
@@ -148,11 +148,11 @@ class _Lines:
         seconds = self.last - self.start
         text = f"nacre.sweep: {self.done} of {self.total} cases"
         text += _stored_text(self.stored, self.total)
-        solved = self.done - self.stored
-        if solved:
+        new_cases = self.done - self.stored
+        if new_cases:
             text += f", {_time(seconds)} so far"
             if left := self.total - self.done:
-                text += f", about {_time(seconds * left / solved)} left"
+                text += f", about {_time(seconds * left / new_cases)} left"
         print(text, file=sys.stderr, flush=True)
 
 

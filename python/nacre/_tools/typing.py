@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -54,5 +54,5 @@ class Topography(Protocol):
     def physical_sizes(self) -> tuple[float, ...] | None:
         """Side lengths."""
 
-    def heights(self) -> npt.NDArray[Any]:
+    def heights(self) -> npt.NDArray[np.floating]:
         """Return the heights."""

@@ -63,9 +63,9 @@ def size_of(unit: str) -> tuple[str, float] | None:
     sizes = {name: _simple(name) for _, name, _ in factors}
     if not factors or None in sizes.values() or "".join(map("".join, factors)) != unit:
         return None
-    known = {name: size for name, size in sizes.items() if size is not None}
-    dimension = "".join(f"{mark}{known[name][0]}{power}" for mark, name, power in factors)
-    return dimension, _product(unit, {name: size for name, (_, size) in known.items()})
+    factor_sizes = {name: size for name, size in sizes.items() if size is not None}
+    dimension = "".join(f"{mark}{factor_sizes[name][0]}{power}" for mark, name, power in factors)
+    return dimension, _product(unit, {name: size for name, (_, size) in factor_sizes.items()})
 
 
 def _product(unit: str, sizes: Mapping[str, float]) -> float:
@@ -304,17 +304,22 @@ class Scale:
 
         A unit that is not known is kept.
         """
-        known = size_of(unit)
-        if known is None:
+        dimension_size = size_of(unit)
+        if dimension_size is None:
             return cls(1.0, unit)
-        dimension, size = known
+        dimension, size = dimension_size
         return cls._chosen(largest, size, dimension, unit)
 
     @classmethod
     def _chosen(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
-        if not dimension or largest == 0 or not math.isfinite(largest) or dimension[0] == "1":
-            return cls(1.0, own)  # nobody writes k1/m
+        if (
+            not dimension
+            or largest == 0
+            or not math.isfinite(largest)
+            or dimension.startswith(("1", "kg"))
+        ):
+            return cls(1.0, own)  # nobody writes k1/m or kkg
         # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
         power = POWERS[FACTORS.findall(dimension)[0][2]]
         low, high = (bound**power for bound in READABLE)

@@ -2,10 +2,12 @@
 
 A bearing is described by what a catalogue or a drawing says of it. `CylindricalRoller.solve` and
 its like find loads, tilts and pressures of all elements under forces, displacements, moments and
-tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281.
+tilts of the inner ring, with contacts that nacre solves or those of ISO/TS 16281. A `Pair` has two
+of them on one shaft.
 """
 
 from nacre.bearing.balls import AngularContactBall, DeepGrooveBall
+from nacre.bearing.catalogue import CatalogueCheck, check, estimated_balls
 from nacre.bearing.film import Film, film_thickness
 from nacre.bearing.iso import edge_factors, load_integrals, rating
 from nacre.bearing.life import (
@@ -17,28 +19,54 @@ from nacre.bearing.life import (
     life_ratio,
     stress_volume,
 )
+from nacre.bearing.modified import (
+    contamination_range,
+    fatigue_load_limit,
+    life_modification_factor,
+    reference_viscosity,
+    reliability_factor,
+    simple_fatigue_load_limit,
+)
+from nacre.bearing.pair import Pair, PairLife, PairSolution
+from nacre.bearing.rating_life import BearingLife
 from nacre.bearing.rollers import CylindricalRoller, SphericalRoller, TaperedRoller
-from nacre.bearing.solution import BearingLife, BearingReport, BearingSolution
+from nacre.bearing.solution import BearingReport, BearingSolution
+from nacre.bearing.static import StaticLoad, equivalent_static_load, static_rating
 
 __all__ = [
     "AngularContactBall",
     "BearingLife",
     "BearingReport",
     "BearingSolution",
+    "CatalogueCheck",
     "CylindricalRoller",
     "DeepGrooveBall",
     "Film",
     "IoannidesHarris",
     "LifeRatio",
     "LundbergPalmgren",
+    "Pair",
+    "PairLife",
+    "PairSolution",
     "SphericalRoller",
+    "StaticLoad",
     "StressVolume",
     "TaperedRoller",
     "Zaretsky",
+    "check",
+    "contamination_range",
     "edge_factors",
+    "equivalent_static_load",
+    "estimated_balls",
+    "fatigue_load_limit",
     "film_thickness",
+    "life_modification_factor",
     "life_ratio",
     "load_integrals",
     "rating",
+    "reference_viscosity",
+    "reliability_factor",
+    "simple_fatigue_load_limit",
+    "static_rating",
     "stress_volume",
 ]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
+from nacre._tools.typing import Layers
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -43,6 +44,9 @@ STEPS = 4
 TOO_NARROW = 4.0
 """Expected load over that of its grid above which a contact is not tried on it: half as wide as
 the contact or less, which takes minutes."""
+EQUAL = 1e-15
+"""Approaches that differ by no more are equal [m]: by 1e-10 of a deflection of 10 µm, which is some
+hundred units in its last place."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
 
@@ -63,6 +67,45 @@ class Reaction(NamedTuple):
 Law = Callable[[Array], Reaction]
 
 
+class Several:
+    """Contacts of several bearings, each of which has its own law and its own elements."""
+
+    def __init__(self, laws: Sequence[Law], counts: Sequence[int]) -> None:
+        """Take the laws, and the number of elements of each."""
+        self.laws = laws
+        self.slices = slices_of(counts)
+        self.costly = any(isinstance(one, Solved) for one in laws)
+
+    def __call__(self, places: Array) -> Reaction:
+        """Return the reaction of all contacts."""
+        reactions = [one(places[rows]) for one, rows in zip(self.laws, self.slices, strict=True)]
+        contacts = {
+            (element + rows.start, ring): contact
+            for reaction, rows in zip(reactions, self.slices, strict=True)
+            for (element, ring), contact in reaction.contacts.items()
+        }
+        fields = zip(*(reaction[:3] for reaction in reactions), strict=True)
+        energy, force, stiffness = map(np.concatenate, fields)
+        return Reaction(energy, force, stiffness, contacts)
+
+    def split(self, reaction: Reaction) -> Iterator[Reaction]:
+        """Yield the reaction of each bearing."""
+        for rows in self.slices:
+            contacts = {
+                (element - rows.start, ring): contact
+                for (element, ring), contact in reaction.contacts.items()
+                if rows.start <= element < rows.stop
+            }
+            energy, force, stiffness = (field[rows] for field in reaction[:3])
+            yield Reaction(energy, force, stiffness, contacts)
+
+
+def slices_of(counts: Sequence[int]) -> list[slice]:
+    """Return the rows of the elements of several bearings, one after the other."""
+    ends = np.cumsum(counts).tolist()
+    return [slice(end - count, end) for count, end in zip(counts, ends, strict=True)]
+
+
 class Slices:
     """Laminae of a roller after ISO/TS 16281, each contact on its own.
 
@@ -80,8 +123,9 @@ class Slices:
 
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
-        depths: Array = np.maximum(places[..., :1] + places[..., 1:] * self.x - self.drop, 0.0)
-        return depths
+        depths = places[..., :1] + places[..., 1:] * self.x - self.drop
+        # The stiffness of rounding beside the load, as δ^(1/9), would count by a hundredth.
+        return np.where(depths > EQUAL, depths, 0.0)
 
     def loads(self, places: Array) -> Array:
         """Return the loads of the laminae ``(Z, 2, laminae)`` [N]."""
@@ -104,7 +148,7 @@ class Slices:
 class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
-    def __init__(self, bearing: Any) -> None:
+    def __init__(self, bearing: Bearing) -> None:
         self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
 
@@ -167,7 +211,7 @@ def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
     return loads, pressures
 
 
-def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
+def bodies_of(bearing: Any, ring: Ring) -> tuple[Layers, Layers]:
     """Return the bodies of a contact: ring and element, whose ends are free where they are so."""
     element = bearing.element
     if bearing.rolls and bearing.free_ends:
@@ -180,6 +224,9 @@ def bodies_of(bearing: Any, ring: Ring) -> tuple[Any, Any]:
 
 class Solved:
     """Contacts that nacre solves, with warm starts; one plan for contacts of similar width."""
+
+    costly = True
+    """Whether elements do not settle at each place of the ring, for which they are evaluated."""
 
     def __init__(
         self,
@@ -195,7 +242,7 @@ class Solved:
         reach = bearing.length / 2 if bearing.rolls else 0.0
         self.reach = reach
         self.plans: dict[tuple[int, int], Contact] = {}
-        self.kept: dict[tuple[int, int], Solution] = {}
+        self.last_solutions: dict[tuple[int, int], Solution] = {}
         power = 2 if bearing.rolls else 3  # of the width, in the load
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
@@ -219,7 +266,7 @@ class Solved:
                 break
             self._widen()
         for j, r in np.argwhere(most < self.halved):
-            self.kept.pop((int(j), int(r)), None)  # it starts from no other grid
+            self.last_solutions.pop((int(j), int(r)), None)  # it starts from no other grid
         self.halved = np.minimum(self.halved, most)
 
     def _plan(self, element: int, ring: int) -> Contact:
@@ -234,7 +281,7 @@ class Solved:
 
     def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
         """Return a contact and its stiffness, of which a warning says nothing yet."""
-        initial = self.kept.get((element, ring))
+        initial = self.last_solutions.get((element, ring))
         while True:
             plan = self._plan(element, ring)
             solution = plan.solve(
@@ -299,25 +346,39 @@ class Solved:
         self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
+        groups = self._equal(tasks, places)
         solutions: dict[tuple[int, int], Solution] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)
-                futures = [pool.submit(self._solve, j, r, places[j, r]) for j, r in tasks]
-                for (j, r), future in zip(tasks, futures, strict=True):
+                futures = [
+                    pool.submit(self._solve, *group[0], places[group[0]]) for group in groups
+                ]
+                for group, future in zip(groups, futures, strict=True):
                     solution, tangent = future.result()
-                    solutions[j, r] = solution
-                    energy[j, r] = solution.elastic_energy
-                    force[j, r] = solution.load, solution.moment[0]
-                    stiffness[j, r] = tangent[:2, :2]
+                    for j, r in group:
+                        self.halved[j, r] = self.halved[group[0]]
+                        solutions[j, r] = solution
+                        energy[j, r] = solution.elastic_energy
+                        force[j, r] = solution.load, solution.moment[0]
+                        stiffness[j, r] = tangent[:2, :2]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
         if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
-        self.kept = solutions
+        self.last_solutions = solutions
         return Reaction(energy, force, stiffness, solutions)
+
+    def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:
+        """Return groups of contacts that are equal but for rounding, as those beside a load are."""
+        lengths = np.array([1.0, max(self.reach, self.bearing.diameter)])
+        steps = np.round(places * lengths / EQUAL).astype(np.int64)
+        groups: dict[tuple[int, ...], list[tuple[int, int]]] = {}
+        for j, r in tasks:
+            groups.setdefault((r, int(self.halved[j, r]), *steps[j, r].tolist()), []).append((j, r))
+        return list(groups.values())
 
     def sizes(self) -> Array:
         """Return the sides of the grids ``(Z, 2, 2)`` [m]."""

@@ -8,7 +8,8 @@ here; for rollers the kinematics are those of ISO/TS 16281, equations 38 to 41.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -16,8 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
-from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, Solved
-from nacre.bearing.geometry import RINGS, laminae_of
+from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, slices_of
+from nacre.bearing.geometry import RINGS, Bearing, laminae_of
 
 Array = npt.NDArray[np.float64]
 
@@ -54,7 +55,45 @@ class Places(NamedTuple):
     """Second derivatives of the approaches ``(Z, 2, 4, 4)``."""
 
 
-class Rollers:
+class Elements(ABC):
+    """Motion of elements with the ring: coordinates, and forces that contacts can have."""
+
+    motion: Array
+    """Derivatives of ``t`` of each element by the displacements of the ring ``(Z, 2, 5)``."""
+    lengths: Array
+    """Lengths that make coordinates of an element displacements, ``(2,)`` or ``(Z, 2)`` [m]."""
+    half: Array | float
+    """Half of the lengths of the elements, ``(Z, 1)`` or one for all [m]."""
+    arm: float
+    """Length that makes moments forces [m]."""
+    size: float
+    """Pitch diameter [m]."""
+    outward: tuple[Any, Any]
+    """Parts of the centrifugal force on the elements' coordinates, and on the ring along z."""
+
+    def ring_motion(self, ring: Array) -> Array:
+        """Return ``t`` of all elements ``(Z, 2)`` at displacements of the ring."""
+        motion: Array = self.motion @ ring
+        return motion
+
+    @abstractmethod
+    def generators(self) -> Array:
+        """Return forces ``(5, n)`` on the ring, of which those of contacts are sums."""
+
+    @abstractmethod
+    def neutral(self, ring_motion: Array, pressed: Array | float) -> Array:
+        """Return positions of elements midway, or on the outer ring to which they are pressed."""
+
+    @abstractmethod
+    def places(self, ring_motion: Array, own: Array) -> Places:
+        """Return the coordinates of all contacts."""
+
+    @abstractmethod
+    def angles(self, ring_motion: Array, own: Array) -> Array:
+        """Return the contact angles ``(Z, 2)`` [rad]."""
+
+
+class Rollers(Elements):
     """Rollers between raceways. ``t = (u, ψ)`` of the ring and ``z = (v, w)`` of the roller.
 
     They are approaches and slopes of both contacts together, and of the outer one.
@@ -97,25 +136,25 @@ class Rollers:
         approach, slope = self.motion[:, 0], self.motion[:, 1]
         return np.concatenate([approach + end * slope for end in self.ends]).T
 
-    def neutral(self, moved: Array, pressed: float) -> Array:
+    def neutral(self, ring_motion: Array, pressed: Array | float) -> Array:
         """Return positions of elements midway, or on the outer ring to which they are pressed."""
-        middle: Array = moved / 2
-        if pressed > 0:
+        middle: Array = ring_motion / 2
+        if np.any(pressed):
             middle[:, 0] = np.maximum(middle[:, 0], self.play / 4 + pressed)
         return middle
 
-    def places(self, moved: Array, own: Array) -> Places:
+    def places(self, ring_motion: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        coordinates = np.stack([moved - own, own], axis=1)
+        coordinates = np.stack([ring_motion - own, own], axis=1)
         coordinates[..., 0] -= self.play / 4
         return Places(coordinates, self.jacobian, self.curvature)
 
-    def angles(self, moved: Array, own: Array) -> Array:
+    def angles(self, ring_motion: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
         return np.tile(self.contact_angles, (self.count, 1))
 
 
-class Balls:
+class Balls(Elements):
     """Balls in grooves. ``t`` is the shift of the inner groove's centre, z the ball's position.
 
     Both are (radial, axial), and z counts from the centre of the outer groove.
@@ -152,20 +191,20 @@ class Balls:
         ways = [self.motion[:, 0], along, -along] if self.both_ways else [self.motion[:, 0], along]
         return np.concatenate(ways).T
 
-    def neutral(self, moved: Array, pressed: float) -> Array:
+    def neutral(self, ring_motion: Array, pressed: Array | float) -> Array:
         """Return positions of balls midway, or on the outer ring to which they are pressed."""
-        away = self.start + moved
+        away = self.start + ring_motion
         distance = np.linalg.norm(away, axis=1, keepdims=True)
         share = self.groove[1] / self.groove.sum()
         middle: Array = away * share
-        if pressed > 0:
+        if np.any(pressed):
             outward = np.maximum(share * distance, self.groove[1] + pressed) / distance
             middle = away * outward
         return middle
 
-    def places(self, moved: Array, own: Array) -> Places:
+    def places(self, ring_motion: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        arms = np.stack([self.start + moved - own, own], axis=1)
+        arms = np.stack([self.start + ring_motion - own, own], axis=1)
         distance = np.linalg.norm(arms, axis=2)
         unit = arms / distance[..., None]
         places = np.zeros((len(own), 2, 2))
@@ -180,9 +219,9 @@ class Balls:
         curvature[:, 1, 2:, 2:] = bend[:, 1]
         return Places(places, jacobian, curvature)
 
-    def angles(self, moved: Array, own: Array) -> Array:
+    def angles(self, ring_motion: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
-        arms = np.stack([self.start + moved - own, own], axis=1)
+        arms = np.stack([self.start + ring_motion - own, own], axis=1)
         return np.arctan2(arms[..., 1], arms[..., 0])
 
 
@@ -223,10 +262,67 @@ class Barrels(Balls):
         return forces
 
 
-Kinematics = Rollers | Balls
+class Shaft(Elements):
+    """Elements of several bearings, whose inner rings move with one shaft.
+
+    Each ring has a displacement along its own z of its own, which the shaft's adds to.
+    """
+
+    def __init__(self, parts: Sequence[Elements], ways: Sequence[Array], set_to: Array) -> None:
+        """Take how each ring moves with the shaft ``(5, 5)``, and where it is without that [m]."""
+        self.parts, self.ways, self.set_to = parts, ways, set_to
+        counts = [len(part.motion) for part in parts]
+        self.slices = slices_of(counts)
+        motions = [part.motion @ way for part, way in zip(parts, ways, strict=True)]
+        offsets = [part.motion[:, :, 2] * z for part, z in zip(parts, set_to, strict=True)]
+        self.motion, self.offsets = np.concatenate(motions), np.concatenate(offsets)
+        self.lengths = self._stacked([part.lengths for part in parts], 2)
+        self.half = self._stacked([part.half for part in parts], 1)
+        self.arm, self.size = max(one.arm for one in parts), max(one.size for one in parts)
+        along = [part.outward[1] * way[2, 2] for part, way in zip(parts, ways, strict=True)]
+        own = self._stacked([part.outward[0] for part in parts], 2)
+        self.outward = own, self._stacked(along, 1)
+
+    def _stacked(self, numbers: Sequence[Any], width: int) -> Array:
+        """Return numbers of all parts for each element ``(Z, width)``."""
+        rows = [np.zeros((len(one.motion), width)) for one in self.parts]
+        return np.concatenate([row + number for row, number in zip(rows, numbers, strict=True)])
+
+    def ring_motion(self, ring: Array) -> Array:
+        """Return ``t`` of all elements ``(Z, 2)`` at displacements of the shaft."""
+        motion: Array = super().ring_motion(ring) + self.offsets
+        return motion
+
+    def generators(self) -> Array:
+        """Return forces ``(5, n)`` on the shaft, of which those of contacts are sums."""
+        forces = [
+            way.T @ part.generators() for part, way in zip(self.parts, self.ways, strict=True)
+        ]
+        return np.concatenate(forces, axis=1)
+
+    def neutral(self, ring_motion: Array, pressed: Array | float) -> Array:
+        """Return positions of elements midway, or on the outer rings to which they are pressed."""
+        approaches = np.zeros(len(ring_motion)) + pressed
+        middles = [
+            part.neutral(ring_motion[rows], float(approaches[rows.start]))
+            for part, rows in zip(self.parts, self.slices, strict=True)
+        ]
+        return np.concatenate(middles)
+
+    def places(self, ring_motion: Array, own: Array) -> Places:
+        """Return the coordinates of all contacts."""
+        parts = zip(self.parts, self.slices, strict=True)
+        places = [part.places(ring_motion[rows], own[rows]) for part, rows in parts]
+        return Places(*map(np.concatenate, zip(*places, strict=True)))
+
+    def angles(self, ring_motion: Array, own: Array) -> Array:
+        """Return the contact angles ``(Z, 2)`` [rad]."""
+        parts = zip(self.parts, self.slices, strict=True)
+        angles = [part.angles(ring_motion[rows], own[rows]) for part, rows in parts]
+        return np.concatenate(angles)
 
 
-def kinematics_of(bearing: Any, angles: Array) -> Kinematics:
+def kinematics_of(bearing: Bearing, angles: Array) -> Elements:
     """Return the motion of the elements of a bearing at their angles."""
     kind = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
     return kind(bearing, angles)
@@ -265,27 +361,28 @@ class State:
 class Problem:
     """What is asked of the ring: loads along free directions, displacements along the others."""
 
-    kinematics: Kinematics
+    kinematics: Elements
     law: Law
     loads: Array
     """Forces and moments ``(5,)``, those of directions that are not free 0."""
     free: npt.NDArray[np.bool_]
-    centrifugal: float
-    """Force on each element [N]."""
+    centrifugal: Array | float
+    """Force on each element [N], ``(Z, 1)`` or one for all."""
 
     def __post_init__(self) -> None:
         """Divide the centrifugal force between elements and ring."""
         own, ring = self.kinematics.outward
         self.outward = np.array(own)
-        self.thrust = ring * self.centrifugal * len(self.kinematics.motion)
-        self.settles = not isinstance(self.law, Solved)
+        along = np.zeros((len(self.kinematics.motion), 1)) + ring
+        self.thrust = float((along * self.centrifugal).sum())
+        self.settles = not getattr(self.law, "costly", False)
         """Whether elements settle at each place of the ring: contacts that are solved cost more."""
 
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
         kinematics = self.kinematics
-        moved = kinematics.motion @ ring
-        places = kinematics.places(moved, own)
+        ring_motion = kinematics.ring_motion(ring)
+        places = kinematics.places(ring_motion, own)
         reaction = self.law(places.places)
         gradient = np.einsum("zrak,zra->zk", places.jacobian, reaction.force)
         gradient[:, 2:] -= self.centrifugal * self.outward
@@ -294,7 +391,7 @@ class Problem:
         )
         hessian += np.einsum("zr,zrkl->zkl", reaction.force[..., 0], places.curvature)
         scale = np.trace(hessian[:, 2:, 2:], axis1=1, axis2=2).max(initial=0.0) or 1.0
-        inner = hessian[:, 2:, 2:] + FLAT * scale * np.diag(kinematics.lengths**2)
+        inner = hessian[:, 2:, 2:] + FLAT * scale * kinematics.lengths[..., None] ** 2 * np.eye(2)
         inverse = np.linalg.inv(inner)
         cross = hessian[:, :2, 2:] @ inverse
         tangent = hessian[:, :2, :2] - cross @ hessian[:, 2:, :2]
@@ -304,7 +401,7 @@ class Problem:
         wanting -= self.thrust * AXIAL
         step = -np.einsum("zab,zb->za", inverse, gradient[:, 2:])
         follow = -inverse @ hessian[:, 2:, :2] @ motion
-        energies = reaction.energy.sum(1) - self.centrifugal * (own * self.outward).sum(1)
+        energies = reaction.energy.sum(1) - (self.centrifugal * own * self.outward).sum(1)
         energy = float(energies.sum() - self.loads @ ring) - self.thrust * float(ring[2])
         state = State(
             ring, own, places.places, reaction, energy, wanting, gradient[:, 2:],
@@ -328,7 +425,7 @@ class Problem:
             float(np.abs(self.loads[3:]).max()) / self.kinematics.arm,
         )
         pressed = state.deepest > ROUNDING * self.kinematics.size
-        if force == 0.0 or not (pressed or self.loads.any() or self.centrifugal):
+        if force == 0.0 or not (pressed or self.loads.any() or np.any(self.centrifugal)):
             return 0.0, 0.0
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
         ring = np.abs(state.wanting / arm)[self.free]
@@ -354,7 +451,7 @@ class Problem:
             state = trial
         return state
 
-    def start(self, displacement: Array, pressed: float) -> tuple[Array, Array]:
+    def start(self, displacement: Array, pressed: Array | float) -> tuple[Array, Array]:
         """Return a first guess: where the energy is least along the direction of the loads."""
         arm = np.array([1, 1, 1, 1 / self.kinematics.arm, 1 / self.kinematics.arm])
         along = np.where(self.free, self.loads * arm**2, 0.0)
@@ -365,7 +462,7 @@ class Problem:
 
             def slope(way: float) -> float:
                 at = displacement + way * along
-                own = self.kinematics.neutral(self.kinematics.motion @ at, pressed)
+                own = self.kinematics.neutral(self.kinematics.ring_motion(at), pressed)
                 return float(self.state(at, own).wanting @ along)
 
             way = 1e-7
@@ -376,7 +473,7 @@ class Problem:
                 middle = (low + way) / 2
                 low, way = (middle, way) if slope(middle) < 0 else (low, middle)
             ring = displacement + way * along
-        return ring, self.kinematics.neutral(self.kinematics.motion @ ring, pressed)
+        return ring, self.kinematics.neutral(self.kinematics.ring_motion(ring), pressed)
 
     def step(self, state: State, reach: float) -> tuple[Array, Array, bool]:
         """Return Newton's step of the ring and of the elements, and whether it was shortened.
@@ -395,13 +492,14 @@ class Problem:
             ring[free] = -ways @ (pull / np.maximum(stiffness, least)) / arm
         step, follow = state.back
         own = step + follow @ ring
-        moved = kinematics.motion @ ring
+        ring_motion = kinematics.motion @ ring
         farthest = reach * max(state.deepest, 0.0)
-        largest = float((np.abs(moved) * kinematics.lengths).max())
+        largest = float((np.abs(ring_motion) * kinematics.lengths).max())
         shorter = largest > farthest > 0
         if shorter:
-            ring, own, moved = (way * (farthest / largest) for way in (ring, own, moved))
-        beside = (np.abs(moved) * kinematics.lengths).max(axis=1)
+            share = farthest / largest
+            ring, own, ring_motion = ring * share, own * share, ring_motion * share
+        beside = (np.abs(ring_motion) * kinematics.lengths).max(axis=1)
         return ring, own * self.limits(state, own, beside)[:, None], shorter
 
     def limits(self, state: State, step: Array, beside: Array | float = 0.0) -> Array:
@@ -411,7 +509,7 @@ class Problem:
         and what the ring moves `beside` it: one that hardly touches has next to no stiffness.
         """
         before = self.depths(state.places)
-        moved = self.kinematics.motion @ state.ring
+        moved = self.kinematics.ring_motion(state.ring)
         deeper = self.depths(self.kinematics.places(moved, state.own + step).places) - before
         sizes = np.maximum(np.abs(before), before.max(axis=1, keepdims=True))
         allowed = FARTHEST * sizes + np.reshape(beside, (-1, 1))
@@ -426,10 +524,10 @@ class Problem:
 
     def idle_midway(self, state: State) -> State:
         """Return the state with elements midway that touch nothing there: they carry rounding."""
-        if self.centrifugal == 0:
-            moved = self.kinematics.motion @ state.ring
-            own = self.kinematics.neutral(moved, 0.0)
-            places = self.kinematics.places(moved, own).places
+        if not np.any(self.centrifugal):
+            ring_motion = self.kinematics.ring_motion(state.ring)
+            own = self.kinematics.neutral(ring_motion, 0.0)
+            places = self.kinematics.places(ring_motion, own).places
             idle = np.asarray((self.depths(places) <= 0).all(axis=1))
             state.reaction.force[idle] = 0.0
             state.own = np.where(idle[:, None], own, state.own)

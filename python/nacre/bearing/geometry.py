@@ -58,7 +58,7 @@ LIGHTEST, HEAVIEST = 100.0, 25e3
 """Least and largest density of an element [kg/m³]: a tenth of that of plastics; above osmium's."""
 
 
-def above(name: str, value: Any, least: float = 0.0) -> float:
+def above(name: str, value: object, least: float = 0.0) -> float:
     """Return a finite number above `least`, or raise an error."""
     number = core.real(name, value)
     if not (math.isfinite(number) and number > least):
@@ -67,7 +67,7 @@ def above(name: str, value: Any, least: float = 0.0) -> float:
     return number
 
 
-def check_flag(name: str, value: Any) -> None:
+def check_flag(name: str, value: object) -> None:
     """Raise a `TypeError` unless a value is True or False."""
     if not isinstance(value, bool):
         raise TypeError(f"{name} must be True or False, got {value!r}")
@@ -109,14 +109,14 @@ class Following:
         """Take the name of the argument, under which the instance keeps it."""
         self.name = name
 
-    def __get__(self, bearing: Any, owner: type | None = None) -> Any:
+    def __get__(self, bearing: object, owner: type | None = None) -> object:
         """Return the number; of the class None, which is the default of the argument."""
         if bearing is None:
             return None
         argument = vars(bearing)[self.name]
         return Follows(getattr(bearing, self.source)) if argument is None else argument
 
-    def __set__(self, bearing: Any, value: Any) -> None:
+    def __set__(self, bearing: object, value: object) -> None:
         """Keep the argument."""
         vars(bearing)[self.name] = value
 
@@ -434,7 +434,7 @@ class Bearing(ABC):
     def mass(self) -> float:
         """Mass of an element [kg]."""
 
-    def _arguments(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, object]:
         """Return what makes the bearing again, for files and journals of studies."""
         return {field.name: vars(self)[field.name] for field in dataclasses.fields(self)}
 

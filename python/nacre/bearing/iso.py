@@ -112,8 +112,8 @@ def rating(bearing: Any) -> float:
     >>> round(rating(bearing))
     48417
     """
-    known: object = bearing
-    if not isinstance(known, Bearing):
+    candidate: object = bearing
+    if not isinstance(candidate, Bearing):
         raise TypeError(f"bearing must be a bearing, got {bearing!r}")
     gamma, diameter = bearing.gamma, bearing.diameter * 1e3
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
@@ -135,7 +135,7 @@ def rating(bearing: Any) -> float:
     return float(bearing.rating_factor * shape * cos**0.7 * bearing.count ** (2 / 3) * size)
 
 
-def is_thrust(bearing: Any) -> bool:
+def is_thrust(bearing: Bearing) -> bool:
     """Return whether a bearing is a thrust bearing of ISO 281: of a contact angle above 45°."""
     return bool(bearing.nominal_angle > math.pi / 4)
 
@@ -156,7 +156,7 @@ def _shape(ratio: float, grooves: tuple[float, float], thrust: bool) -> float:
 class ReferenceLife(NamedTuple):
     """Reference rating life, and what it is made of."""
 
-    revolutions: float
+    l10: float
     """Life L_10r in millions of revolutions; infinite without load."""
     equivalent_load: float
     """Dynamic equivalent reference load [N]."""
@@ -230,7 +230,7 @@ def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
     return pressures
 
 
-def pressure_factors(bearing: Any, loads: Array, pressures: Array) -> Array:
+def pressure_factors(bearing: Bearing, loads: Array, pressures: Array) -> Array:
     """Return pressures of laminae over those of Hertz under their loads ``(Z, 2, laminae)``.
 
     ISO/TS 16281:2008, equations (58) and (59), with the moduli of the substrates in place of the
@@ -274,7 +274,7 @@ def reference_life(
         for row in rows
         for ring in range(2)
     )
-    revolutions = sums**life if sums > 0 else math.inf
+    l10 = sums**life if sums > 0 else math.inf
     slope = 10 / 3 if bearing.rolls else 3.0
-    equivalent = capacity * revolutions ** (-1 / slope) if sums > 0 else 0.0
-    return ReferenceLife(revolutions, equivalent, ring_capacities)
+    equivalent = capacity * l10 ** (-1 / slope) if sums > 0 else 0.0
+    return ReferenceLife(l10, equivalent, ring_capacities)

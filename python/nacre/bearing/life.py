@@ -16,7 +16,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -493,7 +493,7 @@ def life_ratio(
     model: Models,
     *,
     body: Member = "body",
-    progress: Any = None,
+    progress: object = None,
 ) -> LifeRatio:
     """Life of a contact or of a bearing over that of a reference, by the stress in its volume.
 
@@ -591,7 +591,9 @@ def life_ratio(
     )
 
 
-def _of_bearing(solution: BearingSolution, model: Models, tell: Any, done: float) -> StressVolume:
+def _of_bearing(
+    solution: BearingSolution, model: Models, tell: Callable[[float], object] | None, done: float
+) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of one against the other.
 
     A ring sees ``Z r/(r_i + r_e)`` cycles in a revolution, r the radius of the other one's track:

@@ -15,14 +15,27 @@ from nacre._tools.typing import among
 from nacre._tools.units import printable, symbol
 from nacre.bearing.contact_laws import LAMINAE, bodies_of
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
-from nacre.bearing.iso import Edge, edge_factors, pressure_factors, reference_life
-from nacre.bearing.verdict import bearing_verdict, life_verdict
+from nacre.bearing.iso import Edge, pressure_factors
+from nacre.bearing.modified import Lubrication
+from nacre.bearing.rating_life import BearingLife, Duty, life_of
+from nacre.bearing.static import StaticLoad, static_load_of
+from nacre.bearing.verdict import bearing_verdict
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
+from nacre.contact.stresses import SIZE_ERRORS
 from nacre.results import display, files
 from nacre.results.base import Result
-from nacre.results.quantities import BEARING, BEARING_LIFE, PER_CONTACT, Quantity
-from nacre.results.table_results import TableResult, Tabular
+from nacre.results.quantities import BEARING, PER_CONTACT, Quantity
+from nacre.results.report import (
+    Picture,
+    Sections,
+    contact_pictures,
+    input_rows,
+    table,
+    writer,
+)
+from nacre.results.svg import Axis, Curve, bars, lines
+from nacre.results.table_results import Tabular
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -56,14 +69,8 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
-EDGES = {
-    "standard": "edge factors of ISO/TS 16281, eq. 60",
-    "pressure": "edge factors from the solved pressure, eqs 58 and 59",
-    None: "without edge factors",
-}
-"""Words for the factors of a life."""
-BARRELS = "barrels have none of the standard's edge factors"
-"""The same of spherical rollers."""
+NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
+"""What a report says of the model."""
 
 
 def edge_pressure(pressures: Array) -> Array:
@@ -123,55 +130,6 @@ class BearingReport(Result):
         )
 
 
-@dataclass(frozen=True, repr=False)
-class BearingLife(TableResult):
-    """Reference rating life of ISO/TS 16281: a model, at 90 % reliability.
-
-    Neither lubrication (a_ISO), nor residual stress, nor roughness counts; of coated bodies the
-    life is that of bare ones under the same loads, or pressures.
-
-    Examples
-    --------
-    >>> from nacre.bearing import DeepGrooveBall
-    >>> bearing = DeepGrooveBall(
-    ...     count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, capacity=23.4e3
-    ... )
-    >>> life = bearing.solve(force=(1000.0, 0.0, None), model="iso16281").life()
-    >>> 13e3 < life.revolutions < 13.3e3
-    True
-    """
-
-    _QUANTITIES = BEARING_LIFE
-    _TITLE = "reference rating life of a bearing"
-
-    revolutions: float
-    """Life L_10r in millions of revolutions; infinite without load."""
-    equivalent_load: float
-    """Dynamic equivalent reference load [N]."""
-    capacity: float
-    """Dynamic load rating of the bearing [N]: C_r, or C_a of a thrust bearing."""
-    ring_capacities: tuple[float, float]
-    """Ratings of the contact of one element with inner and outer ring [N]."""
-    model: str
-    """Model in words."""
-
-    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
-    save = display.in_si(TableResult.save)
-
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict: how long the bearing lives; no life is required of it."""
-        return life_verdict(self)
-
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        life = "infinite: no element is loaded"
-        if math.isfinite(self.revolutions):
-            life = f"{self.revolutions:.6g} million revolutions"
-        rows = [(name, value) for name, value in super()._rows() if name != "life"]
-        return [("life L10r", life), *rows, ("model", self.model)]
-
-
 @dataclass(frozen=True, repr=False, eq=False)
 class BearingSolution(Tabular):
     """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
@@ -191,7 +149,7 @@ class BearingSolution(Tabular):
 
     _QUANTITIES = BEARING
     _TITLE = "bearing"
-    _LATER = ("rotating",)
+    _LATER = ("rotating", "loaded_directions")
 
     bearing: Bearing
     """Bearing that was solved."""
@@ -203,6 +161,8 @@ class BearingSolution(Tabular):
     """Angular velocity of the ring that rotates [rad/s]."""
     rotating: Ring
     """Ring that rotates."""
+    loaded_directions: tuple[bool, bool, bool, bool, bool] | None
+    """Whether forces along x, y and z and moments about x and y were given; None of old files."""
     displacement: tuple[float, float, float]
     """Displacements of the inner ring against the outer one along x, y and z [m]."""
     tilt: tuple[float, float]
@@ -273,7 +233,7 @@ class BearingSolution(Tabular):
     @property
     def reference_life(self) -> float:
         """Life of ISO/TS 16281 with the standard's edge factors [million revolutions]."""
-        return self.life().revolutions
+        return self.life().l10
 
     @property
     def verdict(self) -> Verdict:
@@ -395,8 +355,22 @@ class BearingSolution(Tabular):
             )
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
-    def life(self, edge: Edge = "standard", *, rotating: Ring | None = None) -> BearingLife:
-        """Rate the bearing by ISO/TS 16281: its reference life, in millions of revolutions.
+    def life(
+        self,
+        edge: Edge = "standard",
+        *,
+        rotating: Ring | None = None,
+        speed: float | None = None,
+        reliability: float = 0.9,
+        viscosity_ratio: float | None = None,
+        kinematic_viscosity: float | None = None,
+        film_ratio: float | None = None,
+        contamination: str | float | None = None,
+        additives: bool = False,
+        fatigue_load_limit: float | None = None,
+        spectrum: Iterable[Duty] | None = None,
+    ) -> BearingLife:
+        """Rate the bearing by ISO/TS 16281 and, with a lubrication, by a_ISO of ISO 281.
 
         Parameters
         ----------
@@ -406,17 +380,50 @@ class BearingSolution(Tabular):
             solved pressure over that of Hertz; or none. Balls have none.
         rotating : {"inner", "outer"}, optional
             Ring that rotates against the load; by default the one that rotates in `solve`.
+        speed : float, optional
+            Angular velocity of the ring that rotates [rad/s], for hours; by default that of
+            `solve`.
+        reliability : float, optional
+            Share of bearings that reach the life: 0.9, 0.95 to 0.99 in hundredths, or 0.999.
+        viscosity_ratio : float, optional
+            Viscosity ratio κ, at least 0.1. It, or one of the two arguments below, makes the life
+            the modified one, ``a_1 a_ISO L_10r``; `contamination` must be given, too.
+        kinematic_viscosity : float, optional
+            Kinematic viscosity ν of the oil at the temperature of operation [m²/s]; κ = ν/ν_1, with
+            ν_1 of `reference_viscosity`.
+        film_ratio : float, optional
+            Ratio λ of film and roughness, as that of `film_thickness`; κ = λ^1.3.
+        contamination : str or float, optional
+            Degree of cleanliness, as in `contamination_range`, whose middle is taken; or the factor
+            e_C, from 0 to 1.
+        additives : bool, optional
+            Whether extreme-pressure additives are proven to work: κ then counts as 1 where it is
+            below and e_C at least 0.2, and a_ISO is at most 3.
+        fatigue_load_limit : float, optional
+            Limit C_u [N]; by default that of `nacre.bearing.fatigue_load_limit`, which solves the
+            contacts of profiled rollers.
+        spectrum : list of tuple, optional
+            Load spectrum in place of the solved load: tuples of the share of the time, the forces
+            along x, y and z [N] and the speed [rad/s]. Shares sum to 1. Each load is solved with
+            moments, tilts and displacements of this solution, and lives add up by Miner's rule.
 
         Returns
         -------
         BearingLife
-            Life, equivalent load, and the ratings they are made of.
+            Life in revolutions and hours, L_10r in millions of revolutions, equivalent load, and
+            what they are made of.
 
         Raises
         ------
         ValueError
-            If there is no such kind of factors, or factors from the pressure are asked of contacts
-            that are those of the standard.
+            If an argument is out of range, factors from the pressure are asked of contacts that
+            are those of the standard, κ follows from none or several of its arguments, or a
+            spectrum lacks a load.
+
+        Notes
+        -----
+        ISO 281:2007, formula (23), with P that of the reference life (ISO/TS 16281). The latter's
+        a_ISO of each lamina of a roller, and the annex of ISO 281 on filters, are left out.
 
         Examples
         --------
@@ -424,29 +431,42 @@ class BearingSolution(Tabular):
         >>> bearing = CylindricalRoller(
         ...     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
         ... )
-        >>> solution = bearing.solve(force=(4450.0, 0.0, None), model="iso16281")
-        >>> round(solution.life().revolutions), round(solution.life(edge=None).revolutions)
-        (4999, 5186)
+        >>> solution = bearing.solve(force=(4450.0, 0.0, None), speed=100.0, model="iso16281")
+        >>> round(solution.life().l10), round(solution.life(edge=None).l10)
+        (4997, 5184)
+        >>> oil = {"kinematic_viscosity": 20e-6, "contamination": "normal cleanliness"}
+        >>> life = solution.life(**oil)
+        >>> round(life.viscosity_ratio, 1), life.modification_factor > 1
+        (1.1, True)
         """
-        if not among(edge, EDGES):
-            raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
-        rotating = self.rotating if rotating is None else rotating
-        if not among(rotating, RINGS):
-            raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
-        words = "ISO/TS 16281, 90 % reliability, a model"
-        loads, factors = self.loads, np.array(1.0)
-        if self.lamina_loads is not None:
-            barrels = edge == "standard" and self.bearing.aligns
-            loads, words = self.lamina_loads, f"{words}; {BARRELS if barrels else EDGES[edge]}"
-            if edge == "standard" and not barrels:
-                factors = edge_factors(LAMINAE)
-            elif edge == "pressure":
-                factors = self.edge_factors()
-        reference = reference_life(self.bearing, loads, factors, rotating)
-        capacity = float(self.bearing.capacity or 0.0)
-        return BearingLife(
-            reference.revolutions, reference.equivalent_load, capacity, reference.capacities, words
+        lubrication = Lubrication(
+            viscosity_ratio, kinematic_viscosity, film_ratio, contamination, additives
         )
+        return life_of(
+            self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
+        )
+
+    def static_load(self) -> StaticLoad:
+        """Rate the bearing at rest by ISO 76: rating, equivalent static load and safety factor.
+
+        The equivalent load P_0 is by the standard's definition that which gives the heaviest
+        element the same load, ``P_0 = Q_max i Z cos α/5``, so that clearance, tilt and moments
+        count; `equivalent_static_load` has the standard's factors for usual bearings.
+
+        Returns
+        -------
+        StaticLoad
+            Rating C_0, load P_0 and ``s_0 = C_0/P_0``.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=9, diameter=9.525e-3, pitch_diameter=46e-3)
+        >>> solution = bearing.solve(force=(2000.0, 0.0, None), model="iso16281")
+        >>> solution.static_load().safety > 5
+        True
+        """
+        return static_load_of(self)
 
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
         """Draw loads over the angle, and the pressure along the heaviest element.
@@ -500,7 +520,8 @@ class BearingSolution(Tabular):
         path : str or os.PathLike
             File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
             ``nacre-contact[files]``; ``.csv`` for the table of the elements; ``.png``, ``.pdf`` and
-            ``.svg`` for the picture that `plot` draws.
+            ``.svg`` for the picture that `plot` draws; ``.html`` for a report on a page to print
+            and to sign.
 
         Returns
         -------
@@ -523,16 +544,22 @@ class BearingSolution(Tabular):
         True
         """
         writers = files.tabular(self, self._file_rows(), **self._comments())
-        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        writers |= files.pictures(lambda: next(iter(self.plot().values()))) | writer(self)
         return files.save(path, writers)
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
         notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
-        known = {f"{name}_discretisation": error for name, error in errors.items() if error}
+        error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
         verdict = " ".join(self.verdict.sentences)
-        return {"verdict": verdict, "model": self.model, **vectors, **known, **notes}
+        return {
+            "verdict": verdict,
+            "model": self.model,
+            **vectors,
+            **error_columns,
+            **notes,
+        }
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""
@@ -544,7 +571,7 @@ class BearingSolution(Tabular):
                     columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return columns
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         columns = self._columns()
         units = [symbol(row.si()) for row, _, _ in columns]
         names = [name for _, name, _ in columns]
@@ -552,6 +579,64 @@ class BearingSolution(Tabular):
         yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
         for j in range(self.bearing.elements):
             yield [j, *(float(values[j]) for _, _, values in columns)]
+
+    @display.in_si
+    def _sections(self) -> Sections:
+        names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
+        inputs = input_rows({name: getattr(self, name) for name in names})
+        rows = self._rows()
+        model = [row for row in rows if row[0] in ("contacts", "ended")]
+        numbers = [*(row for row in rows if row not in model), *self._geometry()]
+        stiffness = [[f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]]
+        head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
+        matrix = zip(stiffness[0], self.tangent.tolist(), strict=True)
+        tables = [
+            table("Elements and rings", self._element_rows()),
+            table("Stiffness in N, N m, m and rad", [head, *([n, *row] for n, row in matrix)]),
+        ]
+        errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
+        limits = [*model, *errors, ("not counted", NOT_COUNTED)]
+        warnings = self.report.warnings
+        return Sections(self._TITLE, inputs, numbers, self._pictures(), tables, limits, warnings)
+
+    def _geometry(self) -> list[tuple[str, str]]:
+        """Return the dimensions that follow from others, and the rating."""
+        dimensions = {"pitch diameter": self.bearing.pitch, "clearance": self.bearing.play}
+        rows = [(name, display.number(value, "m")) for name, value in dimensions.items()]
+        return [*rows, ("rating", display.number(float(self.bearing.capacity or 0.0), "N"))]
+
+    def _element_rows(self) -> list[list[Any]]:
+        """Return the table of the elements as it is printed: rounding is 0."""
+        head, *rows = ([*row] for row in self._file_rows())
+        names = ["", *(row.name for row, _, _ in self._columns())]
+        return [head] + [
+            [self._rounded(name, value) for name, value in zip(names, row, strict=True)]
+            for row in rows
+        ]
+
+    def _pictures(self) -> list[Picture]:
+        """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
+        axis = Axis("load of each element", "N")
+        count, rows = self.bearing.count, self.bearing.rows
+        loads = self.loads.reshape(rows, count, 2).transpose(1, 0, 2).reshape(count, 2 * rows)
+        angles = np.repeat(self.angles.reshape(rows, count).T, 2, axis=1)
+        labels = [
+            f"row {k + 1}, {name}" if rows > 1 else name for k in range(rows) for name in RINGS
+        ]
+        ring = bars(angles, loads, axis, [f"{label} ring" for label in labels])
+        pictures = [Picture("Loads of the elements, x to the right.", ring)]
+        heaviest = int(self.loads[:, 0].argmax())
+        if self.lamina_pressures is None:
+            contact = self.contact(heaviest, "inner") if self.model == "solved" else None
+            return pictures + ([] if contact is None else contact_pictures(contact))
+        count = self.lamina_pressures.shape[-1]
+        x = ((np.arange(count) + 0.5) / count - 0.5) * getattr(self.bearing, "length", 1.0)
+        curves = [
+            Curve(x, self.lamina_pressures[heaviest, k], f"{name} ring", look)
+            for k, (name, look) in enumerate(zip(RINGS, ("line", "dashed"), strict=True))
+        ]
+        drawing = lines(curves, (Axis("x along the element", "m"), Axis("pressure", "Pa")))
+        return [*pictures, Picture(f"Largest pressure along element {heaviest}.", drawing)]
 
     @display.in_si
     def _rows(self) -> list[tuple[str, str]]:
@@ -634,14 +719,15 @@ class BearingSolution(Tabular):
 
     @classmethod
     def _names(cls) -> list[str]:
-        words = ["bearing", "model", "rotation", "speed", "rotating", *VECTORS]
+        words = ["bearing", "model", "rotation", "speed", "rotating", "loaded_directions", *VECTORS]
         return [*words, *ARRAYS, "cells", "report"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = {name: getattr(self, name) for name in ("model", "rotation", "speed", "rotating")}
         state |= {name: list(getattr(self, name)) for name in (*VECTORS,)}
         arrays = {name: getattr(self, name) for name in ARRAYS}
         state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
+        state["loaded_directions"] = self.loaded_directions and list(self.loaded_directions)
         cells = None if self.cells is None else list(self.cells)
         report = self.report._state()
         return state | {"bearing": encode(self.bearing), "cells": cells, "report": report}
@@ -654,6 +740,10 @@ class BearingSolution(Tabular):
             if state.get("rotating") is None:  # states of 0.1.0, whose speed is that of the cage
                 fields["rotating"] = "inner"
                 fields["speed"] = state["speed"] / fields["bearing"].cage_speed(1.0)
+            if (loaded := state.get("loaded_directions")) is not None:
+                fields["loaded_directions"] = tuple(map(bool, loaded))
+            else:
+                fields["loaded_directions"] = None
             for name in VECTORS:
                 fields[name] = tuple(map(float, state[name]))
             for name in ARRAYS:

@@ -21,6 +21,7 @@ from nacre.bearing.contact_laws import (
     LINE,
     STANDARD,
     Hertzian,
+    Law,
     Slices,
     Solved,
     binned,
@@ -134,10 +135,10 @@ def _positive(name: str, value: Any) -> int:
     return number
 
 
-def _conditions(
-    bearing: Bearing, ring: RingConditions
-) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
-    """Return loads, displacements, and which of the five directions are loaded, checked."""
+def read_conditions(
+    ring: RingConditions, largest: Mapping[str, float]
+) -> tuple[list[float | None], list[float | None]]:
+    """Return loads and displacements along the five directions, none above the largest."""
     values: dict[str, list[float | None]] = {}
     for name, length in (("force", 3), ("displacement", 3), ("moment", 2), ("tilt", 2)):
         numbers = getattr(ring, name)
@@ -145,7 +146,7 @@ def _conditions(
         known = [value for value in values[name] if value is not None]
         if not all(map(math.isfinite, known)):
             raise ValueError(f"{name} must be finite, got {numbers!r}")
-        if max(map(abs, known), default=0.0) > (most := _most(bearing, name)):
+        if max(map(abs, known), default=0.0) > (most := largest[name]):
             raise ValueError(f"{name} must be at most {most:.3g}, got {numbers!r}")
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
@@ -158,6 +159,22 @@ def _conditions(
                 f"{words[k]} and {others[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
+    return loads, moved
+
+
+def as_arrays(
+    loads: Sequence[float | None], moved: Sequence[float | None]
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """Return loads, displacements, and which of the five directions are loaded."""
+    free = np.array([value is not None for value in loads])
+    return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+
+
+def _conditions(
+    bearing: Bearing, ring: RingConditions
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """Return loads, displacements, and which of the five directions are loaded, checked."""
+    loads, moved = read_conditions(ring, largest_of(bearing))
     if bearing.aligns:
         loads[3:] = [moment or None for moment in loads[3:]]  # it has no moment, which is 0
     if bearing.aligns and loads[3:] != [None, None]:
@@ -176,19 +193,18 @@ def _conditions(
         )
     if bearing.rows == 1 and not bearing.leans and loads[2] is not None:
         _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
-    free = np.array([value is not None for value in loads])
-    return np.array([v or 0.0 for v in loads]), np.array([v or 0.0 for v in moved]), free
+    return as_arrays(loads, moved)
 
 
-def _most(bearing: Any, name: str) -> float:
-    """Return the largest value along a direction: beyond it nothing is a bearing any more.
+def largest_of(bearing: Any) -> dict[str, float]:
+    """Return the largest values along a direction: beyond them nothing is a bearing any more.
 
     Forces are ten times those of `HIGHEST` on all of the elements' cross-sections.
     """
     wide = bearing.length if bearing.rolls else bearing.diameter
     force = 10 * HIGHEST * bearing.elements * bearing.diameter * wide
-    limits = {"force": force, "moment": force * bearing.pitch, "tilt": 1.0}
-    return float(limits.get(name, bearing.diameter))
+    moment = force * bearing.pitch
+    return {"force": force, "moment": moment, "tilt": 1.0, "displacement": bearing.diameter}
 
 
 def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
@@ -201,21 +217,27 @@ def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
         )
 
 
-def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: float) -> None:
+def check_sides(
+    bearing: Bearing,
+    problem: Problem,
+    state: State,
+    tolerance: float,
+    remedy: str = "force or displacement along z",
+) -> None:
     """Raise a `ValueError` where a bearing with a contact angle bears where it has no shoulder.
 
     A row carries at positive angles towards its own side alone. Balls that nothing but their
-    centrifugal force presses on the outer ring are at its bottom.
+    centrifugal force presses on the outer ring are at its bottom. A larger `remedy` helps.
     """
     if bearing.leans or not bearing.nominal_angle:
         return
-    angles = problem.kinematics.angles(problem.kinematics.motion @ state.ring, state.own)[:, 0]
+    angles = problem.kinematics.angles(problem.kinematics.ring_motion(state.ring), state.own)[:, 0]
     angles = np.repeat([1.0, -1.0][: bearing.rows], bearing.count) * angles
     is_carrying = carrying(state.reaction.force[..., 0])[:, 0]
     least = float(angles[is_carrying].min(initial=math.inf))
     if least <= tolerance:
         raise ValueError(
-            f"force or displacement along z must be larger: an element bears at a contact angle "
+            f"{remedy} must be larger: an element bears at a contact angle "
             f"of {math.degrees(least):.3g} degrees, where the rings have no shoulder"
         )
     if bearing.rows == 1 and problem.free[2]:
@@ -224,22 +246,38 @@ def _check_sides(bearing: Bearing, problem: Problem, state: State, tolerance: fl
         _check_cone(bearing, math.hypot(*total[:2]), float(total[2]) + slack)
 
 
-def solve_bearing(
-    bearing: Bearing, ring: RingConditions, operation: Operation, options: BearingOptions
-) -> BearingSolution:
-    """Return the solution of what a user asked of a bearing."""
-    loads, moved, free = _conditions(bearing, ring)
-    operation, options = operation.checked(bearing), options.checked(bearing)
-    model, tolerance, progress = options.model, options.tolerance, options.progress
-    angles = operation.rotation + 2 * math.pi * np.arange(bearing.count) / bearing.count
-    angles = np.tile(angles, bearing.rows)
-    kinematics = kinematics_of(bearing, angles)
+def element_angles(bearing: Bearing, rotation: float) -> Array:
+    """Return the angles of all elements from x [rad]."""
+    angles = rotation + 2 * math.pi * np.arange(bearing.count) / bearing.count
+    return np.tile(angles, bearing.rows)
+
+
+def centrifugal_force(bearing: Bearing, operation: Operation) -> float:
+    """Return the centrifugal force on an element [N]."""
     cage = bearing.cage_speed(operation.speed, operation.rotating)
-    centrifugal = bearing.mass * bearing.pitch / 2 * cage**2
-    problem = Problem(kinematics, law(bearing, model), loads, free, centrifugal)
-    check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
+    return bearing.mass * bearing.pitch / 2 * cage**2
+
+
+def solved_contacts(bearing: Bearing, law: Law, places: Array, options: BearingOptions) -> Solved:
+    """Return contacts that nacre solves, on grids for the loads of a first guess."""
+    lines = _lines(bearing, law, places)
+    return Solved(bearing, lines, options.cells, FINER * options.tolerance, options.threads)
+
+
+def find_equilibrium(
+    problem: Problem,
+    start: tuple[Array, Array],
+    contacts: Callable[[State], Law],
+    check: Callable[[Problem, State, float], None],
+    options: BearingOptions,
+) -> tuple[Problem, State, tuple[int, str]]:
+    """Return the equilibrium, with the number of steps and how the iteration ended.
+
+    Solved contacts begin at the equilibrium of a first guess. `check` raises an error where
+    contacts bear where no ring is.
+    """
+    model, tolerance, progress = options.model, options.tolerance, options.progress
     limit = options.max_iterations
-    pressed = _pressed(problem.law, centrifugal)
     with lasting("bearing") as bar:
 
         def tell(done: int, balance: float) -> object:
@@ -250,37 +288,61 @@ def solve_bearing(
             return None
 
         first = None if model == "solved" else tell
-        start, own = problem.start(moved, pressed)
         rough = tolerance if first else min(1e-6, math.sqrt(tolerance))
         state, done, ending = problem.solve(
-            start, own, rough, 10 * limit if first is None else limit, first
+            *start, rough, 10 * limit if first is None else limit, first
         )
         if ending == "converged":
-            _check_sides(bearing, problem, state, rough)
+            check(problem, state, rough)
         if model == "solved":
-            lines = _lines(bearing, problem.law, state)
-            contacts = Solved(bearing, lines, options.cells, FINER * tolerance, options.threads)
-            problem = Problem(kinematics, contacts, loads, free, centrifugal)
+            problem = replace(problem, law=contacts(state))
             guess, steps = ending, limit if ending == "converged" else 0
             state, done, ending = problem.solve(state.ring, state.own, tolerance, steps, tell)
             if ending == "iteration limit" and guess != "converged":
                 ending = guess
             if ending == "converged":
-                _check_sides(bearing, problem, state, tolerance)
-    solution = _solution_of(bearing, operation, options, problem, state, angles, (done, ending))
-    for message in solution.report.warnings:
-        warnings.warn(message, core.NacreWarning, stacklevel=3)
-    if options.check and ending in REMEDIES:
+                check(problem, state, tolerance)
+    return problem, state, (done, ending)
+
+
+def issue(solution: Any, options: BearingOptions) -> None:
+    """Warn of what limits a solution, and raise an error if it did not converge."""
+    report = solution.report
+    for message in report.warnings:
+        warnings.warn(message, core.NacreWarning, stacklevel=4)
+    if options.check and report.termination in REMEDIES:
         error = core.ConvergenceError(
-            f"balance {state.balance:.2e} above {tolerance:.0e} after {done} steps; "
-            f"{REMEDIES[ending]}"
+            f"balance {report.balance:.2e} above {options.tolerance:.0e} after "
+            f"{report.iterations} steps; {REMEDIES[report.termination]}"
         )
         error.solution = solution
         raise error
+
+
+def solve_bearing(
+    bearing: Bearing, ring: RingConditions, operation: Operation, options: BearingOptions
+) -> BearingSolution:
+    """Return the solution of what a user asked of a bearing."""
+    loads, moved, free = _conditions(bearing, ring)
+    operation, options = operation.checked(bearing), options.checked(bearing)
+    angles = element_angles(bearing, operation.rotation)
+    kinematics, guess = kinematics_of(bearing, angles), law(bearing, options.model)
+    centrifugal = centrifugal_force(bearing, operation)
+    problem = Problem(kinematics, guess, loads, free, centrifugal)
+    check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
+    problem, state, ending = find_equilibrium(
+        problem,
+        problem.start(moved, pressed_by(guess, centrifugal)),
+        lambda state: solved_contacts(bearing, guess, state.places, options),
+        lambda problem, state, tolerance: check_sides(bearing, problem, state, tolerance),
+        options,
+    )
+    solution = solution_of(bearing, operation, options, problem, state, ending)
+    issue(solution, options)
     return solution
 
 
-def _pressed(law: Any, force: float) -> float:
+def pressed_by(law: Any, force: float) -> float:
     """Return a guess of the approach of an element that is pressed on the outer ring."""
     if force == 0:
         return 0.0
@@ -290,9 +352,8 @@ def _pressed(law: Any, force: float) -> float:
     return float((force / spring[0] / LAMINAE) ** 0.9)
 
 
-def _lines(bearing: Any, law: Any, state: State) -> Array:
+def _lines(bearing: Any, law: Any, places: Array) -> Array:
     """Return the expected loads of the contacts by which their grids are chosen."""
-    places = state.places
     if isinstance(law, Slices):
         lines: Array = law.loads(places).max(-1) * LAMINAE / bearing.length
     else:
@@ -303,13 +364,12 @@ def _lines(bearing: Any, law: Any, state: State) -> Array:
     return lines
 
 
-def _solution_of(
+def solution_of(
     bearing: Bearing,
     operation: Operation,
     options: BearingOptions,
     problem: Problem,
     state: State,
-    angles: Array,
     ending: tuple[int, str],
 ) -> BearingSolution:
     """Return the solution that a state is."""
@@ -339,7 +399,7 @@ def _solution_of(
         peaks = problem.law.pressures(loads)
     edges = np.full(loads.shape, np.nan) if pressures is None else edge_pressure(pressures)
     kinematics = problem.kinematics
-    normals = kinematics.angles(kinematics.motion @ state.ring, state.own)
+    normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
     total = state.wanting + problem.loads
     loaded = {key: one for key, one in contacts.items() if carrying(loads)[key]}
     notes = (
@@ -356,11 +416,12 @@ def _solution_of(
         rotation=operation.rotation,
         speed=operation.speed,
         rotating=operation.rotating,
+        loaded_directions=tuple(problem.free.tolist()),
         displacement=tuple(state.ring[:3].tolist()),
         tilt=tuple(state.ring[3:].tolist()),
         force=tuple(total[:3].tolist()),
         moment=tuple(total[3:].tolist()),
-        angles=angles,
+        angles=element_angles(bearing, operation.rotation),
         approaches=places[..., 0].copy(),
         tilts=places[..., 1].copy(),
         loads=loads.copy(),

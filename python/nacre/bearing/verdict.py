@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from nacre._tools.units import plain
 from nacre.results import display
@@ -20,10 +20,11 @@ from nacre.results.verdict import (
 )
 
 if TYPE_CHECKING:
-    from nacre.bearing.solution import BearingLife, BearingSolution
+    from nacre.bearing.rating_life import BearingLife
+    from nacre.bearing.solution import BearingSolution
 
 MILLION = 1e6
-MINUTES, SECONDS = 60.0, 3600.0
+MINUTES = 60.0
 """Those of an hour."""
 STATIC = {True: 4.0e9, False: 4.2e9}
 """Pressure of the static rating of roller bearings, and of ball bearings [Pa], ISO 76:2006.
@@ -42,7 +43,7 @@ def life_verdict(life: BearingLife) -> Verdict:
 @display.in_si
 def bearing_verdict(solution: BearingSolution) -> Verdict:
     """Return the verdict on a bearing: its largest pressure decides."""
-    lives = _lives(solution.life(), solution.speed)
+    lives = _lives(solution.life())
     bare = [BARE] if solution.bearing.layered else []
     peak, edge = (_Pressure.of(solution, name) for name in ("peak_pressure", "edge_pressure"))
     if not peak.value > 0:
@@ -89,24 +90,19 @@ class _Pressure(NamedTuple):
         return self.value + (self.error or 0.0)
 
 
-def _lives(life: Any, speed: float = 0.0) -> str:
-    """Return how long a bearing lives: in hours where they, or the speed [rad/s], are known."""
-    is_modified = getattr(life, "modification_factor", None) is not None
-    millions = life.revolutions / (MILLION if hasattr(life, "l10") else 1.0)
-    if not math.isfinite(millions):
+def _lives(life: BearingLife) -> str:
+    """Return how long a bearing lives, in hours where it turns."""
+    if not math.isfinite(life.revolutions):
         return "Lives without end: no element is loaded."
-    hours = getattr(life, "hours", math.inf)
-    if speed and not math.isfinite(hours):
-        hours = millions * MILLION * 2 * math.pi / abs(speed) / SECONDS
-    reliability = getattr(life, "reliability", 0.9)
-    name = f"L{plain(100 * (1 - reliability), DIGITS)}{'m' if is_modified else 'r'}"
+    is_modified = life.modification_factor is not None
+    name = f"L{plain(100 * (1 - life.reliability), DIGITS)}{'m' if is_modified else 'r'}"
     model = "ISO 281, with a_ISO" if is_modified else "ISO/TS 16281, without lubrication"
-    basis = f"{plain(100 * reliability, DIGITS)} %, {model}"
-    turns = f"{plain(millions, DIGITS)} million revolutions"
-    if not math.isfinite(hours):
+    basis = f"{plain(100 * life.reliability, DIGITS)} %, {model}"
+    turns = f"{plain(life.revolutions / MILLION, DIGITS)} million revolutions"
+    if not math.isfinite(life.hours):
         return f"Lives {turns} ({name}; {basis})."
-    rate = plain(millions * MILLION / hours / MINUTES, DIGITS)
-    return f"Lives {plain(hours, DIGITS)} h ({name} {turns} at {rate}/min; {basis})."
+    rate = plain(life.revolutions / life.hours / MINUTES, DIGITS)
+    return f"Lives {plain(life.hours, DIGITS)} h ({name} {turns} at {rate}/min; {basis})."
 
 
 def _compared(peak: _Pressure, factor: float) -> str:

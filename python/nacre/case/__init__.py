@@ -44,7 +44,7 @@ import copy
 import math
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +91,7 @@ class Case:
     """
 
     def __init__(
-        self, data: Mapping[str, Any], name: str = "case", folder: Path | None = None
+        self, data: Mapping[str, object], name: str = "case", folder: Path | None = None
     ) -> None:
         self.name = name
         self.folder = folder or Path()
@@ -167,6 +167,10 @@ class Case:
         except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
 
+    def measured(self) -> list[Path]:
+        """Return the files that the case reads: those of measured surfaces."""
+        return [self.folder / path for path in _paths(self.data)]
+
     def stress(self) -> dict[str, Any] | None:
         """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
         table = self._table
@@ -186,7 +190,7 @@ class Case:
             raise CaseError(f"{self.name}: {error}") from error
         return self._without_friction(keywords)
 
-    def _without_friction(self, keywords: dict[str, Any]) -> dict[str, Any]:
+    def _without_friction(self, keywords: dict[str, object]) -> dict[str, object]:
         """Return keywords without those of friction where the tractions are known."""
         left = () if self.friction is None else ("friction", "direction")
         return {name: value for name, value in keywords.items() if name not in left}
@@ -199,7 +203,7 @@ class Case:
         """Return a ring and the arguments of `film_thickness`, or None without a table for it."""
         return self._table.film() if isinstance(self._table, BearingCase) else None
 
-    def __call__(self, **values: Any) -> dict[str, Any]:
+    def __call__(self, **values: object) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = self.data
         for key, value in values.items():
@@ -284,14 +288,24 @@ class Case:
                 f"nearest are {keys}"
             ) from error
 
-    def _checked(self, data: Mapping[str, Any]) -> Keys:
+    def _checked(self, data: Mapping[str, object]) -> Keys:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:
             raise CaseError(f"{self.name}: {_first(error, data)}") from None
 
 
-def _first(error: ValidationError, data: Any) -> str:
+def _paths(data: object) -> Iterator[str]:
+    """Yield the paths in the tables of shapes."""
+    if isinstance(data, Mapping):
+        if data.get("kind") == "height_map":
+            yield data["path"]
+        yield from (path for value in data.values() for path in _paths(value))
+    elif isinstance(data, list):
+        yield from (path for value in data for path in _paths(value))
+
+
+def _first(error: ValidationError, data: object) -> str:
     """Return a message about the first error: key, expected value and value found."""
     errors = error.errors(include_url=False)
     # A misspelt key is often also a missing one; the misspelt one says more. Of the errors of
@@ -322,7 +336,7 @@ def _no_key(here: Place, name: str) -> str:
     return f"{key}: there is no such key; the keys here are {', '.join(nearest(name, here.keys()))}"
 
 
-def _short_repr(value: Any) -> str:
+def _short_repr(value: object) -> str:
     """Return a value as an error shows it."""
     text = repr(value)
     return text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}..."

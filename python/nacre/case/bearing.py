@@ -12,6 +12,7 @@ from pydantic import Field, create_model, model_validator
 from nacre._tools.units import System, size_of
 from nacre.bearing import (
     AngularContactBall,
+    BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
     SphericalRoller,
@@ -45,6 +46,7 @@ KINDS: dict[str, type[Solvable]] = {
 }
 """Bearings by their names in case files."""
 SOLVE = parameter_texts(Solvable.solve)
+LIFE = parameter_texts(BearingSolution.life)
 FILMS = parameter_texts(film_thickness)
 
 
@@ -58,10 +60,10 @@ UNITS: dict[str, str] = (
         ),
         "m",
     )
-    | dict.fromkeys(("force", "capacity", "load"), "N")
+    | dict.fromkeys(("force", "capacity", "load", "fatigue_load_limit"), "N")
     | dict.fromkeys(("young", "yield_stress", "strength", "shear_yield", "contact_modulus"), "Pa")
     | {"moment": "N m", "density": "kg/m³", "film.speed": "m/s"}
-    | {"viscosity": "Pa s", "pressure_viscosity": "1/Pa"}
+    | {"viscosity": "Pa s", "pressure_viscosity": "1/Pa", "kinematic_viscosity": "m²/s"}
     | dict.fromkeys(("normal", "tangential"), "Pa/m")
 )
 """SI units of the numbers at keys, or of all in the tables there; the others have none, or rad."""
@@ -79,6 +81,7 @@ def sizes_of(units: str) -> dict[str, float]:
         "N m": force * length,
         "N/m": force / length,
         "m/s": length,
+        "m²/s": length**2,
         "Pa s": stress,
         "1/Pa": 1 / stress,
         "Pa/m": stress / length,
@@ -86,7 +89,7 @@ def sizes_of(units: str) -> dict[str, float]:
     }
 
 
-def scaled(data: Any, sizes: Mapping[str, float]) -> Any:
+def scaled(data: object, sizes: Mapping[str, float]) -> Any:
     """Return data in which the numbers at the keys of a bearing are multiplied by their sizes."""
 
     def inner(data: Any, path: tuple[str, ...], size: float) -> Any:
@@ -146,8 +149,16 @@ class BearingSolve(Table):
     max_iterations: Count = Field(50, description=SOLVE["max_iterations"])
 
 
+class Duty(Table):
+    """A part of a load spectrum."""
+
+    share: Number = Field(description="Share of the time; those of all parts sum to 1.")
+    force: InSpace = Field(description="Forces on the inner ring [N].")
+    speed: Number = Field(description="Angular velocity of the ring that rotates [rad/s].")
+
+
 class BearingLife(Table):
-    """Reference rating life of ISO/TS 16281, which is printed; the table may be empty."""
+    """Rating life of ISO/TS 16281 and ISO 281, which is printed; the table may be empty."""
 
     edge: Literal["standard", "pressure", "none"] = Field(
         "standard",
@@ -157,10 +168,30 @@ class BearingLife(Table):
         None,
         description="Ring that rotates against the load; by default that of `[bearing.solve]`.",
     )
+    speed: Number | None = Field(None, description=LIFE["speed"])
+    reliability: Number = Field(0.9, description=LIFE["reliability"])
+    viscosity_ratio: Number | None = Field(None, description=LIFE["viscosity_ratio"])
+    kinematic_viscosity: Number | None = Field(None, description=LIFE["kinematic_viscosity"])
+    film_ratio: Number | None = Field(None, description=LIFE["film_ratio"])
+    contamination: str | Number | None = Field(None, description=LIFE["contamination"])
+    additives: bool = Field(False, description=LIFE["additives"])
+    fatigue_load_limit: Number | None = Field(None, description=LIFE["fatigue_load_limit"])
+    spectrum: list[Duty] = Field(
+        [],
+        description="Load spectrum in place of the solved load: tables with share, force and "
+        "speed, whose lives add up by Miner's rule.",
+    )
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `BearingSolution.life`."""
-        return {"edge": None if self.edge == "none" else self.edge, "rotating": self.rotating}
+        keywords = super().keywords() | {"spectrum": None}
+        if self.edge == "none":
+            keywords["edge"] = None
+        if self.spectrum:
+            keywords["spectrum"] = [
+                (duty.share, duty.force.pair(), duty.speed) for duty in self.spectrum
+            ]
+        return keywords
 
 
 class BearingFilm(Table):
@@ -275,7 +306,7 @@ class BearingCase(Keys):
         """Return the bearing and the keywords of its ``solve``, in SI."""
         return self._si()._arguments()
 
-    def _arguments(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, object]:
         """Return the bearing and the keywords of its ``solve``, where all numbers are in SI."""
         arguments = self.bearing.model_dump(
             exclude={"kind", "solve", "life", "film"}, exclude_unset=True
@@ -298,7 +329,8 @@ class BearingCase(Keys):
 
     def life(self) -> dict[str, Any] | None:
         """Return the keywords of the life, or None where none is asked for."""
-        return None if self.bearing.life is None else self.bearing.life.keywords()
+        table = self._si().bearing.life
+        return None if table is None else table.keywords()
 
     def film(self) -> dict[str, Any] | None:
         """Return the ring and keywords of the film in SI, or None where none is asked for."""

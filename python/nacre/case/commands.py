@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import warnings
 from collections.abc import Mapping
@@ -10,6 +11,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
+from typer.core import TyperCommand
 
 import nacre
 from nacre._tools.disk import PICTURES, check_folder, replacing
@@ -19,23 +21,32 @@ from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
+from nacre.case import templates as _templates
 from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
-from nacre.results import tables
+from nacre.results import files, report, tables
 from nacre.results.display import SLIGHT, shown_in
 from nacre.results.quantities import BEARING, ERROR
 from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
+from nacre.studies.report import save_report
+
+
+class Command(TyperCommand):
+    """Command whose usage names its file without braces."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return the parts of the line of usage."""
+        return [piece.strip("{}") for piece in super().collect_usage_pieces(ctx)]
+
 
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
-    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-
 
 CaseFile = Annotated[
     Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
@@ -43,13 +54,19 @@ CaseFile = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the units of the case.")]
 Units = Annotated[
     str | None,
-    typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
+    typer.Option(
+        metavar="UNITS",
+        help="Units of the numbers in the case, N-mm-MPa; in place of its key units.",
+    ),
 ]
+ARTICLES = {"bearing": "a bearing", "indent": "an indentation"}
+DEPTH_OPTIONS = ("body", "friction", "direction", "residual")
+"""Keywords of stresses that the picture over depth in a report takes."""
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
 
-def _in_folder(paths: Any) -> Any:
+def _in_folder(paths: Path | list[Path] | None) -> Path | list[Path] | None:
     """Return the paths of an option, or the path; a folder that is missing is an error."""
     for path in paths if isinstance(paths, list | tuple) else [paths]:
         try:
@@ -75,7 +92,7 @@ def options(
     """Elastic contact of coated bodies."""
 
 
-@app.command()
+@app.command(cls=Command)
 def info() -> None:
     """Print versions and the number of threads."""
     print(f"nacre   {nacre.__version__}")
@@ -83,36 +100,37 @@ def info() -> None:
     print(f"threads {default_threads()}")
 
 
-@app.command()
+@app.command(cls=Command)
 def solve(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
         typer.Option(
+            metavar="FILE",
             callback=_in_folder,
-            help="File to write: .nc, .vtr, .csv, or a picture. May be repeated.",
+            help="File to write: .nc, .vtr, .csv, a picture, or .html, a report. May be repeated.",
         ),
     ] = None,
     initial: Annotated[
         Path | None,
         typer.Option(
-            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation."
+            metavar="FILE",
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation.",
         ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the contact or the bearing that a case file describes."""
-    described = _read_case(case, units)
-    if described.is_indentation:
-        raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
-    if described.kind == "bearing":
+    """Solve the contact, indentation or bearing of a case file."""
+    case_file = _read_case(case, units)
+    if case_file.kind != "contact":
         if initial is not None:
-            raise CaseError(f"{case}: --initial must not be given for a bearing")
-        _solve_bearing(case, described, save or [], as_json)
+            raise CaseError(f"{case}: --initial must not be given for {ARTICLES[case_file.kind]}")
+        solve_case = _solve_bearing if case_file.kind == "bearing" else _solve_indentation
+        solve_case(case, case_file, save or [], as_json)
         return
-    arguments = described.arguments()
-    stress_options, fatigue_options = described.stress(), described.fatigue()
+    arguments = case_file.arguments()
+    stress_options, fatigue_options = case_file.stress(), case_file.fatigue()
     if initial is not None:
         try:
             arguments["initial"] = nacre.load(initial)
@@ -124,31 +142,26 @@ def solve(
         check_direction(arguments, **(stress_options or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
-    with nacre.display_units(described.units):
-        _solve(
-            case,
-            described.friction,
-            arguments,
-            (stress_options, fatigue_options),
-            save or [],
-            as_json,
-        )
+    with nacre.display_units(case_file.units):
+        _solve(case, case_file, arguments, (stress_options, fatigue_options), save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
     """Return the case of a file, in other units if these are given."""
-    described = Case.read(case)
-    return described if units is None else described.in_units(units)
+    case_file = Case.read(case)
+    return case_file if units is None else case_file.in_units(units)
 
 
-def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool) -> None:
+def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool) -> None:
     """Solve a bearing, save and print it, with its life and a film where they are asked for."""
     for path in save:
         if path.suffix.lower() == ".vtr":
-            raise CaseError(f"{case}: --save of a bearing must end in .nc, .csv or as a picture")
+            raise CaseError(
+                f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
+            )
         _check_ending(path)
-    arguments = described.arguments()
-    bearing, life_options = arguments.pop("bearing"), described.life()
+    arguments = case_file.arguments()
+    bearing, life_options = arguments.pop("bearing"), case_file.life()
     added: dict[str, TableResult] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
@@ -159,23 +172,49 @@ def _solve_bearing(case: Path, described: Case, save: list[Path], as_json: bool)
                     added["life"] = solution.life(**life_options)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: bearing: {error}") from error
-        if (film := described.film()) is not None:
+        if (film := case_file.film()) is not None:
             try:
                 added["film"] = _film(solution, **film)
             except (ArithmeticError, TypeError, ValueError) as error:
                 raise CaseError(f"{case}: bearing.film: {error}") from error
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
-        with shown_in(described.units):
+        with shown_in(case_file.units):
             state = _verdicts({"bearing": solution} | added)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
-        print(json.dumps(_plain(_in_units(state, added, described.units)), indent=2))
+        print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
     else:
-        with shown_in(described.units):
+        with shown_in(case_file.units):
             print("\n\n".join(map(str, (solution, *added.values()))))
     for path in save:
-        solution.save(path)
+        if path.suffix.lower() == ".html":
+            with shown_in(case_file.units):
+                _save_report(path, [solution, *added.values()], case, case_file)
+        else:
+            solution.save(path)
+
+
+def _save_report(
+    path: Path,
+    parts: list[Any],
+    case: Path,
+    case_file: Case,
+    inputs: report.Rows = (),
+    stress: dict[str, Any] | None = None,
+) -> None:
+    """Write a report with the case file, and the files that it names."""
+    text, rows = case.read_text(encoding="utf-8-sig"), [*_files(case_file), *inputs]
+    files.save(path, {".html": lambda file: report.write(file, parts, text, rows, stress)})
+
+
+def _files(case_file: Case) -> list[tuple[str, str]]:
+    """Return the units of a case, and the measured files that it names with their SHA-256."""
+    digests = [
+        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
+        for path in case_file.measured()
+    ]
+    return [("units of the case", case_file.units), *digests]
 
 
 def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
@@ -213,7 +252,7 @@ def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
 
 def _solve(
     case: Path,
-    friction: str | None,
+    case_file: Case,
     arguments: dict[str, Any],
     options: tuple[dict[str, Any] | None, dict[str, Any] | None],
     save: list[Path],
@@ -221,17 +260,18 @@ def _solve(
 ) -> None:
     """Solve, save and print in the units that are set."""
     stress_options, fatigue_options = options
+    friction = case_file.friction
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():
-                solved = getattr(nacre, friction or "solve")(**arguments)
+                outcome = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             # The notes of an error name the step of a history.
             message = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
             raise CaseError(f"{case}: {message}") from error
         # Of a history, the last step is printed.
-        solution = solved[-1] if isinstance(solved, nacre.types.History) else solved
+        solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
         try:
             stress = None if stress_options is None else solution.stress_summary(**stress_options)
         except (ArithmeticError, TypeError, ValueError) as error:
@@ -244,7 +284,7 @@ def _solve(
             )
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: fatigue: {error}") from error
-    steps = solved if isinstance(solved, nacre.types.History) else None
+    steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
         summaries = {"stress": stress, "fatigue": fatigue}
         extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
@@ -255,36 +295,51 @@ def _solve(
         if steps:
             print(f"{steps}\n\nlast step")
         print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
+    whole = solution if steps is None else steps
+    sliding = {k: v for k, v in (stress_options or {}).items() if k in DEPTH_OPTIONS}
+    keywords = dict(zip(("stress", "fatigue"), options, strict=True))
+    parts = [whole, *(one for one in (stress, fatigue) if one is not None)]
     for path in save:
-        # The fields of ParaView's file are those of the last step.
-        (solution if steps is None or path.suffix.lower() == ".vtr" else steps).save(path)
+        if path.suffix.lower() == ".html":
+            _save_report(path, parts, case, case_file, report.input_rows(keywords), sliding)
+        else:
+            # The fields of ParaView's file are those of the last step.
+            (solution if path.suffix.lower() == ".vtr" else whole).save(path)
 
 
-@app.command()
+@app.command(cls=Command)
 def sweep(
     case: CaseFile,
     store: Annotated[
         Path | None,
-        typer.Option(callback=_in_folder, help="NetCDF file, in place of the one in the case."),
+        typer.Option(
+            metavar="FILE",
+            callback=_in_folder,
+            help="NetCDF file, in place of the one in the case.",
+        ),
     ] = None,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .csv. May be repeated."),
+        typer.Option(
+            metavar="FILE",
+            callback=_in_folder,
+            help="File to write: .csv or .html. May be repeated.",
+        ),
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the study that a case file describes, or the rest of it after a kill."""
-    described = _read_case(case, units)
-    study = described.study(store)
+    """Solve the study of a case file, or the rest of it after a kill."""
+    case_file = _read_case(case, units)
+    study = case_file.study(store)
     for path in save or []:
-        if path.suffix.lower() != ".csv":
-            raise CaseError(f"--save must end in .csv, got {str(path)!r}")
-    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as caught:
+        if path.suffix.lower() not in (".csv", ".html"):
+            raise CaseError(f"--save must end in .csv or .html, got {str(path)!r}")
+    with nacre.display_units(case_file.units), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
-            dataset = nacre.sweep(described, retry=retry, **study)
+            dataset = nacre.sweep(case_file, retry=retry, **study)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: sweep: {error}") from error
     failed = int((dataset.error != "").sum())
@@ -298,31 +353,46 @@ def sweep(
                 print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     for path in save or []:
+        if path.suffix.lower() == ".html":
+            text = case.read_text(encoding="utf-8-sig")
+            save_report(dataset, path, case=text, inputs=_files(case_file))
+            continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
     if failed:
         raise typer.Exit(1)
 
 
-@app.command()
+@app.command(cls=Command)
 def indent(
     case: CaseFile,
     save: Annotated[
         list[Path] | None,
-        typer.Option(callback=_in_folder, help="File to write: .nc or .csv. May be repeated."),
+        typer.Option(
+            metavar="FILE",
+            callback=_in_folder,
+            help="File to write: .nc, .csv or .html. May be repeated.",
+        ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
-    described = _read_case(case, units)
-    if described.kind != "indent":
+    """Solve the indentation of a case file, as solve does."""
+    case_file = _read_case(case, units)
+    if case_file.kind != "indent":
         raise CaseError(f"{case}: this case has no [tip] and [indent]: nacre solve")
-    for path in save or []:
-        if path.suffix.lower() not in (".nc", ".csv"):
-            raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
-    arguments = described.arguments()
-    with nacre.display_units(described.units), warnings.catch_warnings():
+    _solve_indentation(case, case_file, save or [], as_json)
+
+
+def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: bool) -> None:
+    """Solve an indentation, save and print it."""
+    for path in save:
+        if path.suffix.lower() not in (".nc", ".csv", ".html"):
+            raise CaseError(
+                f"--save must end in .nc, .csv or .html for an indentation, got {str(path)!r}"
+            )
+    arguments = case_file.arguments()
+    with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             with alive():
@@ -331,11 +401,46 @@ def indent(
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
         print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
-        for path in save or []:
-            solution.save(path)
+        for path in save:
+            if path.suffix.lower() == ".html":
+                _save_report(path, [solution], case, case_file)
+            else:
+                solution.save(path)
 
 
-@app.command()
+@app.command(cls=Command)
+def new(
+    kind: Annotated[
+        str | None,
+        typer.Argument(metavar="KIND", help="Kind of the case.", show_default=False),
+    ] = None,
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE", help="File to write; by default it is printed.", show_default=False
+        ),
+    ] = None,
+) -> None:
+    """List commented case files to start from; print or write one."""
+    texts = _templates.texts()
+    if kind is None:
+        width = max(map(len, texts))
+        for name, text in texts.items():
+            print(f"{name:{width}}  {_templates.title(text)}")
+        return
+    if kind not in texts:
+        raise CaseError(f"KIND must be one of {', '.join(texts)}, got {kind!r}")
+    if file is None:
+        print(texts[kind], end="")
+        return
+    try:
+        with file.open("x", encoding="utf-8") as stream:
+            stream.write(texts[kind])
+    except FileExistsError:
+        raise CaseError(f"{str(file)!r} exists already: give a new file") from None
+
+
+@app.command(cls=Command)
 def schema(
     as_json: Annotated[bool, typer.Option("--json", help="Print a JSON schema.")] = False,
 ) -> None:
@@ -343,7 +448,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers of friction and the named state of its report."""
     return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
@@ -352,7 +457,7 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
     }
 
 
-def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
         return _numbers(solution.normal) | _tangential(solution)
@@ -370,7 +475,7 @@ def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[st
     return state | numbers | {"warnings": solution.report.warnings}
 
 
-def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
+def _indent_numbers(solution: IndentSolution) -> dict[str, object]:
     """Return the named state of an indentation, the pull-off only with adhesion."""
     state = solution.to_dict()
     if solution.adhesion is None:
@@ -381,7 +486,7 @@ def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
     return {name: value for name, value in state.items() if name not in ("format", "kind")}
 
 
-def _plain(data: Any) -> Any:
+def _plain(data: object) -> object:
     """Return data for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(data, dict):
         return {str(key): _plain(value) for key, value in data.items()}
@@ -393,13 +498,13 @@ def _plain(data: Any) -> Any:
 
 
 def _check_ending(path: Path) -> None:
-    endings = {".nc", ".vtr", ".csv", *PICTURES}
+    endings = {".nc", ".vtr", ".csv", ".html", *PICTURES}
     if path.suffix.lower() not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")
 
 
-def _cell(value: Any, error: float) -> str:
+def _cell(value: object, error: float) -> str:
     """Return a value of a study, with its estimated error."""
     if not isinstance(value, float | int):
         return str(value)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field
 
 import nacre
+from nacre._tools.arguments import keywords_of
 from nacre.case.tables import (
     Directions,
     Number,
     Pair,
     Table,
     from_signature,
-    keywords_of,
     with_words,
 )
 

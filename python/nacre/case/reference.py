@@ -109,45 +109,46 @@ def tables(node: Node) -> Iterator[Node]:
 
 def sections() -> Iterator[tuple[str, Node]]:
     """Yield title and schema of the tables of the reference, the whole files first."""
-    known = schema()["$defs"]
+    definitions = schema()["$defs"]
 
     def kinds(table: str, key: str, title: str) -> Iterator[tuple[str, Node]]:
-        for one in tables(known[table]["properties"][key]):
+        for one in tables(definitions[table]["properties"][key]):
             yield f'`[{title}]` with `kind = "{kind_of(one)}"`', one
 
-    yield "Whole file of a contact", known["CaseTable"]
-    yield "Whole file of an indentation", known["IndentCase"]
-    yield "Whole file of a bearing", known["BearingCase"]
-    yield "`[materials.NAME]`", known["Material"]
+    yield "Whole file of a contact", definitions["CaseTable"]
+    yield "Whole file of an indentation", definitions["IndentCase"]
+    yield "Whole file of a bearing", definitions["BearingCase"]
+    yield "`[materials.NAME]`", definitions["Material"]
     yield from kinds("CaseTable", "shape", "shape")
     yield from kinds("RollerShape", "profile", "shape.profile")
-    yield "`[body]` and `[counterbody]`", known["Body"]
-    yield "`[[body.layers]]`", known["Layer"]
-    yield "`interface` of a layer: `interface = { normal = ... }`", known["Spring"]
-    yield "`[grid]`", known["Grid"]
-    yield "`[solve]`", known["Solve"]
-    yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", known["Along"]
-    yield "`[slide]`", known["Slide"]
-    yield "`[[slide.steps]]`", known["Step"]
-    yield "`[slide.shift]` and `[slide.force]`", known["Along"]
-    yield "`[roll]`", known["Roll"]
-    yield "`[roll.creepage]` and `[roll.force]`", known["Rolling"]
-    yield "`[stress]`", known["Stress"]
-    yield "`[fatigue]`", known["Fatigue"]
-    for one in tables(known["Fatigue"]["properties"]["criteria"]["items"]):
+    yield "`[body]` and `[counterbody]`", definitions["Body"]
+    yield "`[[body.layers]]`", definitions["Layer"]
+    yield "`interface` of a layer: `interface = { normal = ... }`", definitions["Spring"]
+    yield "`[grid]`", definitions["Grid"]
+    yield "`[solve]`", definitions["Solve"]
+    yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", definitions["Along"]
+    yield "`[slide]`", definitions["Slide"]
+    yield "`[[slide.steps]]`", definitions["Step"]
+    yield "`[slide.shift]` and `[slide.force]`", definitions["Along"]
+    yield "`[roll]`", definitions["Roll"]
+    yield "`[roll.creepage]` and `[roll.force]`", definitions["Rolling"]
+    yield "`[stress]`", definitions["Stress"]
+    yield "`[fatigue]`", definitions["Fatigue"]
+    for one in tables(definitions["Fatigue"]["properties"]["criteria"]["items"]):
         yield f'`[[fatigue.criteria]]` with `kind = "{kind_of(one)}"`', one
     yield from kinds("IndentCase", "tip", "tip")
     yield from kinds("IndentCase", "adhesion", "adhesion")
-    yield "`[indent]`", known["Indent"]
+    yield "`[indent]`", definitions["Indent"]
     yield from kinds("BearingCase", "bearing", "bearing")
-    yield "`[bearing.raceway_crown]`", known["Rings"]
-    yield "`[bearing.solve]`", known["BearingSolve"]
-    yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", known["InSpace"]
-    yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", known["About"]
-    yield "`[bearing.life]`", known["BearingLife"]
-    yield "`[bearing.film]`", known["BearingFilm"]
-    yield "`[sweep]`", known["Sweep"]
-    yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', known["Range"]
+    yield "`[bearing.raceway_crown]`", definitions["Rings"]
+    yield "`[bearing.solve]`", definitions["BearingSolve"]
+    yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", definitions["InSpace"]
+    yield "`[bearing.solve.moment]` and `[bearing.solve.tilt]`", definitions["About"]
+    yield "`[bearing.life]`", definitions["BearingLife"]
+    yield "`[[bearing.life.spectrum]]`", definitions["Duty"]
+    yield "`[bearing.film]`", definitions["BearingFilm"]
+    yield "`[sweep]`", definitions["Sweep"]
+    yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', definitions["Range"]
 
 
 def text() -> str:
@@ -179,7 +180,7 @@ def _key(name: str, node: Node, required: bool) -> str:
     )
 
 
-def table_for(data: Any) -> type[Keys]:
+def table_for(data: object) -> type[Keys]:
     """Return the table for a case: a bearing; or with a tip or ``indent`` an indentation."""
     keys = data.keys() if isinstance(data, dict) else set()
     if "bearing" in keys:
@@ -193,7 +194,7 @@ class Place:
 
     path: tuple[int | str, ...]
     node: Node
-    value: Any
+    value: object
 
     @property
     def key(self) -> str:
@@ -238,7 +239,7 @@ class Place:
         return None if node is None else Place((*self.path, part), node, value)
 
 
-def place(data: Any, location: Iterable[int | str]) -> Place:
+def place(data: object, location: Iterable[int | str]) -> Place:
     """Return the deepest place of a case that a location leads to.
 
     A location may hold names of alternatives between its keys, which are passed over.

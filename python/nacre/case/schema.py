@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,8 +21,10 @@ import numpy as np
 from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
+from nacre._core import Free, Rigid
 from nacre._tools.typing import Member
 from nacre._tools.units import System
+from nacre.cards import unknown
 from nacre.case.friction import SHARED, Roll, Slide
 from nacre.case.shapes import AnyShape
 from nacre.case.tables import (
@@ -69,6 +72,24 @@ AnyMaterial = Annotated[
 ]
 
 
+def material_of(name: str, units: str) -> Material:
+    """Return the numbers of a card of `nacre.materials` in the units of a case.
+
+    A warning says which value of a coating's range is taken.
+    """
+    card = nacre.materials[name]
+    size = System(units).unit("Pa")[0]
+    young = card.numbers["young"]
+    if card.kind == "coating":
+        warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
+    numbers = {
+        key: number.value / (size if number.unit == "Pa" else 1.0)
+        for key, number in card.numbers.items()
+        if key in Material.model_fields
+    }
+    return Material(**numbers)
+
+
 @from_signature(nacre.Spring)
 class Spring(Table):
     """Springs between the two sides of an interface."""
@@ -94,7 +115,7 @@ class Layer(Table):
 
 
 Ends = Annotated[
-    list[float], TWO, with_words("a pair of numbers, or of -inf and inf where the body goes on")
+    list[float], TWO, with_words("a pair of numbers, or of -inf and inf where the body has no end")
 ]
 MOST_LAYERS = 1000
 """Largest number of layers: the time of a contact grows with it."""
@@ -113,7 +134,7 @@ class Body(Table):
     ends: Ends | None = Field(
         None,
         description="Coordinates x of free ends [m], the lower one first; -inf or inf where the "
-        "body goes on, as it does at both sides by default. Interfaces must then be bonded.",
+        "body has no end, the default on both sides. Interfaces must then be bonded.",
     )
 
 
@@ -274,8 +295,10 @@ class Keys(Table):
         description="Units of force, length and stress of all numbers in the file, and of what is "
         'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
     )
-    materials: Annotated[dict[str, Material], with_words("a table of materials")] = Field(
-        {}, description="Materials by name."
+    materials: Annotated[dict[str, AnyMaterial], with_words("a table of materials")] = Field(
+        {},
+        description="Materials by name: tables, or names of `nacre.materials`, such as "
+        '"100Cr6", which stand in other places, too.',
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
 
@@ -303,21 +326,39 @@ class Keys(Table):
         with at(name):
             return nacre.HalfSpace(substrate, layers, ends=ends)
 
-    def _base(self, body: Body) -> Any:
+    def _base(self, body: Body) -> Rigid | Free | None:
         """Return the base that the substrate names, or None if that is a material."""
         substrate = body.substrate
         if not isinstance(substrate, str) or substrate in self.materials:
             return None
-        return {"rigid": nacre.RIGID, "free": nacre.FREE}.get(substrate)
+        bases: dict[str, Rigid | Free] = {"rigid": nacre.RIGID, "free": nacre.FREE}
+        return bases.get(substrate)
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
+            known = self._known(material)
             if material not in self.materials:
-                known = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({known}), got {material!r}")
+                return known.make()
             with at(f"materials.{material}"):
-                return self.materials[material].make()
+                return known.make()
         return material.make()
+
+    def _known(self, material: str | Material) -> Material:
+        """Return the table of a material: its own, that of its name here, or that of a card."""
+        if not isinstance(material, str):
+            return material
+        named = self.materials.get(material, material)
+        if isinstance(named, Material):
+            return named
+        if named in nacre.materials:
+            return material_of(named, self.units)
+        if named is not material:
+            with at(f"materials.{material}"):
+                raise ValueError(unknown(named, nacre.materials))
+        known = ", ".join(self.materials) or "none"
+        hint = unknown(material, nacre.materials).partition("; ")[2]
+        message = f"must be one of the materials ({known}), got {material!r}"
+        raise ValueError(f"{message}; {hint} in nacre.materials" if hint else message)
 
 
 class Bodies(Keys):
@@ -378,8 +419,8 @@ class CaseTable(Bodies):
         name = "roll" if self.slide is None else "slide"
         if self.slide is not None and self.roll is not None:
             raise WrongValue("roll", "must not be given beside the table slide")
-        known = inspect.signature(getattr(nacre, name)).parameters
-        if others := sorted(self.solve.model_fields_set - known.keys()):
+        parameters = inspect.signature(getattr(nacre, name)).parameters
+        if others := sorted(self.solve.model_fields_set - parameters.keys()):
             raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
         for place, table in (("stress", self.stress), ("fatigue", self.fatigue)):
             if table is not None and table.friction:
@@ -396,7 +437,7 @@ class CaseTable(Bodies):
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self.materials.get(one) if isinstance(one, str) else one for one in entries]
+        materials = [self._known(one) for one in entries]
         return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 

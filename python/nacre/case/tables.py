@@ -25,7 +25,7 @@ TWO = Field(min_length=2, max_length=2)
 Number = FiniteFloat
 
 
-def _integer(value: Any) -> Any:
+def _integer(value: object) -> object:
     """Return a whole float as an integer, as calls take it."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
@@ -56,12 +56,12 @@ class Table(BaseModel):
 class Directions(Table):
     """Values along two directions."""
 
-    def pair(self) -> tuple[Any, ...]:
+    def pair(self) -> tuple[object, ...]:
         """Return both values."""
         return tuple(value for _, value in self)
 
 
-def _keyword(value: Any) -> Any:
+def _keyword(value: object) -> object:
     if isinstance(value, Directions):
         return value.pair()
     if isinstance(value, list):
@@ -79,7 +79,7 @@ class Along(Directions):
 AnyAlong = Annotated[
     Along | Pair, with_words("a table with x, y or both, or a pair of finite numbers")
 ]
-TYPES: dict[object, Any] = {
+TYPES: dict[object, object] = {
     float: Number,
     int: Count,
     bool: bool,
@@ -105,12 +105,6 @@ def case_type(hint: object) -> Any:
     kinds = [part if get_origin(part) is Literal else TYPES.get(part) for part in parts]
     values = [kind for kind in kinds if kind is not None]
     return Union[tuple(values)] if set(values) - {types.NoneType} else None  # noqa: UP007
-
-
-def keywords_of(function: Callable[..., object]) -> set[str]:
-    """Return the names of the arguments that a function takes by name only."""
-    parameters = inspect.signature(function).parameters.values()
-    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
 
 
 def needed(function: Callable[..., object]) -> set[str]:

@@ -304,7 +304,7 @@ def slide(
     options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
     history = _history_steps(steps)
     moves = core.slide(shape, step, history, options, setup)
-    return _solve_steps(moves, len(history or [step]), options)
+    return _solve_steps(moves, shape, len(history or [step]), options)
 
 
 @overload
@@ -436,7 +436,7 @@ def roll(
     state, callback = _last_state(initial), _step_callback(progress)
     options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
     moves = core.roll(shape, rolling, options, setup)
-    return _solve_steps(moves, cells or 1, options)
+    return _solve_steps(moves, shape, cells or 1, options)
 
 
 class Contact:
@@ -735,7 +735,7 @@ class Contact:
         options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
         history = _history_steps(steps)
         moves = core.slide(shape, step, history, options, self._plan)
-        return _solve_steps(moves, len(history or [step]), options)
+        return _solve_steps(moves, shape, len(history or [step]), options)
 
     @overload
     def roll(
@@ -808,7 +808,7 @@ class Contact:
         state, callback = _last_state(initial), _step_callback(progress)
         options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
         moves = core.roll(shape, rolling, options, self._plan)
-        return _solve_steps(moves, cells or 1, options)
+        return _solve_steps(moves, shape, cells or 1, options)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""
@@ -855,11 +855,11 @@ def _report_callback(progress: Progress | None) -> Callable[..., object] | None:
     return lambda *parts: progress(Report._of(parts))
 
 
-def _step_callback(progress: StepProgress | None) -> Callable[[int, str], object] | None:
-    """Return a function that is called with the report of a step as JSON text, likewise."""
+def _step_callback(progress: StepProgress | None) -> Callable[..., object] | None:
+    """Return a function that is called with the fields of the report of a step, likewise."""
     if not callable(progress):
         return progress
-    return lambda number, text: progress(number, FrictionReport._from_text(text))
+    return lambda number, fields: progress(number, FrictionReport._from_fields(fields))
 
 
 def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
@@ -911,7 +911,7 @@ def _history_steps(steps: Iterable[Mapping[str, Any]] | None) -> list[FrictionSt
 
 
 def _solve_steps(
-    steps: core.FrictionSteps, count: int, options: FrictionOptions
+    steps: core.FrictionSteps, shape: core.Shape, count: int, options: FrictionOptions
 ) -> FrictionSolution | History:
     """Return the solutions of so many steps, or that of the only one.
 
@@ -922,7 +922,7 @@ def _solve_steps(
     try:
         with lasting("steps", options.progress) as tell:
             for solved in steps:
-                solution = FrictionSolution._of(solved)
+                solution = FrictionSolution._of(solved, shape)
                 termination = solution.report.termination
                 for warning in solution.normal.report.warnings if termination != "stopped" else []:
                     warnings.warn(warning, core.NacreWarning, stacklevel=3)

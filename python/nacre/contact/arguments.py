@@ -1,4 +1,7 @@
-"""Arguments of contacts in groups: the compiled module reads their fields by name."""
+"""Arguments of contacts in groups: the compiled module reads their fields by name.
+
+They may be arrays, whose equality is no truth value: groups are not compared.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ StepProgress = Callable[[int, FrictionReport], object]
 """Function that is told the number of a step and its report."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Motion of the shape along z."""
 
@@ -39,7 +42,7 @@ MOTION = tuple(field.name for field in dataclasses.fields(Motion))
 """Keywords of the motion along z."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Setup:
     """Bodies and grid of a contact that is planned for one call."""
 
@@ -57,7 +60,7 @@ class Setup:
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolveOptions:
     """How a solution is found."""
 
@@ -70,7 +73,7 @@ class SolveOptions:
     check: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FrictionStep:
     """A step of sliding."""
 
@@ -96,7 +99,7 @@ STEP = (*MOTION, *(field.name for field in dataclasses.fields(FrictionStep)[1:])
 """Keywords of a step of a history."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rolling:
     """Rolling, steady or by so many cells."""
 
@@ -114,7 +117,7 @@ class Rolling:
         _check_friction(self.friction)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FrictionOptions:
     """How tractions are found."""
 

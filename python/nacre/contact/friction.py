@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,11 +15,21 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
-from nacre.contact.solution import Solution
-from nacre.contact.stresses import Stressed
+from nacre.contact.solution import NOT_COUNTED, Solution
+from nacre.contact.stresses import Stressed, depth_pictures
 from nacre.results import display, files, tables, values
-from nacre.results.base import Result, Warned, as_text, checked, tuples
+from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
+from nacre.results.report import (
+    Picture,
+    Sections,
+    contact_pictures,
+    input_rows,
+    other_numbers,
+    table,
+    writer,
+)
+from nacre.results.svg import Axis, Curve, lines
 
 if TYPE_CHECKING:
     import xarray
@@ -32,6 +41,13 @@ VECTORS = ("traction", "displacement", "slip")
 """Fields with components along x and y."""
 SLIDES, ROLLS = ("shift", "twist"), ("creepage", "spin", "direction")
 """Numbers of the motion in sliding and in rolling."""
+
+
+LAW = (
+    "Coulomb: the traction is at most friction times pressure, and opposes the slip; shifts and "
+    "creepages are those of rigid bodies"
+)
+"""What a report says of friction."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,10 +184,10 @@ class FrictionSolution(Result, Stressed):
     """Course of the solve, and how well the laws hold."""
 
     @classmethod
-    def _of(cls, solved: core.FrictionSolved) -> Self:
+    def _of(cls, solved: core.FrictionSolved, shape: core.Shape | None = None) -> Self:
         """Return a solution of the compiled module."""
-        numbers = dict.fromkeys(SLIDES + ROLLS) | tuples(json.loads(solved.numbers()))
-        normal = Solution._of(solved.normal())
+        numbers = {**dict.fromkeys(SLIDES + ROLLS), **solved.numbers()}
+        normal = Solution._of(solved.normal(), shape)
         warnings = tuple(normal.report.warnings)
         report = FrictionReport(**numbers.pop("report"), warnings=warnings)
         solution = cls(solved, report=report, **numbers)
@@ -308,7 +324,7 @@ class FrictionSolution(Result, Stressed):
             File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
             `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is every cell;
             ``.png``, ``.pdf`` and ``.svg`` are the picture that `plot` draws, which needs
-            ``nacre-contact[plot]``.
+            ``nacre-contact[plot]``; ``.html`` is a report on a page to print and to sign.
 
         Returns
         -------
@@ -331,7 +347,7 @@ class FrictionSolution(Result, Stressed):
         ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
         True
         """
-        return files.save(path, files.writers(self, self.plot))
+        return files.save(path, files.writers(self, self.plot) | writer(self))
 
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
@@ -360,6 +376,27 @@ class FrictionSolution(Result, Stressed):
         """Return the numbers of the normal contact, and those of friction."""
         normal = [row for row in self.normal._rows() if row[0] != "ended"]
         return [*normal, *_rows(self)]
+
+    def _sections(self, **stress: Any) -> Sections:
+        """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
+        normal = self.normal._sections()
+        friction = {"friction": self.friction, "direction": self.direction}
+        pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
+        model = [
+            *(row for row in normal.model if row[0] != "not counted"),
+            ("friction", LAW),
+            ("friction ended", dict(_rows(self))["ended"]),
+            ("not counted", NOT_COUNTED),
+        ]
+        return Sections(
+            self._TITLE,
+            [*normal.inputs, *input_rows(friction)],
+            [*normal.numbers, *_rows(self), *other_numbers(self)],
+            pictures,
+            (),
+            model,
+            self.report.warnings,
+        )
 
     @property
     def _warnings(self) -> list[str]:
@@ -527,7 +564,8 @@ class History(list[FrictionSolution], Warned):
         path : str or os.PathLike
             File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
             `nacre.load` and xarray; ``.csv`` is the numbers of each step; ``.png``, ``.pdf`` and
-            ``.svg`` are the picture that `plot` draws.
+            ``.svg`` are the picture that `plot` draws; ``.html`` is a report on a page to print and
+            to sign.
 
         Returns
         -------
@@ -552,7 +590,28 @@ class History(list[FrictionSolution], Warned):
         True
         """
         writers = files.tabular(self, self._table())
-        return files.save(path, writers | files.pictures(self.plot))
+        return files.save(path, writers | files.pictures(self.plot) | writer(self))
+
+    def _sections(self, **stress: Any) -> Sections:
+        """Return what stands in a report: the last step, and the numbers of all."""
+        last = checked(self)[-1]._sections(**stress)
+        forces = np.array([step.force for step in self])
+        axis = int(np.argmax(np.ptp(forces, axis=0)))
+        loop = []
+        if shifts := [step.shift for step in self if step.shift is not None]:
+            curve = Curve(np.array(shifts)[:, axis], forces[:, axis])
+            axes = (
+                Axis(f"shift along {'xy'[axis]}", "m"),
+                Axis("force", "N/m" if self[0].grid.is_line else "N"),
+            )
+            loop = [Picture("Force over shift, all steps.", lines([curve], axes))]
+        return dataclasses.replace(
+            last,
+            title="history of a contact with friction; numbers and pressures are of the last step",
+            pictures=[*loop, *last.pictures],
+            tables=[table("Steps", self._table())],
+            warnings=self.warnings,
+        )
 
     def _table(self) -> list[list[Any]]:
         """Return the numbers of each step, after their headings."""

@@ -26,17 +26,27 @@ from nacre.contact.gradient import (
     gradients,
     linearisation,
 )
-from nacre.contact.stresses import Stressed
+from nacre.contact.stresses import Stressed, depth_pictures
 from nacre.results import display, files, tables, values, vtk
-from nacre.results.base import Result, as_text, tuples
+from nacre.results.base import Result, as_text
 from nacre.results.quantities import CONTACT, Quantity
+from nacre.results.report import (
+    Rows,
+    Sections,
+    contact_pictures,
+    input_rows,
+    other_numbers,
+    writer,
+)
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Parts = tuple[str, core.Grid, Planned, Planned | None]
-"""JSON text of a report, its grid and its bodies."""
+Parts = tuple[dict[str, Any], core.Grid, Planned, Planned | None]
+"""Fields of a report, its grid and its bodies."""
+State = tuple[str, core.Grid, Planned, Planned | None]
+"""JSON text of a report's state, its grid and its bodies."""
 
 BODIES: dict[str, Any] = {
     "grid": core.Grid,
@@ -51,12 +61,21 @@ NESTED = {
 """Tables in the state of a report, each with its keys."""
 OPTIONAL = ("hardness", "indentation", "coefficients")
 """Fields in the state of a solution that has them."""
+THEORY = (
+    "linear elasticity of half-spaces, bare or layered, with small slopes: influence coefficients "
+    "of rectangular cells, convolution by FFT, conjugate gradients under p ≥ 0, gap ≥ 0"
+)
+NOT_COUNTED = (
+    "the effect of friction on the pressure, plastic flow except by a given hardness, lubrication, "
+    "adhesion, temperature, and what bodies of finite size add except by given free ends"
+)
+"""What a report says of the model."""
 ENDLESS = ("residual", "overlap")
 """Numbers of a report that may be infinite, of which JSON has none."""
 
 
 class Numbers(TypedDict):
-    """Numbers of a solution, as the compiled module tells them."""
+    """Numbers of a solution, as the compiled module hands them over."""
 
     load: float
     eccentricity: Pair
@@ -83,7 +102,7 @@ class Report(Result):
     ('converged', True, [])
     """
 
-    _DERIVED = ("free_ends", "warning_kinds", "_text")
+    _DERIVED = ("free_ends", "warning_kinds", "_data")
     _LATER = ("rolling_direction",)
 
     termination: Ending
@@ -159,8 +178,8 @@ class Report(Result):
     """Tolerance that was asked for."""
     seconds: float
     """Seconds that the solve took, without planning."""
-    _text: str
-    """What the compiled module tells of the report, as JSON text."""
+    _data: dict[str, Any]
+    """State of the report, but for its grid and its bodies."""
 
     @property
     def converged(self) -> bool:
@@ -170,33 +189,26 @@ class Report(Result):
     @classmethod
     def _of(cls, parts: Parts) -> Self:
         """Return the report of the parts that the compiled module hands over."""
-        text, *bodies = parts
-        report_data = json.loads(text)
-        state = cls._data(report_data)
-        balance, motion = state["balance"], tuples(state["motion"])
+        report, *bodies = parts
+        data = report["data"]
+        balance, motion = data["balance"], data["motion"]
         fields = {
             "balance": (balance["force"], *balance["moment"]),
-            "free_ends": report_data["free_ends"],
-            "warnings": report_data["messages"],
-            "warning_kinds": [warning["kind"] for warning in state["warnings"]],
+            "free_ends": report["free_ends"],
+            "warnings": report["messages"],
+            "warning_kinds": [warning["kind"] for warning in data["warnings"]],
             "motion": {k: v for k, v in motion.items() if v not in (None, (None, None))},
-            "rolling_direction": tuples(state["rolling_direction"]),
         }
-        return cls(**state | fields | dict(zip(BODIES, bodies, strict=True)), _text=text)
-
-    @staticmethod
-    def _data(report_data: dict[str, Any]) -> dict[str, Any]:
-        """Return the state, but for grid and bodies, in what the compiled module tells."""
-        data: dict[str, Any] = report_data["data"]
-        return data | {name: math.inf for name in ENDLESS if data[name] is None}
+        return cls(**data | fields | dict(zip(BODIES, bodies, strict=True)), _data=data)
 
     def _state(self) -> dict[str, Any]:
-        bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
-        return self._data(json.loads(self._text)) | bodies
+        bodies = {name: getattr(self, name) for name in BODIES}
+        state: dict[str, Any] = values.encode(self._data | bodies)
+        return state
 
     @classmethod
-    def _parts(cls, data: Any) -> Parts:
-        """Return the parts of a report with this state."""
+    def _parts(cls, data: Any) -> State:
+        """Return the parts of a report with this state, which the compiled module checks."""
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
         state = values.with_names("report", data, cls._names(), cls._LATER)
@@ -273,8 +285,7 @@ class Solution(Result, Stressed):
 
     @cached_property
     def _numbers(self) -> Numbers:
-        numbers: Numbers = tuples(self._solved.numbers())
-        return numbers
+        return self._solved.numbers()
 
     @cached_property
     def grid(self) -> core.Grid:
@@ -769,7 +780,8 @@ class Solution(Result, Stressed):
             File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
             `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is the sections
             along x and y through the largest pressure; ``.png``, ``.pdf`` and ``.svg`` are the
-            picture that `plot` draws, which needs ``nacre-contact[plot]``.
+            picture that `plot` draws, which needs ``nacre-contact[plot]``; ``.html`` is a report:
+            verdict, inputs, numbers, pictures, limits and warnings on a page to print and to sign.
         depths : float or array_like, optional
             Depths below the surface [m], each above the last. The ``.vtr`` then holds pressure and
             gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
@@ -807,6 +819,7 @@ class Solution(Result, Stressed):
         True
         """
         writers = files.writers(self, lambda: next(iter(self.plot().values())))
+        writers |= writer(self)
         if not whole:
             writers[".csv"] = lambda file: tables.write_sections(self, file)
         if depths is None and options:
@@ -848,6 +861,13 @@ class Solution(Result, Stressed):
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
         return _rows(self)
+
+    def _sections(self, **stress: Any) -> Sections:
+        """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
+        pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
+        numbers = [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]
+        inputs, model = _inputs(self), _model(self.report)
+        return Sections(self._TITLE, inputs, numbers, pictures, (), model, self._warnings)
 
     @property
     def _warnings(self) -> list[str]:
@@ -896,25 +916,65 @@ class Solution(Result, Stressed):
 
 def _rows(solution: Solution) -> list[tuple[str, str]]:
     """Return names and values of the main numbers, with units."""
-    report, touching = solution.report, solution.contact_area > 0
-    repeats = [name for name, is_so in zip("xy", report.grid.periodic, strict=True) if is_so]
-    left = set() if touching else {"peak_position", "contact_extent", "contact_area"}
-    if len(repeats) == 2:
-        left.add("tilt")
-    texts = TEXTS | dict.fromkeys(left, _nothing)
-    rows = display.rows(solution, CONTACT, texts, report.grid.is_line)
+    rows, report = _number_rows(solution), solution.report
     place = 1 + max(k for k, (name, _) in enumerate(rows) if name in ("approach", "tilt"))
     rows.insert(place, ("motion", _motion(report.motion)))
-    nx, ny = report.grid.shape
-    period = f", periodic along {' and '.join(repeats)}" if repeats else ""
     return [
         *rows,
         *display.body("body", report.body),
         *display.body("counterbody", report.counterbody),
-        *display.moduli(report.body, report.counterbody),
-        ("grid", f"{nx} × {ny} cells{period}"),
+        *_moduli(report),
+        ("grid", _cells(report)),
         ("ended", f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"),
     ]
+
+
+def _moduli(report: Report) -> list[tuple[str, str]]:
+    return display.moduli(report.body, report.counterbody)
+
+
+def _cells(report: Report) -> str:
+    """Return the number of cells, and along which axes they repeat."""
+    repeats = [name for name, is_so in zip("xy", report.grid.periodic, strict=True) if is_so]
+    period = f", periodic along {' and '.join(repeats)}" if repeats else ""
+    return f"{report.grid.shape[0]} × {report.grid.shape[1]} cells{period}"
+
+
+def _inputs(solution: Solution) -> Rows:
+    """Return the inputs of a contact."""
+    report, hardness = solution.report, solution.hardness
+    units = {row.name: solution._si(row) for row in CONTACT}
+    inputs = {"body": report.body, "counterbody": report.counterbody or "rigid", **report.motion}
+    inputs |= {"hardness": hardness, "tolerance": report.tolerance}
+    shape = solution._shape or "not kept in the solution"
+    return input_rows({"shape": shape, **inputs, "grid": report.grid}, units)
+
+
+def _model(report: Report) -> Rows:
+    """Return on what a solution stands, and what is not counted."""
+    force, *moments = report.balance
+    balance = f"force {force:.0e}, moments {moments[0]:.0e} and {moments[1]:.0e}, relative"
+    ending = f"{report.termination}{_fallback(report)} after {report.iterations} iterations"
+    return [
+        ("theory", THEORY),
+        ("not counted", NOT_COUNTED),
+        ("motion", _motion(report.motion)),
+        ("grid", _cells(report)),
+        ("ended", ending),
+        ("residual", f"{report.residual:.0e}; overlap {report.overlap:.0e}"),
+        ("balance", balance),
+        ("±", "errors due to the size of the cells, estimated from coarser grids"),
+    ]
+
+
+def _number_rows(solution: Solution) -> list[tuple[str, str]]:
+    """Return names and values of the quantities that are printed, with units."""
+    report, touching = solution.report, solution.contact_area > 0
+    left = set() if touching else {"peak_position", "contact_extent", "contact_area"}
+    if all(report.grid.periodic):
+        left.add("tilt")
+    texts = TEXTS | dict.fromkeys(left, _nothing)
+    return display.rows(solution, CONTACT, texts, report.grid.is_line)
 
 
 def _nothing(_: object) -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -14,11 +14,13 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
+from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.quantities import EXTREMES
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdict, judged
 
@@ -33,6 +35,14 @@ Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
+STRESSES = "Fourier transforms of the stress below pressure and traction, exact in the depth"
+SIZE_ERRORS = "errors due to the size of the cells, estimated"
+"""What a report says of stresses."""
+DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
+"""Depths of the picture of a report, in all, fewest and most, and in each layer; their number times
+that of the cells, which takes 0.2 s; most cells of a grid for it."""
+DEEPEST, THIN = 1.25, 0.1
+"""Its depth over the width of the contact; thickness over that below which it has an inset."""
 WORDS = {"von_mises": "von Mises", "tension": "tension"}
 """Words for these extremes."""
 MISES = "von Mises stress"
@@ -44,7 +54,7 @@ AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressOptions:
     """Body, traction and residual stress of an evaluation, and how it is done."""
 
@@ -56,7 +66,7 @@ class StressOptions:
     progress: Progress | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressFields:
     """Place and kind of the fields that an evaluation returns."""
 
@@ -66,7 +76,7 @@ class StressFields:
     displacement: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StressLimits:
     """Limits of the materials, and the largest error of the extremes."""
 
@@ -303,17 +313,12 @@ class _Extremes(Result):
     uncertainty: dict[str, float]
 
     @classmethod
-    def _from_text(cls, text: str) -> Self:
-        return cls._read(json.loads(text))
-
-    @classmethod
-    def _read(cls, data: dict[str, Any]) -> Self:
-        """Return the extremes that data of the compiled module describe."""
-        peak_data = {name: data[name] for name in cls._PEAKS if data[name] is not None}
-        errors = {name: peak["uncertainty"] for name, peak in peak_data.items()}
-        peaks = {name: (peak["value"], tuple(peak["at"])) for name, peak in peak_data.items()}
-        known = {name: error for name, error in errors.items() if error is not None}
-        return cls(**data | peaks | {"uncertainty": known})
+    def _from_fields(cls, fields: dict[str, Any]) -> Self:
+        known = {name: fields[name] for name in cls._PEAKS if fields[name] is not None}
+        peaks = {name: (peak["value"], peak["at"]) for name, peak in known.items()}
+        errors = {name: peak["uncertainty"] for name, peak in known.items()}
+        errors = {name: error for name, error in errors.items() if error is not None}
+        return cls(**fields | peaks | {"uncertainty": errors})
 
     def _state(self) -> dict[str, Any]:
         state = super()._state()
@@ -365,11 +370,6 @@ class LayerStress(_Extremes):
     which the cells resolve less, may have the extreme. Where it is not small compared with the
     value, take smaller cells, or `refine`. See `Stress.uncertainty`.
     """
-
-    @classmethod
-    def _read(cls, data: dict[str, Any]) -> Self:
-        top, bottom = data["depths"]
-        return super()._read(data | {"depths": (top, np.inf if bottom is None else bottom)})
 
     def __repr__(self) -> str:
         """Return von Mises' stress and the tension, in the units that are set."""
@@ -468,19 +468,19 @@ class StressSummary(Tabular, Warned):
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
-    def _from_text(
-        cls, text: str, friction: tuple[float, float] | None = None, doubt: str | None = None
+    def _from_fields(
+        cls, fields: dict[str, Any], friction: Pair | None = None, doubt: str | None = None
     ) -> Self:
-        data = json.loads(text) | {"friction": friction, "doubt": doubt}
-        data["layers"] = [LayerStress._read(layer) for layer in data["layers"]]
-        data["interfaces"] = [InterfaceStress._read(face) for face in data["interfaces"]]
-        return cls(**data)
+        layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
+        interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
+        parts = {"layers": layers, "interfaces": interfaces, "friction": friction, "doubt": doubt}
+        return cls(**fields | parts)
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         contact = cls._checked({name: state.pop(name) for name in cls._LATER})
-        text = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
-        return cls._from_text(text, **contact)
+        fields = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
+        return cls._from_fields(fields, **contact)
 
     @property
     def verdict(self) -> Verdict:
@@ -531,6 +531,14 @@ class StressSummary(Tabular, Warned):
                 limit = np.nan if factor is None else factor
                 rows.append((display.part(part), name, value, error, *place, limit))
         return rows
+
+    def _sections(self) -> Sections:
+        (part, name, value, _, *rest), *rows = self._file_rows()
+        cells = [(*r[:3], display.share(r[3], r[2]) if r[3] == r[3] else "", *r[4:]) for r in rows]
+        extremes = table("Extremes", [(part, name, value, "±", *rest), *cells], EXTREMES)
+        notes = [("traction", text) for text in _notes(self)]
+        model = [("theory", STRESSES), ("±", SIZE_ERRORS)]
+        return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
 
     def __str__(self) -> str:
         """Return the verdict and a table, in the units that are set."""
@@ -679,9 +687,10 @@ class StressPlan:
         limits = StressLimits(yield_stress, strength, None)
         with lasting("stresses", progress) as tell:
             options = StressOptions(self._member, friction, direction, residual, None, tell)
-            text = core.stress_summary(self._plan, limits, options)
+            fields = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
-        return _warned(StressSummary._from_text(text, sliding))
+        doubt = doubt_of(self._solution)
+        return _warned(StressSummary._from_fields(fields, sliding, doubt))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -862,9 +871,9 @@ class Stressed:
         limits = StressLimits(yield_stress, strength, refine)
         with lasting("stresses", progress) as tell:
             options = StressOptions(body, friction, direction, residual, threads, tell)
-            text = core.stress_summary(self._solved, limits, options)
+            fields = core.stress_summary(self._solved, limits, options)
         sliding = self._sliding(friction, direction, body)
-        return _warned(StressSummary._from_text(text, sliding, doubt_of(self)))
+        return _warned(StressSummary._from_fields(fields, sliding, doubt_of(self)))
 
     def verdict(
         self,
@@ -1062,6 +1071,45 @@ def _warned(result: StressResult) -> StressResult:
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     return result
+
+
+def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> Iterator[Picture]:
+    """Yield the picture of the von Mises stress against depth below the largest pressure.
+
+    There is none of bodies without stresses, of surfaces that have yielded and of large grids.
+    """
+    normal = getattr(solution, "normal", solution)
+    member = normal.report.counterbody if body == "counterbody" else normal.report.body
+    if (
+        not isinstance(member, core.HalfSpace)
+        or not isinstance(member.substrate, core.Elastic)
+        or not normal.contact_area > 0
+        or normal.indentation.any()
+        or normal.pressure.size > MOST_CELLS
+    ):
+        return
+    widths = [high - low for low, high in normal.contact_extent if high > low]
+    bottom = DEEPEST * min(widths, default=min(normal.grid.size))
+    faces = [0.0, *(z for z in member.interfaces if z < bottom), bottom]
+    inset = (0.0, 3 * faces[1]) if faces[1] < THIN * bottom else None
+    ends = sorted({*faces, *(inset or ())})
+    count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
+    counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
+    plan, (x, y) = solution.stress_plan(body), normal.peak_position
+    parts = zip(pairwise(ends), counts, strict=True)
+    within = np.concatenate([np.linspace(top, end, n, endpoint=False) for (top, end), n in parts])
+    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces[1:]), "above"))
+    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
+    depths = np.concatenate([within, faces[1:]])
+    # An interface occurs twice: its upper side, which comes last here, stands first.
+    order = np.lexsort((-np.arange(depths.size), depths))
+    curve = Curve(depths[order], np.concatenate([one.von_mises for one in fields])[order])
+    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
+    words = ["Von Mises stress below the largest pressure"]
+    words += ["dotted: interfaces"] if faces[1:-1] else []
+    words += ["inset: the first three thicknesses of the coat"] if inset else []
+    caption = "; ".join(words) + "."
+    yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
 
 
 def _notes(summary: StressSummary) -> list[str]:

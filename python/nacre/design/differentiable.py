@@ -100,18 +100,16 @@ class Differentiable:
                 f"a solver must not have {sorted(refused)}: "
                 f"its results depend on the parameters of a call alone"
             )
-        known = {name: value for name, value in arguments.items() if value is not None}
-        if not isinstance(known.get("grid"), core.Grid):
-            raise TypeError(
-                f"grid must be a Grid, so that cells stay where they are, got {known.get('grid')!r}"
-            )
+        settings = {name: value for name, value in arguments.items() if value is not None}
+        if not isinstance(grid := settings.get("grid"), core.Grid):
+            raise TypeError(f"grid must be a Grid, so that cells stay where they are, got {grid!r}")
         keep = core.integer("keep", keep)
         if keep < 1:
             raise ValueError(f"keep must be a number of solutions, 1 or more, got {keep!r}")
-        self.grid: core.Grid = known["grid"]
+        self.grid = grid
         self.cells = self.grid.shape[0] * self.grid.shape[1]
         self.outputs = _outputs_by_name(outputs)
-        self.arguments = {"tolerance": ACCURATE, **known}
+        self.arguments = {"tolerance": ACCURATE, **settings}
         self.shape: core.Shape | None = self.arguments.pop("shape", None)
         self.points = Recent(keep)
         self.plans = Recent(PLANS)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,13 +19,13 @@ from nacre._tools.progress import lasting
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
-from nacre.results import display
+from nacre.results import display, files, report, svg, tables
 from nacre.results.base import Fields
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Limits = Sequence[tuple[Any, float]]
+Limits = Sequence[tuple[object, float]]
 
 RESTARTS = 3
 """Fresh starts where the last search ended, until one gains less than the tolerance."""
@@ -58,7 +60,7 @@ class Optimum(Fields):
 
     values: dict[str, float]
     objective: float
-    limits: tuple[tuple[Any, float, tuple[float, ...]], ...]
+    limits: tuple[tuple[object, float, tuple[float, ...]], ...]
     course: dict[str, Array]
     solutions: list[Solution]
     solves: int
@@ -98,6 +100,57 @@ class Optimum(Fields):
         picture = display.drawn(self.plot)
         return display.markup(rows, (), picture, head, lines, widest=display.WIDE)
 
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.html`` for a report on a page to print and to sign, ``.csv`` for the
+            course, or ``.png``, ``.pdf`` or ``.svg`` for the picture that `plot` draws.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+        """
+        rows = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
+        table = {".csv": lambda file: tables.write_rows(file, rows, source=tables.SOURCE)}
+        return files.save(path, table | files.pictures(self.plot) | report.writer(self))
+
+    def _sections(self) -> report.Sections:
+        (head, *rows), lines = self._table()
+        x = self.course["solves"]
+        curves = [
+            svg.Curve(x, self.course[name] / (self.course[name][0] or 1.0), name)
+            for name in ("objective", *self.values)
+        ]
+        drawing = svg.lines(curves, (svg.Axis("solves"), svg.Axis("share of the start")))
+        cases = [one._sections() for one in self.solutions]
+        course = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
+        return report.Sections(
+            "optimum of a contact",
+            [
+                (f"case {k}: {name}", text)
+                for k, case in enumerate(cases)
+                for name, text in case.inputs
+            ],
+            [
+                (f"case {k}: {name}", text)
+                for k, case in enumerate(cases)
+                for name, text in case.numbers
+            ],
+            [report.Picture("Course.", drawing), *(p for case in cases for p in case.pictures)],
+            [report.Table("Optimum", head, rows), report.table("Course", course)],
+            [("minimised", text) for text in lines if not text.startswith("warning: ")],
+            self.warnings,
+        )
+
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the course; see `nacre.plot.course`."""
         from nacre.plot.optimise import course
@@ -109,8 +162,8 @@ def optimise(
     build: Build,
     start: Mapping[str, float],
     *,
-    objective: Any,
-    cases: Sequence[Mapping[str, Any]],
+    objective: object,
+    cases: Sequence[Mapping[str, object]],
     bounds: Bounds | None = None,
     constraints: Limits = (),
     across: float = 16.0,
@@ -203,7 +256,7 @@ def optimise(
     )
     x = np.array([scale.x(start[scale.name]) for scale in scales])
     box = [(scale.low, scale.high) for scale in scales]
-    options: dict[str, Any] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
+    options: dict[str, object] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
     if constraints:
         slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
         options["constraints"] = [{"type": "ineq", **slack}]
@@ -276,13 +329,13 @@ def optimise(
     return Optimum(*best, point.solutions, problem.solves, termination, warning_lines)
 
 
-def _cases(cases: Any) -> list[dict[str, Any]]:
+def _cases(cases: object) -> list[dict[str, object]]:
     if isinstance(cases, Mapping | str) or not isinstance(cases, Sequence) or not cases:
         raise TypeError(f"cases must be a sequence of one mapping or more, got {cases!r}")
     return [dict(case) for case in cases]
 
 
-def _limits(constraints: Any) -> list[tuple[Any, float]]:
+def _limits(constraints: Any) -> list[tuple[object, float]]:
     for pair in constraints:
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")

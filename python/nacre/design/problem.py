@@ -17,7 +17,7 @@ from nacre.contact.solution import Solution
 from nacre.design.parameters import Scale
 from nacre.studies import ARGUMENTS
 
-Build = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+Build = Mapping[str, object] | Callable[..., Mapping[str, object]]
 Array = npt.NDArray[np.float64]
 
 STEP = 1e-4
@@ -59,7 +59,7 @@ class Problem:
     unit: float = 0.0
     solves: int = 0
     grids: list[core.Grid] = field(default_factory=list)
-    known: dict[bytes, Point] = field(default_factory=dict)
+    evaluations: dict[bytes, Point] = field(default_factory=dict)
     plans: dict[int, tuple[Contact, dict[str, Any]]] = field(default_factory=dict)
 
     def by_name(self, x: Array) -> dict[str, float]:
@@ -67,7 +67,7 @@ class Problem:
         pairs = zip(self.scales, x, strict=True)
         return {scale.name: scale.rounded(float(v)) for scale, v in pairs}
 
-    def arguments(self, x: Array, case: Mapping[str, Any]) -> dict[str, Any]:
+    def arguments(self, x: Array, case: Mapping[str, object]) -> dict[str, Any]:
         """Return arguments of a solve."""
         parameters = self.by_name(x)
         if callable(self.build):
@@ -83,7 +83,7 @@ class Problem:
     def begin(self, x: Array, grid: core.Grid | None) -> None:
         """Take new cells, chosen for each case where none are given."""
         case_arguments = [self.arguments(x, case) for case in self.cases]
-        self.known, self.plans = {}, {}
+        self.evaluations, self.plans = {}, {}
         self.grids = [
             grid or g["grid"] for g in case_arguments if grid or g.get("grid") is not None
         ]
@@ -93,7 +93,7 @@ class Problem:
 
     def best(self) -> Point:
         """Return the best point on these cells: within the limits if there is one."""
-        points = list(self.known.values())
+        points = list(self.evaluations.values())
         lacking = [max(-float(p.slack.min(initial=0.0)), self.tolerance) for p in points]
         return min(zip(lacking, points, strict=True), key=lambda pair: (pair[0], pair[1].value))[1]
 
@@ -105,21 +105,21 @@ class Problem:
     def at(self, x: Array) -> Point:
         """Return the evaluation at a point."""
         key = np.asarray(x, dtype=np.float64).tobytes()
-        if key not in self.known:
+        if key not in self.evaluations:
             cost = len(self.cases) * (2 + len(self.limits))
-            if self.known and self.solves + cost > self.most:
+            if self.evaluations and self.solves + cost > self.most:
                 raise Enough
             try:
-                self.known[key] = self.evaluate(np.array(x, dtype=np.float64))
+                self.evaluations[key] = self.evaluate(np.array(x, dtype=np.float64))
             except Exception as error:
                 place_text = ", ".join(f"{k} = {v:.6g}" for k, v in self.by_name(x).items())
                 error.add_note(f"in nacre.design.optimise, at {place_text}")
                 raise
-        return self.known[key]
+        return self.evaluations[key]
 
     def evaluate(self, x: Array) -> Point:
         """Solve all cases, and their derivatives."""
-        last = next(reversed(self.known.values())).solutions if self.known else None
+        last = next(reversed(self.evaluations.values())).solutions if self.evaluations else None
         targets = [self.objective, *(output for output, _ in self.limits)]
         outputs = np.zeros((len(self.cases), len(targets)))
         slopes = np.zeros((len(self.cases), len(targets), len(x)))
@@ -164,7 +164,7 @@ class Problem:
         return plan.solve(keywords.pop("shape"), **({"initial": last} | keywords))
 
     def changes(
-        self, x: Array, case: Mapping[str, Any], grid: core.Grid
+        self, x: Array, case: Mapping[str, object], grid: core.Grid
     ) -> list[tuple[dict[str, float], Array]]:
         """Return the derivatives of arguments by path, and of gaps, along each parameter."""
         derivatives = []
@@ -180,8 +180,10 @@ class Problem:
             edges = set()
             for step, weight in zip(points, weights[len(points)], strict=True):
                 keywords = self.arguments(x + step * STEP * np.eye(len(x))[i], case)
-                moved = {name: keywords[name] for name in DIFFERENTIABLE if name in keywords}
-                for path, value in numbers(moved).items():
+                differentiable = {
+                    name: keywords[name] for name in DIFFERENTIABLE if name in keywords
+                }
+                for path, value in numbers(differentiable).items():
                     values.setdefault(path, []).append(value)
                 with np.errstate(invalid="ignore"):
                     gap += sign * weight / STEP * keywords["shape"].gaps(grid)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, NamedTuple, get_args
+from typing import ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +73,7 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
     return Shakedown(stresses[:, 0].reshape(axes), residual, stresses[:, 3].reshape(axes))
 
 
-def _states(history: Any) -> tuple[Array, tuple[int, ...]]:
+def _states(history: object) -> tuple[Array, tuple[int, ...]]:
     """Return a history as ``(n, times, 6)``, and its leading axes."""
     states = core.real_array("history", history)
     if states.ndim < 2 or states.shape[-1] != 6:
@@ -146,17 +146,17 @@ class Criterion:
         1.0
         """
         states, axes = _states(history)
-        return self._evaluated(states)[0].reshape(axes)
+        return self._equivalent_stress(states)[0].reshape(axes)
 
-    def _evaluated(self, states: Array) -> tuple[Array, npt.NDArray[np.uintp], Array]:
+    def _equivalent_stress(self, states: Array) -> tuple[Array, npt.NDArray[np.uintp], Array]:
         """Return equivalent stress, deciding state and gap to the next plane of each history."""
         return core.fatigue_stress(self._KIND, self.bending, self.torsion, states)
 
-    def _arguments(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, object]:
         """Return the arguments of the constructor, for data."""
         return {"bending": self.bending, "torsion": self.torsion}
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         """Return the class and its arguments."""
         return type(self), (self.bending, self.torsion)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from nacre._tools.rounding import ceil, floor
 from nacre._tools.typing import Direction, Member, Side
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
-from nacre.contact.stresses import Stress, StressPlan, doubt_of, stress
+from nacre.contact.stresses import Stress, StressFields, StressOptions, StressPlan, doubt_of
 
 Array = npt.NDArray[np.float64]
 
@@ -43,13 +43,15 @@ LEVEL = 1e-3
 the top of a parabola a thirtieth of its half-width wide."""
 
 
-class Load(NamedTuple):
-    """A pressure whose friction has a direction, and its factor in the sum."""
+class Level(NamedTuple):
+    """A grid beyond that of the contact, and plans of the stress under its loads."""
 
-    pressure: Array
-    friction: float
-    direction: Direction
-    factor: float
+    grid: core.Grid
+    pressure: core.StressPlan
+    tractions: list[tuple[core.StressPlan, Direction]]
+    """Tractions as pressures, whose friction acts along these directions."""
+    used: npt.NDArray[np.intp]
+    """Numbers of the cells along y that belong to the history."""
 
 
 class States(NamedTuple):
@@ -97,12 +99,14 @@ class Rolling:
         self.body = self.plan.body
         self.doubt = doubt_of(solution)
         tractions = solution.traction if isinstance(solution, FrictionSolution) else None
-        self.known = tractions is not None
+        self.has_tractions = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = threads
         rolls = normal.report.rolling_direction or (0.0, 1.0)
         x_part, y_part = rolls if direction is None else core.vector("direction", 2, direction)
         self.direction = core.real("direction", x_part), core.real("direction", y_part)
+        self.along = self.sign * self.direction[0], self.sign * self.direction[1]
+        """Direction of the friction on the body."""
         self.pressure = np.asarray(normal.pressure)
         self.peak_pressure = normal.peak_pressure
         self.tractions = None if tractions is None else np.asarray(tractions)
@@ -126,10 +130,10 @@ class Rolling:
         last = best + int(np.argmin(np.r_[equal[best:], False])) - 1
         return float(self.grid.x[first : last + 1].mean())
 
-    def _levels(self) -> list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]]:
+    def _levels(self) -> list[Level]:
         """Return grids beyond that of the contact, each four times as wide as the one before.
 
-        Each has the loads, merged to its cells, and says which of its cells belong to the history.
+        The loads are merged to their cells, over which they are uniform.
         """
         (nx, ny), (_, step) = self.grid.shape, self.grid.spacing
         merged = [self.pressure, *(() if self.tractions is None else self.tractions)]
@@ -142,7 +146,8 @@ class Rolling:
         merged = [np.pad(load, sides) for load in merged]
         covered = np.array([-0.5, 0.5]) * self.grid.size[1] + self.grid.center[1]
         across = 1
-        levels: list[tuple[core.Grid, list[Array], npt.NDArray[np.intp]]] = []
+        ways = self.along, (self.sign, 0.0), (0.0, self.sign)
+        levels: list[Level] = []
         for level in range(1 + FAR):
             if level:
                 step *= COARSER
@@ -165,7 +170,13 @@ class Rolling:
                 self.half_width if not level else NEAR * self.half_width * COARSER ** (level - 1)
             )
             used &= np.arange(count) % max(1, int(floor(DENSE * inner / step))) == 0
-            levels.append((grid, merged, np.flatnonzero(used)))
+            if used.any():
+                plans = [
+                    (core.StressPlan(self.body, grid, load, self.threads), way)
+                    for load, way in zip(merged, ways, strict=False)
+                    if load.any()
+                ]
+                levels.append(Level(grid, plans[0][0], plans[1:], np.flatnonzero(used)))
             covered = middle + np.array([-0.5, 0.5]) * count * step
         return levels
 
@@ -177,15 +188,14 @@ class Rolling:
 
         With `friction`, the part of the tractions is there.
         """
-        slides = (0.0, 1.0) if friction and not self.known else (0.0,)
+        slides = (0.0, 1.0) if friction and not self.has_tractions else (0.0,)
         own = [self._own(depths, side, slide, self.x) for slide in slides]
         ys, parts = [self.grid.y], [[self._array(field) for field in own]]
-        for grid, loads, used in self.levels:
-            if used.size:
-                ys.append(grid.y[used])
-                parts.append(
-                    [self._beyond(grid, loads, depths, side, slide)[:, used] for slide in slides]
-                )
+        for level in self.levels:
+            ys.append(level.grid.y[level.used])
+            parts.append(
+                [self._beyond(level, depths, side, slide)[:, level.used] for slide in slides]
+            )
         y = np.concatenate(ys)
         order = np.argsort(y, kind="stable")
         stresses = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
@@ -219,32 +229,18 @@ class Rolling:
         """Return the states ``(depths, y, 6)``."""
         return np.stack([field.components[name][:, 0, :] for name in NAMES], axis=-1)
 
-    def _beyond(
-        self, grid: core.Grid, loads: list[Array], depths: Sequence[float], side: Side, slide: float
-    ) -> Array:
+    def _beyond(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
         """Return the states on a wider grid, whose loads are uniform over cells."""
-        pressure, *tractions = loads
-        along = (self.sign * self.direction[0], self.sign * self.direction[1])
-        terms = [Load(pressure, slide, along, 1.0)]
-        # A traction alone: with the pressure of its size, less that pressure.
-        for traction, axis in zip(tractions, ((1.0, 0.0), (0.0, 1.0)), strict=False):
-            if traction.any():
-                way = (self.sign * axis[0], self.sign * axis[1])
-                terms += [Load(traction, 1.0, way, 1.0), Load(traction, 0.0, way, -1.0)]
-        total = np.zeros((len(depths), grid.shape[1], 6))
-        for term in terms:
-            options: dict[str, Any] = {"friction": term.friction, "direction": term.direction}
-            field = stress(
-                self.body,
-                grid,
-                term.pressure,
-                depths,
-                side=side,
-                x=self.x,
-                threads=self.threads,
-                **options,
-            )
-            total += term.factor * self._array(field)
+
+        def stress(plan: core.StressPlan, friction: float, way: Direction) -> Array:
+            fields = StressFields(side, self.x, None, displacement=False)
+            options = StressOptions("body", friction, way, None, None, None)
+            return self._array(Stress(**core.stress(plan, depths, fields, options)))
+
+        total = stress(level.pressure, slide, self.along)
+        for plan, way in level.tractions:
+            # A traction alone: with the pressure of its size, less that pressure.
+            total += stress(plan, 1.0, way) - stress(plan, 0.0, way)
         return total
 
     def _with_edges(self, states: States, slides: Sequence[float]) -> States:
@@ -285,7 +281,7 @@ class Rolling:
         )
 
 
-def _lagrange(nodes: Array, at: Any) -> Array:
+def _lagrange(nodes: Array, at: object) -> Array:
     """Return the weights of the polynomial through nodes, along the last axis."""
     at = np.asarray(at)
     weights = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,8 @@ from nacre.fatigue.summary import (
 from nacre.results import display, files
 from nacre.results.base import Warned
 from nacre.results.quantities import SHAKEDOWN
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -79,15 +81,15 @@ class ShakedownMap(Tabular, Warned):
 
     _LATER = ("warnings",)
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         return {
             name: value.tolist() if isinstance(value, np.ndarray) else value
             for name, value in super()._state().items()
         }
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
-        def plane(rows: Any) -> Array:
+    def _restored(cls, state: dict[str, object]) -> Self:
+        def plane(rows: Iterable[Iterable[float]]) -> Array:
             return np.array([numbers(row) for row in rows])
 
         return cls(
@@ -156,12 +158,34 @@ class ShakedownMap(Tabular, Warned):
         places = {"layer": list(self.names), "friction": self.friction}
         return files.dataset("shakedown map", table, variables, places, self.to_dict())
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         yield [row.name for row in SHAKEDOWN]
         for layer, name in enumerate(self.names):
             parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
             for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
                 yield [name, friction, *columns]
+
+    def _sections(self) -> Sections:
+        order = np.argsort(self.friction)
+        curves = [
+            Curve(self.friction[order], values[order], f"{name}: {words}", look)
+            for k, name in enumerate(self.names)
+            for values, words, look in (
+                (self.limits[k], "shakedown", "line"),
+                (self.first_yield[k], "first yield", "dashed"),
+            )
+        ]
+        axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
+        _, notes = self._printed()
+        return Sections(
+            "shakedown map",
+            [("rule", self.rule)],
+            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
+            [Picture("Limits over friction.", lines(curves, axes))],
+            [table("Limits", self._file_rows(), SHAKEDOWN)],
+            [("theory", note) for note in notes],
+            self.warnings,
+        )
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""

@@ -23,6 +23,8 @@ from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import FATIGUE, PROFILE
+from nacre.results.report import Picture, Sections, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 from nacre.results.verdict import Demand, Verdict, judged, times
 
@@ -231,7 +233,7 @@ class FatigueSummary(Tabular, Warned):
         """Smallest yield stress in shear with which each depth shakes down ``(nz,)`` [Pa]."""
         return self.profiles["shakedown"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = super()._state()
         state["depths"] = self.depths.tolist()
         state["profiles"] = {name: column.tolist() for name, column in self.profiles.items()}
@@ -325,7 +327,9 @@ class FatigueSummary(Tabular, Warned):
             none; values over ``depth`` by the names of `profiles`.
         """
         heads, *rows = self._file_rows()
-        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        variables: dict[str, object] = {
+            name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)
+        }
         table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
         profiles = {name: ("depth", column) for name, column in self.profiles.items()}
         depths = {"depth": self.depths}
@@ -335,7 +339,7 @@ class FatigueSummary(Tabular, Warned):
             title, table, variables | profiles, depths, self.to_dict(), **attributes
         )
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands beside the table."""
         verdict = " ".join(self.verdict.sentences)
         settings = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
@@ -357,6 +361,26 @@ class FatigueSummary(Tabular, Warned):
                 value = getattr(face, name)
                 rows.append((display.part(face), name, value, np.nan, np.nan, face.depth, np.nan))
         return rows
+
+    def _sections(self) -> Sections:
+        labels = {row.name: row.label for row in PROFILE}
+        curves = [
+            Curve(self.depths, values, labels.get(name, name))
+            for name, values in self.profiles.items()
+        ]
+        marks = [face.depth for face in self.interfaces]
+        drawing = lines(curves, (Axis("depth", "m"), Axis("stress", "Pa")), marks)
+        _, notes = self._printed()
+        comments = ((name, str(self._comments()[name])) for name in ("rule", "criteria"))
+        return Sections(
+            "shakedown and fatigue",
+            list(comments),
+            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
+            [Picture("What a material needs at each depth; dotted: interfaces.", drawing)],
+            [table("What layers and interfaces need", self._file_rows(), FATIGUE)],
+            [("theory", note) for note in notes],
+            self.warnings,
+        )
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""
@@ -462,7 +486,7 @@ def rule_of(name: Any) -> Rule:
     return rule
 
 
-def numbers(sequence: Any) -> Array:
+def numbers(sequence: Iterable[float]) -> Array:
     """Return an array of numbers, or raise."""
     return np.array([float(one) for one in sequence])
 
@@ -566,10 +590,10 @@ class Assessment:
                 if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
                     own = [chosen[n] for n in at]
                     states = history.only(at)
-                    rows[k] += self._evaluated(region, own, states, uncertain[at], friction)
+                    rows[k] += self._rows_of(region, own, states, uncertain[at], friction)
         return rows
 
-    def _evaluated(
+    def _rows_of(
         self,
         region: Region,
         depths: list[float],
@@ -590,7 +614,7 @@ class Assessment:
         gaps = np.full(len(depths), np.nan)
         for criterion in self.criteria:
             planes = criterion._KIND in ("findley", "matake")
-            stress, which, gap = criterion._evaluated(states if planes else dense)
+            stress, which, gap = criterion._equivalent_stress(states if planes else dense)
             stresses[type(criterion).__name__] = stress, (history.y if planes else y)[which]
             if criterion._KIND == "matake":
                 gaps = gap
@@ -681,16 +705,18 @@ def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
     return all_criteria
 
 
-def layer_values(name: str, stress: float | ByLayer | None, body: core.HalfSpace) -> list[Any]:
+def layer_values(
+    name: str, stress: float | ByLayer | None, body: core.HalfSpace
+) -> list[float | None]:
     """Return a value for each layer and the substrate, None where it is not known."""
     count = len(body.layers) + isinstance(body.substrate, core.Elastic)
     if np.ndim(stress) == 0 and not isinstance(stress, Mapping | None):  # type: ignore[arg-type]
         return [core.real(name, stress)] * count
-    per_layer: list[Any] = core.layer_values(body, name, stress)
+    per_layer: list[float | None] = core.layer_values(body, name, stress)
     return per_layer + [None] * (count - len(per_layer))
 
 
-def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
+def checked_depths(depths: npt.ArrayLike | None, body: core.HalfSpace) -> Array | None:
     """Return depths in their order, checked, or None where they are to be chosen."""
     if depths is None:
         return None
@@ -706,7 +732,7 @@ def checked_depths(depths: Any, body: core.HalfSpace) -> Array | None:
 
 
 def assessment_of(
-    solution: Any,
+    solution: Solution | FrictionSolution,
     criteria: Iterable[Criterion],
     rule: Rule,
     residual: ByLayer | None,
@@ -836,7 +862,7 @@ def assess(
     friction = core.real("friction", friction)
     if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
-    if assessment.rolling.known and friction:
+    if assessment.rolling.has_tractions and friction:
         raise ValueError(f"friction must be 0: the tractions are known, got {friction:g}")
     ordered_depths = checked_depths(depths, assessment.rolling.body)
     regions, rows_by_region = assessment.regions(), []

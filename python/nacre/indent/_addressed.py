@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.paths import described, numbers
+from nacre._tools.paths import numbers, with_half_spaces
 from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]
@@ -35,7 +35,7 @@ class System:
     ) -> System:
         """Return the system of these arguments, elastic materials as half-spaces."""
         bodies = {"body": body, "counterbody": counterbody}
-        return cls(tip=tip, adhesion=adhesion, **described(bodies))
+        return cls(tip=tip, adhesion=adhesion, **with_half_spaces(bodies))
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -52,7 +52,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     names = list(fit.estimates)
     low, high = np.array([fit.intervals[name] for name in names]).T
     both = ("parameter", "other_parameter")
-    columns: dict[str, Any] = {
+    columns: dict[str, object] = {
         "estimate": ("parameter", list(fit.estimates.values())),
         "standard_error": ("parameter", [fit.standard_errors[name] for name in names]),
         "low": ("parameter", low),
@@ -96,14 +96,14 @@ def _units(fit: Fit) -> list[str]:
     return [symbol(unit_of(name)) for name in fit.estimates]
 
 
-def contact_rows(solution: IndentSolution) -> Iterator[list[Any]]:
+def contact_rows(solution: IndentSolution) -> Iterator[list[object]]:
     """Yield the rows of a table of contacts."""
     columns = [np.ravel(row.of(solution)).tolist() for row in CONTACTS]
     yield [f"{row.name} [{symbol(row.unit)}]" for row in CONTACTS]
     yield from map(list, zip(*columns, strict=True))
 
 
-def parameter_rows(fit: Fit) -> Iterator[list[Any]]:
+def parameter_rows(fit: Fit) -> Iterator[list[object]]:
     """Yield the rows of a table of parameters."""
     yield ["parameter", "unit", "estimate", "standard error", "low", "high", "not identifiable"]
     for name, unit in zip(fit.estimates, _units(fit), strict=True):

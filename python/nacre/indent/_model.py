@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -240,10 +240,10 @@ class Model:
         if key not in self._at:
             if len(self._at) > KEPT:
                 self._at.clear()
-            self._at[key] = self._evaluated(x)
+            self._at[key] = self._residuals(x)
         return self._at[key]
 
-    def _evaluated(self, x: Array) -> tuple[Array, Array]:
+    def _residuals(self, x: Array) -> tuple[Array, Array]:
         try:
             load, columns = self.loads(x)
         except (ValueError, RuntimeError, OverflowError):
@@ -368,7 +368,7 @@ def _check_names(names: Iterable[str], known: Sequence[str], what: str) -> None:
             raise ValueError(f"{what} must name parameters of the fit, {known}, got {name!r}")
 
 
-def _bounds(path: str, pair: Any, is_plain: bool) -> tuple[float, float]:
+def _bounds(path: str, pair: Iterable[float], is_plain: bool) -> tuple[float, float]:
     low, high = map(float, pair)
     if not low < high or (low <= 0 and not is_plain):
         raise ValueError(f"bounds of {path} must be positive and ascend, got {low:.6g}, {high:.6g}")

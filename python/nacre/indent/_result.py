@@ -7,6 +7,7 @@ import operator
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
@@ -20,8 +21,11 @@ from nacre.indent._residuals import ROUNDING
 from nacre.indent._verdict import fit_verdict
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
-from nacre.indent.solution import holds
+from nacre.indent.solution import MODEL, holds
 from nacre.results import display
+from nacre.results.report import Picture, Sections, Table, input_rows, table
+from nacre.results.svg import Axis, lines
+from nacre.results.svg import Curve as Line
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
@@ -147,10 +151,54 @@ class Fit(Tabular):
         return indent.fit_plot(self, axes, curve=curve)
 
     def report(self, path: str | os.PathLike[str]) -> None:
-        """Write one page with curves, residuals and the table: PDF, PNG or SVG by the ending."""
+        """Write one page with curves, residuals and the table: PDF, PNG or SVG by the ending.
+
+        The ending ``.html`` writes the report of `save`.
+        """
+        if Path(path).suffix.lower() == ".html":
+            self.save(path)
+            return
         from nacre.plot import indent
 
         indent.fit_report(self, path)
+
+    def _sections(self) -> Sections:
+        inputs = {name: getattr(self, name) for name in ("body", "tip", "counterbody", "adhesion")}
+        inputs["counterbody"] = self.counterbody or "rigid"
+        for number, curve in enumerate(self.curves):
+            measured = {"name": curve.name, "depth": curve.depth, "force": curve.force}
+            inputs |= {f"curves[{number}].{name}": value for name, value in measured.items()}
+        head, rows, notes = self._table()
+        names = list(self.estimates)
+        correlations = zip(names, self.correlation.tolist(), strict=True)
+        return Sections(
+            "fit of indentation curves",
+            [("bodies and tip", "with the estimates in place"), *input_rows(inputs)],
+            [(row[0], f"{row[1]} ± {row[2]}; 95 %: {row[3]} {row[4]}".rstrip()) for row in rows],
+            self._pictures(),
+            [
+                Table("Estimates", head, rows),
+                table("Correlation", [["", *names], *([n, *row] for n, row in correlations)]),
+            ],
+            [*MODEL, *(("fit", note) for note in notes if not note.startswith("warning: "))],
+            self.warnings,
+        )
+
+    def _pictures(self) -> list[Picture]:
+        """Return the pictures of a report: force and residuals over depth."""
+        forces, residuals = [], []
+        for number, curve in enumerate(self.curves):
+            name, order = curve.name or f"curve {number}", np.argsort(curve.depth, kind="stable")
+            forces.append(Line(curve.depth, curve.force, name, "points"))
+            model = self.loads[number][order]
+            forces.append(Line(curve.depth[order], model, f"model of {name}"))
+            residuals.append(Line(curve.depth, self.residuals[number], name, "points"))
+        rest = Axis("residual", "N") if self.noise == "absolute" else Axis("residual, share")
+        depth = Axis("depth", "m")
+        return [
+            Picture("Force over depth as measured.", lines(forces, (depth, Axis("force", "N")))),
+            Picture("Residuals over depth.", lines(residuals, (depth, rest))),
+        ]
 
     def __eq__(self, other: object) -> bool:
         """Return whether all is equal, to the bit."""
@@ -242,15 +290,15 @@ class Fit(Tabular):
 
         return estimates(self)
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         return {"verdict": " ".join(self.verdict.sentences)}
 
-    def _file_rows(self) -> Iterable[list[Any]]:
+    def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import parameter_rows
 
         return parameter_rows(self)
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         curves = [
             {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
             for c in self.curves

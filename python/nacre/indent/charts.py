@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -77,7 +76,7 @@ def bulk_limit(
 def _limits(ratio: float, error: float, poisson: float) -> list[float]:
     tip_radius = 1e3
     body = coated(ratio, 1.0, poisson)
-    state: Any = Indentation(body, core.Tip.paraboloid(tip_radius)).at(radius=RADII)
+    state = Indentation(body, core.Tip.paraboloid(tip_radius)).at(radius=RADII)
     load, approach, stiffness = (
         np.asarray(values) for values in (state.load, state.approach, state.stiffness)
     )
@@ -173,7 +172,7 @@ def information(
     values = {"body.layers[0].material.young": ratio, "body.layers[0].thickness": 1.0}
     if substrate:
         values["body.substrate.young"] = 1.0
-    test: Any = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
+    test = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
     rows = []
     points = core.integer("points", points)
     for largest in np.atleast_1d(core.real_array("reach", reach)).tolist():

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Literal, NamedTuple, TypedDict, Unpack, overload
+from typing import ClassVar, Literal, NamedTuple, TypedDict, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -130,7 +130,7 @@ class Curve:
             a is b or (a is not None and b is not None and np.array_equal(a, b)) for a, b in pairs
         )
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return what pickles and copies are made of; arrays alone would become writable."""
         return _curve, (self.depth, self.force, self.time, self.name, self.note)
 

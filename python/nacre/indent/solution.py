@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import math
+import types
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ from nacre._tools.units import printable, written
 from nacre.results import display
 from nacre.results.base import Fields, Warned
 from nacre.results.quantities import INDENT, units
+from nacre.results.report import Picture, Sections, input_rows, table
+from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 
@@ -37,13 +40,22 @@ UNITS = units(indents=True)
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
-KINDS: tuple[Any, ...] = (
+KINDS: tuple[type | types.UnionType, ...] = (
     core.HalfSpace,
     core.Tip,
     core.HalfSpace | None,
     core.Adhesion | None,
 )
 """Classes of the arguments."""
+MODEL = (
+    (
+        "theory",
+        "linear elasticity of layered half-spaces under an axisymmetric tip, without friction and "
+        "without a grid: integral equations, to rounding",
+    ),
+    ("not counted", "plastic flow, creep, viscosity, roughness, pile-up, tilt of the sample"),
+)
+"""What a report says of the model."""
 ROWS = 30
 """Largest number of contacts that are printed."""
 
@@ -304,7 +316,7 @@ class IndentSolution(Tabular, Warned):
     def _names(cls) -> list[str]:
         return [*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
@@ -343,10 +355,25 @@ class IndentSolution(Tabular, Warned):
 
         return indentation(self)
 
-    def _file_rows(self) -> Iterable[list[Any]]:
+    def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import contact_rows
 
         return contact_rows(self)
+
+    def _sections(self) -> Sections:
+        inputs = {name: getattr(self, name) for name in ARGUMENTS}
+        inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
+        inputs["counterbody"] = self.counterbody or "rigid"
+        numbers = [(name, self._range(name)) for name in NUMBERS[:4]]
+        if self.adhesion is not None:
+            numbers += [(n.replace("_", " "), with_unit(v, n)) for n, v in self._pulled.items()]
+        x, y = np.ravel(self.approach), np.ravel(self.load)
+        axes = Axis("approach", "m"), Axis("load", "N")
+        pictures = [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
+        contacts = [table("Contacts", self._file_rows())]
+        title = "indentation of a coated body"
+        rows = input_rows(inputs)
+        return Sections(title, rows, numbers, pictures, contacts, MODEL, self.warnings)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the load as a function of the approach, or of one contact the pressure.
@@ -643,7 +670,7 @@ class Indentation:
             others += f", adhesion={self.adhesion!r}"
         return f"Indentation({self.body!r}, {self.tip!r}{others})"
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         arguments = (self.body, self.tip, self.counterbody), {"adhesion": self.adhesion}
         return copyreg.__newobj_ex__, (type(self), *arguments)  # type: ignore[attr-defined]

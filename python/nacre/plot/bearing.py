@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,9 @@ MOST = 7
 
 
 @in_si
-def bearing(solution: BearingSolution, axes: Any = None) -> dict[str, Any]:
+def bearing(
+    solution: BearingSolution, axes: Axes | Mapping[str, Axes] | None = None
+) -> dict[str, Axes]:
     """Draw the loads of all elements, and the pressure along the heaviest one.
 
     Parameters

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
@@ -106,7 +107,10 @@ def _map(solution: FrictionSolution, axes: Axes) -> Axes:
 
 
 def _arrows(
-    solution: FrictionSolution, axes: Axes, factors: Sequence[float], touching: Any
+    solution: FrictionSolution,
+    axes: Axes,
+    factors: Sequence[float],
+    touching: npt.NDArray[np.bool_],
 ) -> None:
     """Draw arrows in some cells; the largest is as long as their distance."""
     if not touching.any():
@@ -142,9 +146,9 @@ def _rolling(axes: Axes, direction: str) -> None:
     ends[:, axis] = 0.05 * sign * np.array([-1, 1])
     start, end = ends + np.array([1.08, 0.58])
     style = {"arrowstyle": "-|>", "color": "0.25", "linewidth": 1.8, "mutation_scale": 14}
-    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
-    axes.annotate("", end, start, arrowprops=style, annotation_clip=False, **place)
-    axes.annotate("rolls", (1.16, 0.58), va="center", annotation_clip=False, **place)
+    share = "axes fraction"
+    axes.annotate("", end, start, share, share, arrowprops=style, annotation_clip=False)
+    axes.annotate("rolls", (1.16, 0.58), xycoords=share, va="center", annotation_clip=False)
 
 
 def _line(solution: FrictionSolution, axes: Axes) -> Axes:

@@ -143,8 +143,14 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
                 length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
             ]
             for colour, width in (("black", 2.6), ("white", 1.2)):
-                style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
-                axes.plot(*at, color=colour, linestyle="none", **style)
+                axes.plot(
+                    *at,
+                    color=colour,
+                    linestyle="none",
+                    marker="+",
+                    markersize=8,
+                    markeredgewidth=width,
+                )
         title = "nothing touches"
         if solution.contact_area > 0:
             share = f"{100 * solution.contact_share:.3g} % of the area touches"

@@ -100,7 +100,7 @@ def load_curve(
     unit_symbol = symbol(unit) if scale is None else scale.unit
     with styled():
         axes = axes or new_axes(0.7, 0.5)
-        look: dict[str, Any] = {"marker": "o", "markersize": 3, **next_look(axes), **style}
+        look: dict[str, object] = {"marker": "o", "markersize": 3, **next_look(axes), **style}
         x, y = pressure.factor * curve["pressure"].values, (scale.factor if scale else 1) * values
         axes.loglog(x, y, **look)
         label = words if unit == "1" else f"{words} [{unit_symbol}]"

@@ -249,7 +249,7 @@ def _values(field: Stress, quantity: str) -> Array:
     return values.reshape(values.shape[0], -1) if values.ndim > 1 else values
 
 
-def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
+def body_of(solution: Solution, options: dict[str, object]) -> HalfSpace:
     """Return the body that the options of `Solution.stress` name."""
     body = solution.report.body
     if options.get("body") == "counterbody" and solution.report.counterbody is not None:
@@ -260,7 +260,7 @@ def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
 
 
 def _reach(
-    solution: Solution, depth: float | None, options: dict[str, Any]
+    solution: Solution, depth: float | None, options: dict[str, object]
 ) -> tuple[HalfSpace, float]:
     """Return the body, and the depth down to which it is drawn."""
     body = body_of(solution, options)

@@ -125,7 +125,9 @@ def curve(
     return axes
 
 
-def _refined(axes: Axes, sides: Sequence[Any], values: Any) -> list[Any]:
+def _refined(
+    axes: Axes, sides: Sequence[npt.NDArray[np.float64]], values: npt.NDArray[np.float64]
+) -> list[npt.NDArray[np.float64]]:
     """Return sides and values of a table on a mesh eight times as fine.
 
     A smooth surface of cubics goes through the values, over the sides as the axes show them.
@@ -213,7 +215,7 @@ def _scale_of(array: xarray.DataArray, largest: float, unit: str) -> Scale:
     return Scale.of(largest, unit) if own is None else Scale.in_unit(largest, str(own))
 
 
-def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
+def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> npt.NDArray[np.float64]:
     """Label one side of the axes, and return its values in the unit of the label."""
     numbers = values.values.astype(float)
     steps = np.diff(numbers)

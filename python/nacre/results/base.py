@@ -1,8 +1,8 @@
 """What all results have in common: plain data, equality, pickles.
 
-A result is a frozen dataclass. What the compiled module computes it hands over as JSON text, with
-bodies, grids and arrays apart, and checks again where it is read from a file. The fields of other
-results are checked by their annotations.
+A result is a frozen dataclass. What the compiled module computes it hands over as fields, with
+bodies, grids and arrays apart, and checks again where it is read from a file, as JSON text. The
+fields of other results are checked by their annotations.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from typing import (
 )
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
 from nacre.results import values
@@ -46,16 +47,7 @@ class Tangential(Protocol):
 FrictionContact = TypeVar("FrictionContact", bound=Tangential)
 
 
-def tuples(value: Any) -> Any:
-    """Return plain data with tuples in place of lists."""
-    if isinstance(value, list):
-        return tuple(tuples(item) for item in value)
-    if isinstance(value, dict):
-        return {key: tuples(item) for key, item in value.items()}
-    return value
-
-
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Return a field as plain data: arrays stay, and a result in it is its fields."""
     if isinstance(value, np.ndarray):
         return value
@@ -68,7 +60,7 @@ def _plain(value: Any) -> Any:
     return values.encode(value)
 
 
-def same(one: Any, other: Any) -> bool:
+def same(one: object, other: object) -> bool:
     """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
@@ -106,7 +98,7 @@ def checked(solutions: Iterable[FrictionContact]) -> list[FrictionContact]:
     return contacts
 
 
-def _finite(value: Any) -> Any:
+def _finite(value: object) -> object:
     """Return plain data with None in place of infinite numbers, of which JSON has none."""
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
@@ -115,17 +107,18 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def as_text(kind: str, state: dict[str, Any], *, infinite: bool = False) -> str:
+def as_text(kind: str, state: Mapping[str, object], *, infinite: bool = False) -> str:
     """Return the state of a kind of result as JSON text, or raise a `ValueError`.
 
     JSON has no infinite numbers: they are refused, or null where they may be.
     """
     fields = []
-    for key, value in (_finite(state) if infinite else state).items():
+    for key, value in state.items():
+        plain = _finite(value) if infinite else value
         try:
-            fields.append(f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}")
+            fields.append(f"{json.dumps(key)}: {json.dumps(plain, allow_nan=False)}")
         except (TypeError, ValueError) as error:
-            message = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
+            message = f'{kind}: the value of the key "{key}" does not fit: {plain!r}'
             raise ValueError(message) from error
     return "{" + ", ".join(fields) + "}"
 
@@ -153,7 +146,9 @@ def _fitted(kind: Any, value: Any) -> Any:
 class Fields:
     """Base of what is read by its fields: NumPy makes no array of it."""
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+    def __array__(
+        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
+    ) -> npt.NDArray[np.object_]:
         """Raise a `TypeError` that names a field; arrays of objects hold the whole."""
         if dtype is not None and np.dtype(dtype) == object:
             whole = np.empty((), dtype=object)
@@ -211,9 +206,9 @@ class Result(Fields):
         return [field.name for field in fields if field.name not in cls._DERIVED]
 
     @classmethod
-    def _from_text(cls, text: str) -> Self:
-        """Return the result that JSON text of the compiled module describes."""
-        return cls(**tuples(json.loads(text)))
+    def _from_fields(cls, fields: dict[str, Any]) -> Self:
+        """Return the result that fields of the compiled module describe."""
+        return cls(**fields)
 
     def to_dict(self) -> dict[str, Any]:
         """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
@@ -232,7 +227,7 @@ class Result(Fields):
         return {name: _plain(getattr(self, name)) for name in self._names()}
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+    def from_dict(cls, data: Mapping[str, object]) -> Self:
         """Value whose named state `to_dict` returned, to the bit.
 
         Parameters
@@ -258,7 +253,7 @@ class Result(Fields):
         """Return the result with these fields, checked."""
         name = cls.__name__
         if cls._COMPILED:
-            return cls._from_text(core.checked(name, as_text(name, state, infinite=True)))
+            return cls._from_fields(core.checked(name, as_text(name, state, infinite=True)))
         return cls(**cls._checked(state))
 
     @classmethod
@@ -273,6 +268,6 @@ class Result(Fields):
                 raise ValueError(message) from error
         return fields
 
-    def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
+    def __reduce__(self) -> tuple[object, tuple[dict[str, object]]]:
         """Return the function and the state that make the result again."""
         return values.decode, (self.to_dict(),)

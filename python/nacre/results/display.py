@@ -29,6 +29,7 @@ from nacre.results.quantities import Quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -120,6 +121,14 @@ def scale_of(largest: float, unit: str) -> Scale:
     """Return the scale of numbers, whose SI unit is given, in units set or `shown_in`."""
     if (units := _units.get()) is None:
         return Scale.of(largest, unit)
+    with display_units(units):
+        return Scale.in_unit(largest, unit)
+
+
+def scale_in(largest: float, unit: str) -> Scale:
+    """Return the scale of numbers in any unit, in units set or `shown_in`."""
+    if (units := _units.get()) is None:
+        return Scale.in_unit(largest, unit)
     with display_units(units):
         return Scale.in_unit(largest, unit)
 
@@ -241,6 +250,17 @@ def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
     ]
 
 
+def loaded_parts(pressure: npt.NDArray[np.float64]) -> list[tuple[int, int]]:
+    """Return the first and last cells along x and y of the contact and a margin around it."""
+    parts = []
+    for axis, cells in enumerate(pressure.shape):
+        loaded = np.flatnonzero(pressure.any(axis=1 - axis))
+        low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
+        margin = 1 + (high - low) // 10
+        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    return parts
+
+
 def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
     """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches.
 
@@ -251,12 +271,7 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
         from matplotlib.image import imsave
     except ImportError:
         return None
-    parts = []
-    for axis, cells in enumerate(pressure.shape):
-        loaded = np.flatnonzero(pressure.any(axis=1 - axis))
-        low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
-        margin = 1 + (high - low) // 10
-        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    parts = loaded_parts(pressure)
     spans = [high - low + 1 for low, high in parts]
     # A narrow contact stays legible: its map is at least a quarter as high as wide.
     size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]
@@ -271,14 +286,20 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
     return file.getvalue()
 
 
+def figure_of(axes: Axes) -> Figure:
+    """Return the figure that axes are drawn in."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
 def drawn(draw: Callable[[], Axes]) -> bytes | None:
     """Return a PNG of the picture of which `draw` returns the axes; without Matplotlib, none."""
     try:
         from matplotlib import pyplot
     except ImportError:
         return None
-    figure, file = draw().get_figure(root=True), io.BytesIO()
-    assert figure is not None  # axes are drawn in one
+    figure, file = figure_of(draw()), io.BytesIO()
     figure.savefig(file, format="png", dpi=100)
     pyplot.close(figure)
     return file.getvalue()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -14,13 +14,15 @@ from nacre._tools.disk import PICTURES, STATE, read, replacing, write_dataset
 from nacre._tools.extras import extra
 from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol, system
+from nacre.results.display import figure_of
 from nacre.results.quantities import CONTACT, REMOVED, WITH_FRICTION, Quantity
-from nacre.results.tables import SOURCE, numbers, write_cells, write_rows
+from nacre.results.tables import SOURCE, Gridded, numbers, write_cells, write_rows
 from nacre.results.values import check_format, refusing, result_class
 from nacre.results.vtk import write_surface
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
 
@@ -32,13 +34,20 @@ ARRAYS = [
 """Names of what files hold as arrays."""
 
 
+class HasDataset(Protocol):
+    """A result with a Dataset."""
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the Dataset."""
+
+
 def dataset(
     title: str,
     table: Iterable[tuple[Quantity, str]],
-    variables: Mapping[Any, Any],
-    coordinates: Mapping[Any, Any],
-    state: Mapping[str, Any],
-    **attributes: Any,
+    variables: Mapping[str, object],
+    coordinates: Mapping[str, object],
+    state: Mapping[str, object],
+    **attributes: object,
 ) -> xarray.Dataset:
     """Return a Dataset of variables with units and words, and all else as attributes."""
     with extra("files"):
@@ -58,20 +67,20 @@ def dataset(
     return fields
 
 
-def gridded(result: Any) -> xarray.Dataset:
+def gridded(result: Gridded) -> xarray.Dataset:
     """Return the fields of a contact with coordinates and units, and the whole problem.
 
     Attributes hold main numbers, bodies, motion and options, as JSON where they are no numbers.
     """
     table, state = result._QUANTITIES, result.to_dict()
     arrays = take_arrays(state, table)
-    variables: dict[str, Any] = {}
+    variables: dict[str, tuple[tuple[str, ...], npt.NDArray[np.generic]]] = {}
     for row in table:
         if row.name in arrays or row.follows:
             values = np.asarray(arrays.get(row.name, row.of(result)))
             plain = values.astype(np.int8) if values.dtype == bool else values
             variables[row.name] = row.dims, plain
-    coordinates: dict[str, Any] = {"x": result.x, "y": result.y}
+    coordinates: dict[str, object] = {"x": result.x, "y": result.y}
     if any("component" in dims for dims, _ in variables.values()):
         coordinates["component"] = ["x", "y"]
     numbers_by_name = {
@@ -105,7 +114,7 @@ def save(path: AnyPath, writers: Mapping[str, Callable[[Path], object]]) -> Path
     return path
 
 
-def writers(result: Any, draw: Callable[[], Any]) -> dict[str, Callable[[Path], object]]:
+def writers(result: Gridded, draw: Callable[[], Axes]) -> dict[str, Callable[[Path], object]]:
     """Return the writers of a contact by their endings; `draw` returns the axes of its picture."""
     return {
         ".nc": lambda path: write_dataset(gridded(result), path),
@@ -116,7 +125,7 @@ def writers(result: Any, draw: Callable[[], Any]) -> dict[str, Callable[[Path], 
 
 
 def tabular(
-    result: Any, rows: Iterable[Iterable[Any]], **comments: Any
+    result: HasDataset, rows: Iterable[Iterable[object]], **comments: object
 ) -> dict[str, Callable[[Path], object]]:
     """Return the writers of a result whose tables have these rows, by their endings."""
     return {
@@ -125,17 +134,17 @@ def tabular(
     }
 
 
-def pictures(draw: Callable[[], Any]) -> dict[str, Callable[[Path], object]]:
+def pictures(draw: Callable[[], Axes]) -> dict[str, Callable[[Path], object]]:
     """Return the writers of a picture by their endings; `draw` returns its axes."""
 
     def write(path: Path) -> None:
         axes = draw()
         try:
-            axes.figure.savefig(path, dpi=300)
+            figure_of(axes).savefig(path, dpi=300)
         finally:
             from matplotlib import pyplot
 
-            pyplot.close(axes.figure)
+            pyplot.close(figure_of(axes))
 
     return dict.fromkeys(PICTURES, write)
 
@@ -159,7 +168,8 @@ def load(path: AnyPath) -> Any:
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
         `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
         `IndentSolution`, a `Fit` or an `OliverPharr` of `nacre.indent`, a `BearingSolution`,
-        `BearingLife`, `StressVolume`, `LifeRatio` or `Film` of `nacre.bearing`.
+        `BearingLife`, `PairSolution`, `PairLife`, `StressVolume`, `LifeRatio` or `Film` of
+        `nacre.bearing`.
 
     Raises
     ------

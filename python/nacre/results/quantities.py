@@ -51,7 +51,7 @@ class Quantity:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
 
-    def of(self, result: Any) -> Any:
+    def of(self, result: object) -> Any:
         """Return the value in a result."""
         return reduce(getattr, (self.path or self.name).split("."), result)
 
@@ -60,7 +60,7 @@ class Quantity:
         *places, name = (self.path or self.name).split(".")
         return reduce(lambda inner, place: inner[place], places, state).get(name)
 
-    def put(self, state: dict[str, Any], value: Any) -> None:
+    def put(self, state: dict[str, Any], value: object) -> None:
         """Put a value into the state of a result; `REMOVED` takes it out."""
         *places, name = (self.path or self.name).split(".")
         for place in places:
@@ -315,12 +315,34 @@ BEARING = (
 )
 """Quantities of a bearing: of its rings, and of each element."""
 BEARING_LIFE = (
-    Quantity("revolutions", "life, million revolutions", label="life"),
+    Quantity("revolutions", "life, revolutions"),
+    Quantity("hours", "life, hours"),
+    Quantity("l10", "life L10r, million revolutions"),
     Quantity("equivalent_load", "equivalent reference load", "N", label="equivalent load"),
     Quantity("capacity", "dynamic load rating", "N", label="rating"),
     Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
+    Quantity("reliability", "share of bearings that reach the life"),
+    Quantity("reliability_factor", "factor a_1"),
+    Quantity("modification_factor", "factor a_ISO", label="a_ISO"),
+    Quantity("viscosity_ratio", "viscosity ratio κ", label="viscosity ratio κ"),
+    Quantity("contamination_factor", "contamination factor e_C", label="contamination e_C"),
+    Quantity("fatigue_load_limit", "fatigue load limit C_u", "N", label="fatigue load limit"),
+    Quantity("simple_fatigue_load_limit", "C_u by simple formula", "N", label="by C_0 alone"),
 )
 """Quantities of the life of a bearing."""
+STATIC_LOAD = (
+    Quantity("rating", "static load rating C_0", "N", label="static rating"),
+    Quantity("equivalent_load", "equivalent static load P_0", "N", label="equivalent load"),
+    Quantity("safety", "static safety factor", label="static safety"),
+)
+"""Quantities of the static load of a bearing."""
+PAIR_LIFE = (
+    Quantity("revolutions", "life of both in revolutions", label="life of both"),
+    Quantity("hours", "life of both in hours"),
+    Quantity("first", "life of the first bearing in revolutions", label="first bearing"),
+    Quantity("second", "life of the second bearing in revolutions", label="second bearing"),
+)
+"""Quantities of the lives of a pair of bearings."""
 COATING = (
     Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
     Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
@@ -384,6 +406,29 @@ PARAMETERS = {
     "force_slope": "N/m",
 }
 """SI units of parameters of studies and fits, by the last part of their names."""
+LENGTHS = (
+    *(
+        "amplitude",
+        "apex",
+        "center",
+        "corners",
+        "drop",
+        "ends",
+        "heights",
+        "radii",
+        "size",
+        "width",
+    ),
+    *("counter_radius", "counter_radius_x", "counter_radius_y", "radius_x", "radius_y", "spacing"),
+    *("groove_radius", "profile_radius", "raceway_crown", "raceway_diameters", "shoulder_height"),
+    *("shift", "smoothing", "x"),
+)
+INPUTS = PARAMETERS | dict.fromkeys(LENGTHS, "m")
+INPUTS |= {"normal": "Pa/m", "tangential": "Pa/m", "bending": "Pa", "torsion": "Pa"}
+INPUTS |= {"capacity": "N", "force": "N", "rotation": "rad", "speed": "rad/s", "density": "kg/m³"}
+INPUTS |= {"yield_stress": "Pa", "residual": "Pa", "poisson": "", "exponent": "", "slope": ""}
+INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
+"""SI units of all arguments of contacts, indentations and bearings, by their names."""
 
 
 def units(

@@ -6,12 +6,12 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from nacre._tools.units import printable
-from nacre.results import display, files
+from nacre.results import display, files, report
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import AXIS, Quantity
 from nacre.results.tables import heading
@@ -34,7 +34,8 @@ class Tabular(Result, ABC, is_base=True):
         ----------
         path : str or os.PathLike
             File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, or ``.csv`` for the table.
+            ``nacre-contact[files]``, ``.csv`` for the table, or ``.html`` for a report: verdict,
+            inputs, numbers, pictures, limits and warnings on a page to print and to sign.
 
         Returns
         -------
@@ -57,13 +58,18 @@ class Tabular(Result, ABC, is_base=True):
         ...     nacre.load(summary.save(f"{folder}/summary.nc")) == summary
         True
         """
-        return files.save(path, files.tabular(self, self._file_rows(), **self._comments()))
+        writers = files.tabular(self, self._file_rows(), **self._comments())
+        return files.save(path, writers | report.writer(self))
 
     @abstractmethod
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _sections(self) -> report.Sections:
+        """Return what stands in a report."""
+
+    @abstractmethod
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         """Return the rows of the table in a ``.csv``, the heading first."""
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands above the table."""
         return {}
 
@@ -82,6 +88,11 @@ class TableResult(Tabular, Warned, is_base=True):
         """What limits the validity, and was warned of: the notes of a model."""
         return tuple(getattr(self, "notes", ()))
 
+    @property
+    def _known(self) -> list[Quantity]:
+        """Quantities that the result has: those that are None are left out."""
+        return [row for row in self._QUANTITIES if row.of(self) is not None]
+
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the numbers, with units; needs ``nacre-contact[files]``.
 
@@ -90,18 +101,24 @@ class TableResult(Tabular, Warned, is_base=True):
         xarray.Dataset
             Numbers by name.
         """
-        table = [(row, self._si(row)) for row in self._QUANTITIES]
-        variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._QUANTITIES}
+        table = [(row, self._si(row)) for row in self._known]
+        variables = {row.name: (row.dims, np.asarray(row.of(self))) for row in self._known}
         return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
-        cells: list[tuple[str, Any]] = []
-        for row in self._QUANTITIES:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
+        cells: list[tuple[str, object]] = []
+        for row in self._known:
             values = np.ravel(row.of(self)).tolist()
             names = ["x", "y"] if row.dims == AXIS else [f"{k}" for k in range(1, 1 + len(values))]
             heads = [heading(row, self, name) for name in (names if row.dims else [""])]
             cells += zip(heads, values, strict=True)
         return zip(*cells, strict=True)
+
+    def _sections(self) -> report.Sections:
+        model = [("theory", text) for text in [getattr(self, "model", "")] if text]
+        rows = [row for row in self._rows() if row not in [("model", text) for _, text in model]]
+        numbers = [*rows, *report.other_numbers(self)]
+        return report.Sections(self._TITLE, (), numbers, model=model, warnings=self.warnings)
 
     def _si(self, row: Quantity) -> str:
         """Return the SI unit of a quantity of this result; that in a line contact may differ."""
@@ -111,7 +128,7 @@ class TableResult(Tabular, Warned, is_base=True):
         """Return names and values of the quantities that are printed, with units."""
         return [
             (row.label, (display.pair if row.dims else display.number)(row.of(self), self._si(row)))
-            for row in self._QUANTITIES
+            for row in self._known
             if row.label
         ]
 
@@ -128,7 +145,7 @@ class TableResult(Tabular, Warned, is_base=True):
     def _repr_html_(self) -> str:
         return display.markup(self._rows(), verdict=self._sentences())
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         sentences = " ".join(self._sentences())
         return {"verdict": sentences} if sentences else {}
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +15,58 @@ from nacre._tools.units import symbol
 from nacre.results.quantities import VECTOR, Quantity
 
 Array = npt.NDArray[np.float64]
+Part = tuple[slice | int, slice | int]
+"""Index of rows and columns of cells."""
 
 SOURCE = f"nacre {core.__version__}"
 """What wrote a file."""
 
 
-def numbers(result: Any) -> Iterator[tuple[Quantity, Any]]:
+class HasQuantities(Protocol):
+    """A result with rows in the table of quantities."""
+
+    @property
+    def _QUANTITIES(self) -> tuple[Quantity, ...]: ...
+
+    def _si(self, row: Quantity) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the named state."""
+
+
+class Gridded(HasQuantities, Protocol):
+    """A solved contact on a grid, with friction or without."""
+
+    @property
+    def _TITLE(self) -> str: ...
+
+    @property
+    def _warnings(self) -> Sequence[str]: ...
+
+    @property
+    def grid(self) -> core.Grid:
+        """Grid."""
+
+    @property
+    def x(self) -> Array:
+        """Cell centres along x [m]."""
+
+    @property
+    def y(self) -> Array:
+        """Cell centres along y [m]."""
+
+    def _attributes(self) -> dict[str, Any]: ...
+
+
+class Peaked(Gridded, Protocol):
+    """A solved contact with a largest pressure."""
+
+    @property
+    def peak_position(self) -> tuple[float, float]:
+        """Centre of the cell of the largest pressure [m]."""
+
+
+def numbers(result: HasQuantities) -> Iterator[tuple[Quantity, Any]]:
     """Yield the numbers of a contact, those that it has, with their rows of the table.
 
     One that is NaN along both axes, as the moment of a periodic contact, is none.
@@ -31,7 +77,7 @@ def numbers(result: Any) -> Iterator[tuple[Quantity, Any]]:
             yield row, value
 
 
-def fields(result: Any) -> dict[Quantity, Array]:
+def fields(result: HasQuantities) -> dict[Quantity, Array]:
     """Return the fields of a contact that tables and pictures show, by their rows of the table."""
     state, arrays = result.to_dict(), {}
     for row in result._QUANTITIES:
@@ -40,14 +86,14 @@ def fields(result: Any) -> dict[Quantity, Array]:
     return arrays
 
 
-def heading(row: Quantity, result: Any, axis: str = "") -> str:
+def heading(row: Quantity, result: HasQuantities, axis: str = "") -> str:
     """Return the heading of a quantity, with the unit that is set."""
     unit = symbol(result._si(row))
     name = f"{row.name} {axis}".rstrip().replace("_", " ")
     return f"{name} [{unit}]" if unit else name
 
 
-def columns(result: Any) -> dict[str, Array]:
+def columns(result: HasQuantities) -> dict[str, Array]:
     """Return a column for each field of a contact, two of a vector, by their headings."""
     arrays = {}
     for row, values in fields(result).items():
@@ -57,14 +103,14 @@ def columns(result: Any) -> dict[str, Array]:
     return arrays
 
 
-def write_rows(path: Path, rows: Iterable[Iterable[Any]], **comments: Any) -> None:
+def write_rows(path: Path, rows: Iterable[Iterable[object]], **comments: object) -> None:
     """Write rows, the heading first, after comments."""
     with path.open("w", newline="", encoding="utf-8") as file:
         file.writelines(f"# {name}: {value}\n" for name, value in comments.items())
         csv.writer(file).writerows(rows)
 
 
-def write_sections(result: Any, path: Path) -> None:
+def write_sections(result: Peaked, path: Path) -> None:
     """Write the sections along x and along y through the largest pressure."""
     i, j = (
         int(np.argmin(np.abs(side - place)))
@@ -73,7 +119,7 @@ def write_sections(result: Any, path: Path) -> None:
     _write(result, path, {"x": (slice(None), j), "y": (i, slice(None))})
 
 
-def write_cells(result: Any, path: Path) -> None:
+def write_cells(result: Gridded, path: Path) -> None:
     """Write every cell, after a block of comments with the numbers."""
     grid = result.grid
     comments = {
@@ -91,13 +137,13 @@ def write_cells(result: Any, path: Path) -> None:
     _write(result, path, {"": (slice(None), slice(None))}, **comments)
 
 
-def _write(result: Any, path: Path, parts: Mapping[str, Any], **comments: Any) -> None:
+def _write(result: Gridded, path: Path, parts: Mapping[str, Part], **comments: object) -> None:
     """Write parts of the grid, each with its name in a column of its own if it has one."""
     x, y = np.meshgrid(result.x, result.y, indexing="ij")
     positions = {f"{name} [{symbol('m')}]": side for name, side in (("x", x), ("y", y))}
     table = positions | columns(result)
 
-    def rows() -> Iterator[list[Any]]:
+    def rows() -> Iterator[list[object]]:
         for name, part in parts.items():
             values = (np.ravel(column[part]).tolist() for column in table.values())
             yield from ([name, *row] if name else list(row) for row in zip(*values, strict=True))
@@ -106,5 +152,5 @@ def _write(result: Any, path: Path, parts: Mapping[str, Any], **comments: Any) -
     write_rows(path, [head, *rows()], **comments)
 
 
-def _plain(value: Any) -> str:
+def _plain(value: npt.ArrayLike) -> str:
     return " ".join(str(number) for number in np.ravel(value).tolist())

@@ -12,7 +12,7 @@ import functools
 import hashlib
 import inspect
 import operator
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
@@ -41,7 +41,7 @@ FIELDS: dict[type, tuple[str, ...]] = {
     )
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
-CONSTRUCTORS: dict[str, Any] = {
+CONSTRUCTORS: dict[str, Callable[..., object]] = {
     f"{kind.__name__}.{name}": getattr(kind, name)
     for kind in (core.Tip, core.Adhesion)
     for name, member in vars(kind).items()
@@ -50,17 +50,22 @@ CONSTRUCTORS: dict[str, Any] = {
 """Static methods that make tips and adhesion, by their names in data."""
 
 
-def _stored(make: Any) -> tuple[str, ...]:
+def _stored(make: Callable[..., object]) -> tuple[str, ...]:
     """Return the names of the arguments that are stored: a half angle is stored as its slope."""
     return tuple(name for name in inspect.signature(make).parameters if name != "half_angle")
 
 
-CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
+CALLS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
     **{name: (make, _stored(make)) for name, make in CONSTRUCTORS.items()},
-    "Response": (core.Response._of, ("values", "local")),
-    "Grid.line": (core.Grid.line, ("cells", "width", "center")),
-    "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
+    **{
+        name: (make, _stored(make))
+        for name, make in (
+            ("Response", core.Response._of),
+            ("Grid.line", core.Grid.line),
+            ("Grid", core.Grid),
+        )
+    },
 }
 """Callables by their names in data, each with its arguments."""
 LATER = {
@@ -86,6 +91,8 @@ ELSEWHERE = {
     "BearingSolution": "nacre.bearing",
     "BearingLife": "nacre.bearing",
     "BearingReport": "nacre.bearing",
+    "PairSolution": "nacre.bearing",
+    "PairLife": "nacre.bearing",
     "StressVolume": "nacre.bearing",
     "LifeRatio": "nacre.bearing",
     "Film": "nacre.bearing",
@@ -99,7 +106,7 @@ START = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""
 
 
-def encode(value: Any, *, digest: bool = False) -> Any:
+def encode(value: object, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
     With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure or
@@ -107,7 +114,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
     nacre's nor plain is a `TypeError`.
     """
 
-    def of(value: Any) -> Any:
+    def of(value: Any) -> object:
         if value is None or isinstance(value, bool | str):
             return value
         if isinstance(value, int | np.integer):
@@ -144,7 +151,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return as_call(value, value._arguments())
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
-    def as_call(value: Any, arguments: dict[str, Any]) -> dict[str, Any]:
+    def as_call(value: Any, arguments: dict[str, Any]) -> dict[str, object]:
         if "parts" in arguments:
             return {"sum": of(arguments["parts"])}
         if "." in arguments:
@@ -163,7 +170,7 @@ def heading(kind: str) -> dict[str, Any]:
 
 
 def checked_state(
-    data: Mapping[str, Any], kind: str, names: Collection[str], later: Collection[str] = ()
+    data: Mapping[str, object], kind: str, names: Collection[str], later: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return the fields of a result's plain data, which must be of this kind and have these names.
 
@@ -185,7 +192,7 @@ def checked_state(
 
 
 def with_names(
-    place: str, data: Mapping[str, Any], names: Collection[str], later: Collection[str] = ()
+    place: str, data: Mapping[str, object], names: Collection[str], later: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return data with these names and no others; those of `later` may be missing, and are None."""
     state = dict.fromkeys(later) | dict(data)
@@ -217,7 +224,7 @@ def refusing(kind: str) -> Iterator[None]:
         raise ValueError(f"the data do not describe a {kind}: {reason}") from error
 
 
-def decode(data: Any) -> Any:
+def decode(data: object) -> Any:
     """Return the value that `encode` made into `data`; lists become tuples.
 
     Raises `ValueError` where a key is missing or unknown, or holds a value that does not fit.
@@ -228,7 +235,7 @@ def decode(data: Any) -> Any:
         raise ValueError("the data must not be nested this deeply") from error
 
 
-def _decoded(data: Any) -> Any:
+def _decoded(data: object) -> Any:
     if isinstance(data, list):
         return tuple(_decoded(item) for item in data)
     if data == "rigid":
@@ -263,7 +270,9 @@ def result_class(kind: object) -> Any:
     return RESULTS[kind]
 
 
-def _construct(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
+def _construct(
+    name: str, make: Callable[..., object], expected: tuple[str, ...], content: object
+) -> object:
     """Call `make` with named arguments, all of them and no others."""
     if not isinstance(content, dict):
         raise ValueError(f"{name} must be a dict of named fields, got {content!r}")
@@ -279,18 +288,18 @@ def _construct(name: str, make: Any, expected: tuple[str, ...], content: Any) ->
         raise ValueError(f"{name}: {error}") from error
 
 
-def _sum(content: Any) -> tuple[core.Shape, ...]:
+def _sum(content: object) -> tuple[core.Shape, ...]:
     """Return the shapes of a sum, one at least."""
     if not isinstance(content, list) or not content:
         raise ValueError(f"sum must be a list of one shape or more, got {content!r}")
-    shapes: tuple[Any, ...] = _decoded(content)
+    shapes: tuple[core.Shape, ...] = _decoded(content)
     for shape in shapes:
         if not isinstance(shape, core.Shape):
             raise ValueError(f"sum must hold shapes, got {shape!r}")
     return shapes
 
 
-def _shifted(content: Any) -> tuple[Any, ...]:
+def _shifted(content: object) -> tuple[core.Shape, float, float]:
     """Return a shape and its shifts along x and y."""
     if not isinstance(content, list) or len(content) != 3:
         raise ValueError(f"shifted must be a list of a shape and two numbers, got {content!r}")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.extras import extra
 from nacre.results.quantities import VECTOR
-from nacre.results.tables import fields
+from nacre.results.tables import Gridded, fields
 
 Array = npt.NDArray[np.float64]
 
@@ -23,7 +23,39 @@ TOLERANCE = 1e-12
 """Relative distance below which a depth lies on an interface, as in `Solution.stress`."""
 
 
-def write_surface(result: Any, path: Path) -> None:
+class StressPlan(Protocol):
+    """A plan of the stress in a body."""
+
+    @property
+    def body(self) -> core.HalfSpace:
+        """Body."""
+
+    @property
+    def stress(self) -> Callable[..., Any]:
+        """Function of depths and options that evaluates stresses."""
+
+
+class Stressed(Protocol):
+    """A solved contact whose stresses can be evaluated."""
+
+    @property
+    def x(self) -> Array:
+        """Cell centres along x [m]."""
+
+    @property
+    def y(self) -> Array:
+        """Cell centres along y [m]."""
+
+    @property
+    def pressure(self) -> Array:
+        """Pressure [Pa]."""
+
+    @property
+    def stress_plan(self) -> Callable[..., StressPlan]:
+        """Function of options that makes a plan of the stress."""
+
+
+def write_surface(result: Gridded, path: Path) -> None:
     """Write the fields of a contact as the cells of a plane."""
     with extra("files"):
         from pyevtk.hl import gridToVTK
@@ -34,11 +66,11 @@ def write_surface(result: Any, path: Path) -> None:
         for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
     ]
 
-    def cell_data(field: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def cell_data(field: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
         plain = field.astype(np.int8) if field.dtype == bool else field
         return np.asfortranarray(plain[..., np.newaxis])
 
-    cells: dict[str, Any] = {}
+    cells: dict[str, npt.NDArray[np.generic] | tuple[npt.NDArray[np.generic], ...]] = {}
     for row, values in fields(result).items():
         if row.dims == VECTOR:
             parts = [cell_data(part) for part in values]
@@ -49,7 +81,7 @@ def write_surface(result: Any, path: Path) -> None:
 
 
 def write_stress(
-    solution: Any, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+    solution: Stressed, path: Path, depths: npt.ArrayLike, options: Mapping[str, object]
 ) -> None:
     """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
 
@@ -59,12 +91,12 @@ def write_stress(
         from pyevtk.hl import gridToVTK
 
     if unknown := set(options) - set(OPTIONS):
-        known = ", ".join(OPTIONS)
-        raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
+        names = ", ".join(OPTIONS)
+        raise TypeError(f"options must be among {names}, got {', '.join(sorted(unknown))}")
     depths = core.real_array("depths", depths)
     z, planes = _planes(solution, np.atleast_1d(depths), options)
     shape = (*solution.pressure.shape, z.size)
-    points: dict[str, Any] = {
+    points: dict[str, Array | tuple[Array, ...]] = {
         name: np.asfortranarray(np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape))
         for name in ("pressure", "gap")
     }
@@ -76,7 +108,7 @@ def write_stress(
 
 
 def _planes(
-    solution: Any, depths: Array, options: Mapping[str, Any]
+    solution: Stressed, depths: Array, options: Mapping[str, object]
 ) -> tuple[Array, dict[str, Array]]:
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():

@@ -16,6 +16,7 @@ from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
+from nacre._tools.arguments import keywords_of
 from nacre._tools.extras import extra
 from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import case_progress
@@ -44,31 +45,26 @@ if TYPE_CHECKING:
 
     from nacre.contact.friction import FrictionSolution
 
-Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+Case = Mapping[str, object] | Callable[..., Mapping[str, object]]
 
 ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
-INDENT = frozenset("body tip counterbody adhesion load approach radius branch control".split())
-"""Arguments of `nacre.indent.solve`."""
-BEARING = frozenset(
-    "bearing force displacement moment tilt rotation speed rotating model cells tolerance "
-    "max_iterations threads".split()
-)
-"""Arguments of the solve of a bearing, and the bearing."""
-
-FATIGUE_KEYWORDS = frozenset("criteria shear_yield friction direction residual body x rule".split())
-"""Arguments of `nacre.fatigue.assess` that studies take."""
+NOTES = frozenset(("progress", "check"))
+"""Keywords of what a solve says, which studies say themselves."""
+STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads", "yield_stress", "strength"}
+FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
+"""Keywords of stresses and fatigue that studies take."""
 
 
 def sweep(
     case: Case,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
     *,
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
-    stress: Mapping[str, Any] | None = None,
-    fatigue: Mapping[str, Any] | None = None,
+    stress: Mapping[str, object] | None = None,
+    fatigue: Mapping[str, object] | None = None,
     store: str | os.PathLike[str] | None = None,
     version: str | int | None = None,
     executor: Executor | None = None,
@@ -197,13 +193,13 @@ def sweep(
         raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in checked_outputs.values())
     stress_options = {**(stress or {})} if stresses else {}
-    if unknown := set(stress_options) - {"body", "friction", "direction", "residual", "refine"}:
+    if unknown := set(stress_options) - STRESS:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
     needs_fatigue = any(
         isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in checked_outputs.values()
     )
     fatigue_options = {**(fatigue or {})} if needs_fatigue else {}
-    if unknown := set(fatigue_options) - FATIGUE_KEYWORDS:
+    if unknown := set(fatigue_options) - FATIGUE:
         raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
     if not isinstance(version, str | None):
         try:
@@ -222,14 +218,14 @@ def sweep(
     journal = Journal(path.with_suffix(".journal") if path else None)
     with journal, _quiet():
         keys: list[str] = []
-        tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
+        tasks: dict[str, tuple[dict[str, object], dict[str, object]]] = {}
         failures: dict[str, Record] = {}
         for point in points:
             arguments, failure = _describe(case, point, stress_options)
             key = key_of(arguments if failure is None else {"failed": point}, identity)
             keys.append(key)
-            known = journal.records.get(key)
-            if known is not None and not (again or (retry and "error" in known)):
+            record = journal.records.get(key)
+            if record is not None and not (again or (retry and "error" in record)):
                 continue
             if failure is not None:
                 failures[key] = {"key": key, "parameters": _readable(point), "error": failure}
@@ -284,14 +280,19 @@ def _describe(
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
     if "tip" in arguments:
-        if unknown := set(arguments) - INDENT:
+        from nacre.indent import solution as indentation
+
+        if unknown := arguments.keys() - inspect.signature(indentation.solve).parameters:
             raise TypeError(
                 f"case must give arguments of nacre.indent.solve beside a tip, "
                 f"got {sorted(unknown)}"
             )
         return arguments, None
     if "bearing" in arguments:
-        if unknown := set(arguments) - BEARING:
+        from nacre.bearing.bearings import Solvable
+
+        allowed = {"bearing", *keywords_of(Solvable.solve)} - NOTES
+        if unknown := arguments.keys() - allowed:
             raise TypeError(
                 f"case must give keywords of the solve of a bearing beside it, "
                 f"got {sorted(unknown)}"
@@ -307,7 +308,7 @@ def _describe(
     return {"threads": 1, **arguments}, None
 
 
-def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
+def _arguments(case: Case, point: Mapping[str, object]) -> dict[str, object]:
     """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
     if not isinstance(case, Mapping):
         keywords = case(**point)
@@ -340,7 +341,7 @@ def _split_paths(
     return arguments, paths
 
 
-def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
+def _holder(arguments: Mapping[str, object], path: str) -> dict[str, object]:
     """Return the argument that holds the number at a path; a bearing may have None there."""
     if path.startswith("bearing."):
         with suppress(LookupError):
@@ -349,7 +350,7 @@ def _holder(arguments: Mapping[str, Any], path: str) -> dict[str, Any]:
     return holder(arguments, path, "parameters", "the case")
 
 
-def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -> None:
+def _check_paths(case: Mapping[str, object], points: Sequence[Mapping[str, object]]) -> None:
     """Raise a `ValueError` if a path leads to a number in none of the cases."""
     for path in _split_paths(case, points[0])[1]:
         wrong: ValueError | None = None
@@ -364,11 +365,11 @@ def _check_paths(case: Mapping[str, Any], points: Sequence[Mapping[str, Any]]) -
             fields = arguments.get("bearing")
             unset = [k for k, v in fields.items() if v is None] if isinstance(fields, dict) else []
             names = [*numbers(arguments), *(f"bearing.{name}" for name in unset)]
-            known = get_close_matches(path, names, cutoff=0.0)
-            raise ValueError(f"{wrong}; the nearest are {', '.join(known)}")
+            nearest = get_close_matches(path, names, cutoff=0.0)
+            raise ValueError(f"{wrong}; the nearest are {', '.join(nearest)}")
 
 
-def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:
+def _case_kind(case: Case, points: Sequence[Mapping[str, object]]) -> CaseKind:
     """Return what the cases of a study are, as the first one that is a case."""
     names: set[str] = set()
     if isinstance(case, Mapping):
@@ -381,15 +382,15 @@ def _case_kind(case: Case, points: Sequence[Mapping[str, Any]]) -> CaseKind:
     return "indent" if "tip" in names else "bearing" if "bearing" in names else "contact"
 
 
-def _readable(point: Mapping[str, Any]) -> dict[str, Any]:
+def _readable(point: Mapping[str, object]) -> dict[str, object]:
     """Return parameters as readable values for the journal."""
     return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
 
 
 def _run(
-    tasks: Mapping[str, dict[str, Any]],
+    tasks: Mapping[str, dict[str, object]],
     outputs: Mapping[str, Output],
-    options: tuple[Mapping[str, Any], Mapping[str, Any]],
+    options: tuple[Mapping[str, object], Mapping[str, object]],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     import xarray
 
 
-def layout(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
+def layout(parameters: Mapping[str, object]) -> tuple[xarray.Dataset, list[dict[str, object]]]:
     """Return the coordinates of a study, and the parameters of each of its cases in order."""
     import xarray
 
-    coordinates: dict[str, Any] = {}
-    values: dict[str, list[Any]] = {}
+    coordinates: dict[str, object] = {}
+    values: dict[str, list[object]] = {}
     places: list[xarray.DataArray] = []
     for name, parameter in parameters.items():
         if isinstance(parameter, xarray.DataArray):
@@ -45,7 +45,7 @@ def layout(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str
         else:
             if isinstance(parameter, str) or not isinstance(parameter, Iterable):
                 raise TypeError(f"{name} must be a sequence of values, got {parameter!r}")
-            labels: list[Any]
+            labels: list[object]
             if isinstance(parameter, Mapping):
                 labels, values[name] = [str(label) for label in parameter], list(parameter.values())
             else:
@@ -101,7 +101,7 @@ def assemble(
         data = np.full((len(records), *inner), np.nan)
         for row, array in enumerate(arrays):
             if array is not None:
-                place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
+                place: tuple[int | slice, ...] = (row, *(slice(0, n) for n in array.shape))
                 data[place] = array
         extra_dims = ("axis",) if output in axes else tuple(f"{name}_{k}" for k in range(rank))
         if output in axes:

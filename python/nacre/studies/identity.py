@@ -13,7 +13,7 @@ import json
 import pickle
 import types
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,16 +24,16 @@ from nacre.results.values import encode
 class Identity(NamedTuple):
     """Identity of the outputs of a study."""
 
-    data: dict[str, Any]
+    data: dict[str, object]
     """Plain data that differs between outputs."""
     unknown: list[str]
     """Descriptions of what the data cannot tell apart."""
 
 
 def identity_of(
-    outputs: Mapping[str, Any],
-    stress: Mapping[str, Any],
-    fatigue: Mapping[str, Any],
+    outputs: Mapping[str, object],
+    stress: Mapping[str, object],
+    fatigue: Mapping[str, object],
     version: str | int | None = None,
 ) -> Identity:
     """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
@@ -42,7 +42,7 @@ def identity_of(
         name: output if isinstance(output, str) else _part(output, name, unknown)
         for name, output in outputs.items()
     }
-    data: dict[str, Any] = {"outputs": outputs_data}
+    data: dict[str, object] = {"outputs": outputs_data}
     if stress:
         data["stress"] = _part(dict(stress), "stress", unknown)
     if fatigue:
@@ -52,7 +52,7 @@ def identity_of(
     return Identity(data, unknown)
 
 
-def key_of(arguments: Mapping[str, Any], identity: Identity) -> str:
+def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
     """Return a key that differs between cases, and between the outputs that are kept."""
     # Threads change no bit of a solution.
     physical = {name: value for name, value in arguments.items() if name != "threads"}
@@ -60,12 +60,12 @@ def key_of(arguments: Mapping[str, Any], identity: Identity) -> str:
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
-def _part(value: Any, place: str, unknown: list[str], inside: tuple[Any, ...] = ()) -> Any:
+def _part(value: object, place: str, unknown: list[str], inside: tuple[object, ...] = ()) -> object:
     """Return plain data for a function or a value, which `place` names; add to `unknown`."""
     if any(value is outer for outer in inside):
         return "recursion"
 
-    def of(part: Any, name: str = "") -> Any:
+    def of(part: object, name: str = "") -> object:
         return _part(part, place + name, unknown, (*inside, value))
 
     if isinstance(value, list | tuple):

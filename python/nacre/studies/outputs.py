@@ -121,14 +121,14 @@ def outputs_by_name(
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
         f"({', '.join(OF_BEARING)})",
     }
-    known: dict[CaseKind, set[str]] = {
+    names_by_kind: dict[CaseKind, set[str]] = {
         "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
         "indent": {*OF_INDENT},
         "bearing": {*OF_BEARING},
     }
     kinds: list[CaseKind] = ["indent", "contact", "bearing"] if kind is None else [kind]
     for name, output in items:
-        if not (any(output in known[kind] for kind in kinds) or callable(output)):
+        if not (any(output in names_by_kind[kind] for kind in kinds) or callable(output)):
             all_choices = ", ".join(choices[kind] for kind in kinds)
             raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
         if name in ("error", "warnings"):
@@ -147,7 +147,7 @@ def plain(
     own, words = (
         (OF_INDENT, "an indentation") if hasattr(solution, "tip") else (OF_BEARING, "a bearing")
     )
-    numbers: dict[str, Any] = {}
+    numbers: dict[str, object] = {}
     for name, output in outputs.items():
         if isinstance(output, str) and output not in own:
             raise ValueError(f"the output {output} is not one of {words}")
@@ -241,7 +241,7 @@ def rolls(solution: FrictionSolution) -> bool:
 
 
 def check_direction(
-    arguments: Mapping[str, Any], friction: float = 0.0, direction: object = None, **_: object
+    arguments: Mapping[str, object], friction: float = 0.0, direction: object = None, **_: object
 ) -> None:
     """Raise a `ValueError` before a solve whose stresses need a direction of friction."""
     grid, shape = arguments.get("grid"), arguments.get("shape")

@@ -310,9 +310,9 @@ class Text:
     def counts(self) -> tuple[int, int] | None:
         """Return the numbers of points along x and y that the head gives."""
         sizes = []
-        for known in COUNTS:
-            texts = [values[0] for name, values in self.head.items() if known.fullmatch(name)]
-            texts += [value for name, value in self.comments.items() if known.fullmatch(name)]
+        for pattern in COUNTS:
+            texts = [values[0] for name, values in self.head.items() if pattern.fullmatch(name)]
+            texts += [value for name, value in self.comments.items() if pattern.fullmatch(name)]
             numbers = {int(float(text)) for text in texts if NUMBER.fullmatch(text)}
             sizes.append(numbers.pop() if len(numbers) == 1 else 0)
         return (sizes[0], sizes[1]) if all(sizes) else None
@@ -421,8 +421,8 @@ class Text:
 
 def metres(unit: str) -> float | None:
     """Return the length of a unit [m], None where it is no length."""
-    known = unit_of(unit)
-    return METRES.get(unit) or (known[1] if known and known[0] == "m" else None)
+    size = unit_of(unit)
+    return METRES.get(unit) or (size[1] if size and size[0] == "m" else None)
 
 
 def without_sentinels(heights: Array) -> Array:
@@ -430,12 +430,12 @@ def without_sentinels(heights: Array) -> Array:
     if not {*extremes(heights)} & {*SENTINELS}:
         return heights
     measured = np.isfinite(heights)
-    known = measured & np.isin(heights, SENTINELS)
-    rest = heights[measured & ~known]
-    if not known.any() or rest.size < LEAST_MEASURED * heights.size:
+    sentinels = measured & np.isin(heights, SENTINELS)
+    rest = heights[measured & ~sentinels]
+    if not sentinels.any() or rest.size < LEAST_MEASURED * heights.size:
         return heights
     away = np.maximum(rest.min() - heights, heights - rest.max())
-    return np.where(known & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
+    return np.where(sentinels & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
 
 
 def extremes(heights: Array) -> tuple[float, float]:
@@ -464,9 +464,9 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
     if width < 3:
         return None
     names = first_words(headings)
-    known = [[k for k, name in enumerate(names) if name in words] for words in AXES]
-    if all(len(hits) == 1 for hits in known):
-        return tuple(hits[0] for hits in known)
+    columns = [[k for k, name in enumerate(names) if name in words] for words in AXES]
+    if all(len(hits) == 1 for hits in columns):
+        return tuple(hits[0] for hits in columns)
     for pair in ((0, 1), (1, 2)):
         if _are_places(values[:, pair]):
             rest = [k for k in range(width) if k not in pair]

@@ -9,13 +9,14 @@ import warnings
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
 from nacre._tools.text import is_text
+from nacre._tools.typing import Topography
 from nacre.surfaces.heights import Heights, Text
 
 Array = npt.NDArray[np.float64]
@@ -62,7 +63,7 @@ def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str 
 def _first(
     path: Path,
     channel: str | int | None,
-    take: Callable[[Any], Content],
+    take: Callable[[Reader], Content],
     table: Callable[[bool], Content | None],
 ) -> Content:
     """Return what the first reader of SurfaceTopography has that knows the file.
@@ -179,7 +180,26 @@ def _mended(path: Path) -> str | io.BytesIO:
     return str(path)
 
 
-def _heights(reader: Any, channel: str | int | None) -> Heights:
+class Channel(Protocol):
+    """A channel of SurfaceTopography."""
+
+    name: str
+    dim: int
+    physical_sizes: Sequence[float] | None
+    nb_grid_pts: Sequence[int]
+
+    def topography(self, **sizes: tuple[float, ...]) -> Any:
+        """Return a map or a line."""
+
+
+class Reader(Protocol):
+    """A reader of SurfaceTopography."""
+
+    channels: Sequence[Channel]
+    default_channel: Channel
+
+
+def _heights(reader: Reader, channel: str | int | None) -> Heights:
     """Return the heights of a channel, which must be a map."""
     maps = [one for one in reader.channels if one.dim == 2]
     lines = [one for one in reader.channels if one.dim == 1]
@@ -200,16 +220,16 @@ def _heights(reader: Any, channel: str | int | None) -> Heights:
     return heights._replace(spacing=None) if lacking else heights
 
 
-def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | None]:
+def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a channel, which must be a line, and their unit."""
     lines = [one for one in reader.channels if one.dim == 1]
     if not lines:
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
-    known = {one.name for one in lines}
+    line_names = {one.name for one in lines}
     default = reader.default_channel
     chosen = lines[0] if channel is None and default not in lines else _channel(reader, channel)
     if chosen.dim != 1:
-        raise Unfound(f"height must be one of the channels {', '.join(sorted(known))}")
+        raise Unfound(f"height must be one of the channels {', '.join(sorted(line_names))}")
     line = chosen.topography()
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
@@ -218,14 +238,14 @@ def _line(reader: Any, channel: str | int | None) -> tuple[Array, Array, str | N
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
 
-def _others(reader: Any) -> str:
+def _others(reader: object) -> str:
     """Return the titles of channels of Gwyddion that hold no heights, with their units."""
     metadata = getattr(reader, "_metadata", {})
     fields = [name for name in metadata if re.fullmatch(r"/\d+/data", str(name))]
     return ", ".join(repr(metadata.get(f"{name}/title") or name) for name in fields)
 
 
-def of_topography(surface: Any) -> Heights:
+def of_topography(surface: Topography) -> Heights:
     """Return the heights of a topography of SurfaceTopography, in its unit.
 
     Anything with ``dim``, ``heights()``, ``physical_sizes`` and ``unit`` will do.
@@ -244,7 +264,7 @@ def of_topography(surface: Any) -> Heights:
     return Heights(heights, spacing, unit, False)
 
 
-def _channel(reader: Any, choice: str | int | None) -> Any:
+def _channel(reader: Reader, choice: str | int | None) -> Channel:
     channels = list(reader.channels)
     names = [channel.name for channel in channels]
     if choice is None:
@@ -254,5 +274,5 @@ def _channel(reader: Any, choice: str | int | None) -> Any:
             return channels[names.index(choice)]
     elif 0 <= choice < len(channels):
         return channels[choice]
-    known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
-    raise Unfound(f"channel must be one of {known}")
+    choices = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
+    raise Unfound(f"channel must be one of {choices}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -127,7 +127,7 @@ def read_map(
         raise ValueError(f"{name}: {error}") from error
 
 
-def _read_heights(path: Any, channel: str | int | None) -> tuple[str, Heights]:
+def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tuple[str, Heights]:
     """Return a name for messages, and the heights."""
     if not isinstance(path, str | os.PathLike):
         if not hasattr(path, "heights"):

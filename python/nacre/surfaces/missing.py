@@ -133,9 +133,9 @@ def _sums(index: Indices, terms: Array, count: int) -> Array:
 
 
 def _finest(
-    missing: npt.NDArray[np.bool_], known: Array, wraps: tuple[bool, bool]
+    missing: npt.NDArray[np.bool_], measured: Array, wraps: tuple[bool, bool]
 ) -> tuple[_Level, Array]:
-    """Return the level of missing points, and the sum of known neighbours at each of them."""
+    """Return the level of missing points, and the sum of measured neighbours at each of them."""
     number = np.where(missing, np.cumsum(missing).reshape(missing.shape) - 1, -1)
     count = int(missing.sum())
     degrees, sums = np.zeros(count), np.zeros(count)
@@ -144,7 +144,7 @@ def _finest(
         here = np.arange(missing.shape[axis] - (not wrap))
         there = (here + 1) % missing.shape[axis]
         ends = number.take(here, axis), number.take(there, axis)
-        heights = known.take(here, axis), known.take(there, axis)
+        heights = measured.take(here, axis), measured.take(there, axis)
         for end, height in zip(ends, heights[::-1], strict=True):
             degrees += np.bincount(end[end >= 0], minlength=count)
             sums += _sums(end[end >= 0], height[end >= 0], count)

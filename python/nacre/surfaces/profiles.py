@@ -147,7 +147,7 @@ def _table(
             f"more, got {table.width} of {len(values)}"
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
-    first = _known_column(words, AXES[0])
+    first = _word_column(words, AXES[0])
     if first is None:
         rest = [k for k in range(counted, table.width) if is_strict(values[:, k])]
         timed = [k for k in rest if words and words[k] in TIMES | NUMBERED]
@@ -155,11 +155,11 @@ def _table(
         is_clear = table.width - counted == 2 or len(rest) < 2
         first = (rest[0] if timed and rest else counted) if is_clear else None
     place = _column(path, table, "x", x, first)
-    is_drop = drop is not None or (height is None and _known_column(words, DROPS) is not None)
+    is_drop = drop is not None or (height is None and _word_column(words, DROPS) is not None)
     if is_drop:
-        other = _column(path, table, "drop", drop, _known_column(words, DROPS))
+        other = _column(path, table, "drop", drop, _word_column(words, DROPS))
     else:
-        other = _column(path, table, "height", height, _known_column(words, AXES[2]))
+        other = _column(path, table, "height", height, _word_column(words, AXES[2]))
     sizes = _sizes(path, table, unit, place, other)
     heights = without_sentinels(values[:, other]) * sizes[1]
     return values[:, place] * sizes[0], heights if is_drop else _below(heights)
@@ -171,23 +171,23 @@ def _sizes(
     """Return the units of positions and of heights [m]."""
     lengths = unit if isinstance(unit, tuple) else (unit, unit)
     usual = "mm" if path.suffix.lower() in MINIPROF else None
-    known = [
+    units = [
         keyword_unit or (table.headings[column].unit if table.headings else None) or usual
         for column, keyword_unit in ((place, lengths[0]), (other, lengths[1]))
     ]
     heading = table.headings[other].heading if table.headings else ""
-    if known[1] is None and (bracket := IN_BRACKETS.search(heading)):
-        known[1] = bracket[1]
-    if known[0] is not None and known[1] is None and metres(known[0]) is not None:
-        known[1] = known[0]
+    if units[1] is None and (bracket := IN_BRACKETS.search(heading)):
+        units[1] = bracket[1]
+    if units[0] is not None and units[1] is None and metres(units[0]) is not None:
+        units[1] = units[0]
         warnings.warn(
             f"the heights of {str(path)!r} name no unit, and were read in that of the positions, "
-            f"{known[0]}: unit= can be a pair",
+            f"{units[0]}: unit= can be a pair",
             core.NacreWarning,
             stacklevel=5,
         )
     sizes = []
-    for name, unit_name in zip(("x", "heights"), known, strict=True):
+    for name, unit_name in zip(("x", "heights"), units, strict=True):
         size = metres(unit_name or "")
         if size is None:
             got = "names none" if unit_name is None else f"got {unit_name!r}"
@@ -262,9 +262,9 @@ def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
     return places, drops
 
 
-def _known_column(words: Sequence[str], known: frozenset[str]) -> int | None:
-    """Return the only column whose name begins with a known word."""
-    hits = [k for k, word in enumerate(words) if word in known]
+def _word_column(words: Sequence[str], headings: frozenset[str]) -> int | None:
+    """Return the only column whose heading begins with one of some words."""
+    hits = [k for k, word in enumerate(words) if word in headings]
     return hits[0] if len(hits) == 1 else None
 
 

@@ -173,7 +173,7 @@ impl fmt::Display for Warning {
             ),
             Self::FreeEnd => write!(
                 f,
-                "the contact reaches the free end of one body along x, and the other goes on: the pressure \
+                "the contact reaches the free end of one body along x, beyond which the other extends: the pressure \
                  there has no limit, and grows slowly as the grid is refined"
             ),
             Self::CoatedEnd => write!(

@@ -6,8 +6,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::python::arguments::{read_only, real_array, word, word_of};
+use crate::python::arguments::{read_only, real_array, word};
 use crate::python::bodies::PyHalfSpace;
+use crate::python::data::Plain;
 use crate::stress::Stress;
 
 /// Names of the components, in the order of [`Stress`].
@@ -36,7 +37,7 @@ pub(super) fn fields(
     fields.set_item("y", read_only(py, y)?)?;
     fields.set_item("axes", PyTuple::new(py, kept.map(|axis| AXES[axis]).collect::<Vec<_>>())?)?;
     fields.set_item("body", PyHalfSpace(body))?;
-    fields.set_item("side", word_of(&side))?;
+    fields.set_item("side", Plain(side))?;
     fields.set_item("friction", (friction[0], friction[1]))?;
     fields.set_item("uncertainty", uncertainty.map(|errors| read_only(py, errors)).transpose()?)?;
     fields.set_item("components", by_name(py, COMPONENTS, components)?)?;

@@ -502,6 +502,20 @@ mod tests {
         check(&cubic, 3);
     }
 
+    /// Slopes equal differences of fourth order, which are exact for cubics.
+    #[test]
+    fn slopes_are_those_of_the_polynomial() {
+        let polynomial =
+            SquaredPressure([0.3, -1.1, 0.7, 0.45, -0.8, 0.25, 0.13, -0.21, 0.34, -0.17]);
+        for [u, v] in [[0.0, 0.0], [0.4, -0.3], [-1.2, 0.8]] {
+            let slope =
+                |f: &dyn Fn(f64) -> f64| (8.0 * (f(0.5) - f(-0.5)) - f(1.0) + f(-1.0)) / 6.0;
+            let [along, across] = polynomial.gradient([u, v]);
+            assert!((along - slope(&|h| polynomial.at(u + h, v))).abs() < 1e-13);
+            assert!((across - slope(&|h| polynomial.at(u, v + h))).abs() < 1e-13);
+        }
+    }
+
     #[test]
     fn sums_over_rectangles_are_those_of_their_cells() {
         let shape @ [nx, ny] = [5, 7];

@@ -68,7 +68,7 @@ fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
     let solution = straight([&whole, &free], &Motion::load(LOAD))?;
     assert_eq!(solution.report.warnings, [Warning::FreeEnd]);
     let message = solution.report.warnings[0].to_string();
-    let words = "the free end of one body along x, and the other goes on";
+    let words = "the free end of one body along x, beyond which the other extends";
     assert!(message.contains(words), "{message}");
     let half_space = straight([&whole, &whole], &Motion::load(LOAD))?;
     assert_eq!(half_space.report.warnings, [Warning::SharpEnd { axis: 0 }]);

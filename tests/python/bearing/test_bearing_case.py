@@ -210,6 +210,7 @@ def test_each_number_of_a_case_has_a_unit() -> None:
     plain = {
         *("count", "rows", "poisson", "rating_factor", "osculation", "contact_angle", "tolerance"),
         *("max_iterations", "cells", "tilt", "rotation", "speed", "end_factor", "k1", "k2"),
+        *("film_ratio", "viscosity_ratio", "contamination", "reliability", "share"),
     }
 
     def numbers(table: Any, path: tuple[str, ...]) -> set[str]:
@@ -273,7 +274,7 @@ def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:
     np.testing.assert_allclose(
         other["tangent"], blocks * one["tangent"], rtol=1e-8, atol=1e-9 * largest
     )
-    for name in ("revolutions", "equivalent_load", "capacity"):
+    for name in ("l10", "revolutions", "equivalent_load", "capacity"):
         assert other["life"][name] == pytest.approx(one["life"][name], rel=1e-8)
     assert other["bearing"]["DeepGrooveBall"]["diameter"] == pytest.approx(11.5, rel=1e-15)
     assert other["bearing"]["DeepGrooveBall"]["element"]["Elastic"]["young"] == 210e3
@@ -313,7 +314,7 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
     assert command("solve", path, "--json") == 0
     told = json.loads(capsys.readouterr().out)
     np.testing.assert_allclose(told["loads"], solution.loads, rtol=1e-12)
-    assert told["life"]["revolutions"] == pytest.approx(solution.life("pressure").revolutions)
+    assert told["life"]["l10"] == pytest.approx(solution.life("pressure").l10)
     contact = solution.contact(int(solution.loads[:, 0].argmax()), "inner")
     assert contact is not None
     film = film_thickness(

@@ -90,15 +90,24 @@ def test_misaligned_crowned_bearings_converge(
     assert solution.force[0] == pytest.approx(load, rel=1e-8)
 
 
+def spied(patch: pytest.MonkeyPatch, owner: Any, name: str) -> list[Any]:
+    """Return the list of the arguments of each call of a method, which stays as it is."""
+    calls: list[Any] = []
+    method = getattr(owner, name)
+
+    def call(*arguments: Any) -> Any:
+        calls.append(arguments)
+        return method(*arguments)
+
+    patch.setattr(owner, name, call)
+    return calls
+
+
 def test_rollers_that_centrifugal_forces_press_alone_take_short_steps(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # On deflections of nanometres contacts have next to no stiffness: steps were 10 000 times them.
-    states = []
-    problem = equilibrium.Problem
-    monkeypatch.setattr(
-        problem, "state", lambda *place, state=problem.state: states.append(place) or state(*place)
-    )
+    states = spied(monkeypatch, equilibrium.Problem, "state")
     bearing = CylindricalRoller(
         **SIZE | {"diameter": 14.3e-3, "length": 11e-3, "count": 10, "pitch_diameter": 203e-3},
         clearance=41.6e-6,
@@ -107,8 +116,19 @@ def test_rollers_that_centrifugal_forces_press_alone_take_short_steps(
     load: dict[str, Any] = {"force": (-1538.0, -1129.0, None), "moment": (9.4, -7.0)}
     solution = quiet(bearing.solve, **load, speed=4.6, rotating="outer", cells=(40, 16))
     assert solution.report.converged
-    solved = sum(isinstance(place[0].law, Solved) for place in states)
-    assert solved <= 12
+    assert sum(isinstance(problem.law, Solved) for problem, *_ in states) <= 12
+
+
+def test_equal_elements_beside_the_load_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    contacts = spied(monkeypatch, Solved, "_solve")
+    bearing = CylindricalRoller(**SIZE | {"clearance": 41e-6})
+    load: dict[str, Any] = {"force": (4450.0, 0.0, None), "tilt": (None, 6e-4)}
+    mirrored = bearing.solve(**load, **COARSE)
+    count = len(contacts)
+    turned = bearing.solve(**load, **COARSE, rotation=1e-9)  # no two are equal
+    assert len(contacts) - count > 1.5 * count
+    np.testing.assert_allclose(mirrored.loads, turned.loads, atol=1e-5)
+    np.testing.assert_array_equal(mirrored.loads[1:], mirrored.loads[:0:-1])
 
 
 def test_tilted_rollers_between_held_rings_are_in_equilibrium() -> None:

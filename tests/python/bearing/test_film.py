@@ -168,6 +168,9 @@ def test_martins_film_of_rigid_cylinders() -> None:
 def test_films_of_constant_viscosity() -> None:
     # The formulae by hand: a circle has R_y/R_x = 1 where k = 1.03, where φ² = 0.36.
     assert _isoviscous(0.0, 1.03) == pytest.approx(128 * 0.36 * (0.060738 + 1.683) ** 2, rel=1e-5)
+    # An ellipse of k = 3 has R_y/R_x = 5.31427, φ = 0.888535.
+    long = 128 * 5.31427 * 0.888535**2 * (0.131 * 1.210847 + 1.683) ** 2
+    assert _isoviscous(0.0, 3.0) == pytest.approx(long, rel=1e-5)
     assert _isoviscous(1e6, 1.0) == pytest.approx(8.70 * 10**4.02 * 0.376570, rel=1e-5)
     # Moes' 2.05 M^(-1/5), with the sum of the speeds and three digits.
     assert _isoviscous(100.0, math.inf) == pytest.approx(2.05 * 2**0.6 * 100**0.8, rel=3e-3)

@@ -22,6 +22,7 @@ from nacre.bearing import (
     rating,
 )
 from nacre.bearing.contact_laws import Solved, binned
+from nacre.bearing.equilibrium import Barrels
 from nacre.bearing.iso import reference_life
 
 SIZE: dict[str, Any] = {
@@ -135,6 +136,14 @@ def test_clearance_is_that_of_the_radius() -> None:
     # the same, whatever their angle, so that it is a little more.
     change = loose.displacement[0] - tight.displacement[0]
     assert 0.5e-9 < change < 0.7e-9
+
+
+def test_half_of_the_diametral_clearance_brings_a_barrel_to_both_rings() -> None:
+    # Along the radius, whatever the contact angle: what it leaves is of second order in it.
+    bearing = spherical(contact_angle=0.3, clearance=1e-6)
+    barrels = Barrels(bearing, np.zeros(38))
+    apart = np.linalg.norm(barrels.start + np.array([0.5e-6, 0.0]), axis=1) - barrels.groove.sum()
+    np.testing.assert_allclose(apart, 0.0, atol=1e-11)
 
 
 def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
@@ -309,9 +318,9 @@ def test_rating_counts_rows() -> None:
     one = reference_life(single, loads, 1.0)
     both = reference_life(bearing, np.concatenate([loads, loads]), 1.0)
     np.testing.assert_allclose(both.capacities, one.capacities, rtol=1e-12)
-    assert both.revolutions / one.revolutions == pytest.approx(2 ** (-8 / 9), rel=1e-12)
+    assert both.l10 / one.l10 == pytest.approx(2 ** (-8 / 9), rel=1e-12)
     solution = bearing.solve(force=FORCE, **STANDARD)
-    assert solution.life().revolutions == solution.life(edge=None).revolutions
+    assert solution.life().l10 == solution.life(edge=None).l10
     assert "barrels have none of the standard's edge factors" in str(solution.life())
 
 
@@ -323,7 +332,7 @@ def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     # Between Hertz's point, L ∝ W^−3, and line contact, L ∝ W^−4.
     ratio = life_ratio(heavy, light, LundbergPalmgren()).ratio
     assert 1 / 16 < ratio < 1 / 7
-    assert light.life("pressure").revolutions > heavy.life("pressure").revolutions
+    assert light.life("pressure").l10 > heavy.life("pressure").l10
     contact = light.contact(7, "outer")
     assert contact is not None
     film = film_thickness(contact, speed=5.0, viscosity=0.02, pressure_viscosity=20e-9)
@@ -335,7 +344,7 @@ def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     again = back.contact(7, "outer")
     assert again is not None
     assert again.load == pytest.approx(contact.load, rel=1e-8)
-    # Six lines say what was solved, one the error of the peak: there is no pressure at the edge.
+    # Seven lines say what was solved and the verdict, one the error of the peak: there is no pressure at the edge.
     assert light.edge_pressure == 0.0
     assert light.save(tmp_path / "spherical.csv").read_text("utf-8").count("\n") == 14 + 1 + 7 + 1
     assert light.save(tmp_path / "spherical.png").stat().st_size > 10_000

@@ -243,7 +243,7 @@ ERRORS = {
     "poisson = 0.3 } -> poison = 0.3 }": "materials.steel.poison: there is no such key; the keys",
     "[materials] -> units = 'N-mm-kPa'\n[materials]": "units: units must be consistent, ",
     "[body]\n -> [body]\nends = [1e-3]\n": "body.ends: must be a pair of numbers, or of -inf "
-    "and inf where the body goes on, got [0.001]",
+    "and inf where the body has no end, got [0.001]",
     '[body]\n -> [body]\nends = "none"\n': "body.ends: must be a pair of numbers, or",
     "[body]\n -> [body]\nends = [1, -1]\n": "body: ends must be in ascending order",
     "[body]\n -> [body]\nends = [inf, 1]\n": "body: ends must be finite, got inf",
@@ -591,7 +591,7 @@ def test_the_reference_has_every_table_and_key(capsys: Capture) -> None:
     assert "- `radius`: finite number [m]; required. Radius, above 0." in text
     assert "- `tolerance`: finite number; default `1e-08`." in text
     assert "half_angle" in text
-    assert "`ends`: pair of numbers, or of -inf and inf where the body goes on [m]" in " ".join(
+    assert "`ends`: pair of numbers, or of -inf and inf where the body has no end [m]" in " ".join(
         text.split()
     )
     # No line that is wrapped begins another item.

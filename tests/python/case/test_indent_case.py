@@ -126,9 +126,11 @@ def test_a_study_of_an_indentation_is_run_and_kept(tmp_path: Path, capsys: Captu
     assert "nacre.indent.IndentSolution" in capsys.readouterr().err
 
 
-def test_each_command_names_the_other_for_a_case_of_the_other_kind(capsys: Capture) -> None:
-    assert command("solve", EXAMPLE) == 2
-    assert "nacre indent" in capsys.readouterr().err
+def test_indent_names_solve_for_a_contact_and_solve_takes_both(capsys: Capture) -> None:
+    assert command("indent", EXAMPLE, "--json") == 0
+    numbers = capsys.readouterr().out
+    assert command("solve", EXAMPLE, "--json") == 0
+    assert capsys.readouterr().out == numbers
     assert command("indent", EXAMPLE.with_name("roller.toml")) == 2
     assert "nacre solve" in capsys.readouterr().err
 

@@ -100,10 +100,6 @@ def test_arguments_of_a_constructor_are_attributes(kind: str) -> None:
         )
 
 
-def test_a_study_knows_every_argument_of_an_indentation() -> None:
-    assert set(inspect.signature(nacre.indent.solve).parameters) == nacre.studies.INDENT
-
-
 def test_the_public_names_are_those_of_the_stub() -> None:
     named = {*nacre.__all__, *nacre.types.__all__}
     compiled = vars(nacre._core)

@@ -55,8 +55,8 @@ def stress_summary(limits: Any) -> Any:
     solution = nacre.solve(
         nacre.Sphere(5e-3),
         nacre.Elastic(210e9, 0.3),
-        load=1.0,
-        grid=nacre.Grid((16, 16), (2e-4,) * 2),
+        load=10.0,
+        grid=nacre.Grid((32, 32), (2e-4,) * 2),
     )
     options: Any = Group(stresses.StressOptions)
     return core.stress_summary(solution._solved, limits, options)

@@ -320,6 +320,10 @@ def test_the_roughness_of_waves_is_theirs(tmp_path: Path) -> None:
     assert found.to_xarray().sq.attrs["units"] == "m"
     for said in ("96 × 64", "x and y", "158.1 nm", "base64"):
         assert said in surface._repr_html_()  # type: ignore[attr-defined]
+
+
+@pytest.mark.quick
+def test_bowls_planes_and_the_highest_wave_have_their_slopes_and_curvatures() -> None:
     # A paraboloid that is not periodic has its curvature; a kink at the rim is left of it, 1e-4. A
     # plane has its slope alone.
     place = 1e-6 * (np.arange(80) - 39.5)
@@ -331,7 +335,7 @@ def test_the_roughness_of_waves_is_theirs(tmp_path: Path) -> None:
     steps = (-1.0) ** np.arange(64)[:, None] * np.ones(64) * 1e-9
     highest = rough.roughness(nacre.HeightMap(steps, 1e-6, periodic=(True, True)))
     assert highest.rms_curvature == pytest.approx(0.5 * (np.pi / 1e-6) ** 2 * 1e-9, rel=1e-12)
-    flat = rough.roughness(nacre.HeightMap(np.ones((4, 4)), step))
+    flat = rough.roughness(nacre.HeightMap(np.ones((4, 4)), 1e-6))
     assert (flat.sq, flat.ssk, flat.rms_slope) == (0.0, 0.0, 0.0)
 
 

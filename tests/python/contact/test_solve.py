@@ -317,7 +317,7 @@ WARNINGS: dict[str, tuple[Callable[[], nacre.Solution], str]] = {
     "sharp end of a roller": (lambda: roller(STEEL), r"reaches the end .* along x"),
     "free end of a roller": (
         lambda: roller(STEEL, EDGED),
-        r"free end of one body along x, and the other goes on",
+        r"free end of one body along x, beyond which the other extends",
     ),
     "free end of a coated roller": (
         lambda: roller(STEEL, COATED_EDGE),

@@ -304,6 +304,7 @@ def test_a_roller_with_free_ends_has_an_optimum_between_tilts() -> None:
         )
 
 
+@pytest.mark.quick
 def test_the_slope_of_a_power_mean_over_cases_is_that_of_differences() -> None:
     # The mean of the approaches' fourth powers under two loads, with respect to the radius.
     cases = [{"load": 10.0}, {"load": 30.0}]

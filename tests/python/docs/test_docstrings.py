@@ -148,6 +148,7 @@ def test_its_examples_are_true(name: str) -> None:
         nacre.bearing.film,
         nacre.bearing.iso,
         nacre.bearing.life,
+        nacre.bearing.pair,
         nacre.bearing.rollers,
         nacre.bearing.solution,
         nacre.indent.curves,

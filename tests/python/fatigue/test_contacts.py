@@ -327,5 +327,5 @@ def test_matake_says_where_its_plane_may_jump() -> None:
     # Two shears in different planes, of which one is half a per cent less.
     history[0, 4], history[1, 3] = 1.0, 0.995
     twice = np.vstack([history, -history])
-    _, _, gap = made("matake", 0.2)._evaluated(twice[None])
+    _, _, gap = made("matake", 0.2)._equivalent_stress(twice[None])
     assert 0.0 < gap[0] < 0.011

@@ -6,6 +6,7 @@ import json
 import math
 import pickle
 import warnings
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from scipy.special import betainc
 
 import nacre
 from nacre.indent import Curve, Fit, Indentation, Tip, fit
-from nacre.indent._residuals import LEVEL, durbin_watson
+from nacre.indent._profile import Estimate
+from nacre.indent._residuals import LEVEL, FixedParameters, durbin_watson, examine
 
 FILM = {"thickness": 1e-6, "poisson": 0.4, "radius": 5e-6}
 YOUNG = "body.layers[0].material.young"
@@ -84,6 +86,28 @@ def test_correlated_noise_is_seen_and_widens_the_interval() -> None:
         assert wider > 4
         least = (1 - 1 / 60) * math.sqrt(wider / DEPTH.size) * found.sigma
         assert found.standard_errors[YOUNG] / found.estimates[YOUNG] > least
+
+
+@pytest.mark.quick
+def test_correlated_points_count_as_fewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Of the mean of n points that are correlated by r the variance is (1 + r)/(1 − r) times that of
+    # free ones. Beside the mean, Durbin and Watson's ratio is due to be 2, so that r = 1 − ratio/2.
+    nothing = FixedParameters([], np.zeros((200, 0)))
+    monkeypatch.setattr(FixedParameters, "of", lambda *_: nothing)
+    noise = np.random.default_rng(7).standard_normal(200)
+    rest = np.convolve(noise, 0.8 ** np.arange(200))[:200]
+    rest -= rest.mean()
+    one = np.ones(1)
+    best = Estimate(one, 1.0, 1.0, 1.96, np.eye(1), np.eye(1), 1.0, one)
+    model: Any = SimpleNamespace(
+        **{"at": lambda x: (rest, np.ones((200, 1))), "names": ["mean"], "free": [], "dof": 199},
+        **{"depth": rest, "parts": [slice(0, 200)], "is_known": False, "noise": "relative"},
+        weight=one,
+    )
+    r = 1 - np.diff(rest) @ np.diff(rest) / (rest @ rest) / 2
+    assert 0.6 < r < 0.9
+    covariance = examine(model, best).estimate.covariance
+    assert covariance[0, 0] == pytest.approx((1 + r) / (1 - r), rel=1e-9)
 
 
 def test_freeing_what_is_named_mends_the_fit() -> None:

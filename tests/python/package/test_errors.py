@@ -323,7 +323,7 @@ FRICTION_VALUES = {
     "rolls(tolerance=NAN)": r"tolerance must be above 0 and below 1, got NaN",
     "slides(max_convolutions=0)": r"max_convolutions must be an integer of at least 1, got 0",
     # bodies
-    "slide(BALL, FREE, STEEL, **HELD)": r"friction needs bodies that go on along x",
+    "slide(BALL, FREE, STEEL, **HELD)": r"friction needs bodies without free ends along x",
     "slide(BALL, STEEL, SLIPPING, **HELD)": r"friction needs .*without frictionless interfaces",
     "roll(BALL, SLIPPING, direction='+x', **HELD)": r"without frictionless interfaces",
     "slide(ROD, STEEL, **HELD)": r"grid must be given",
@@ -355,7 +355,7 @@ FRICTION_VALUES = {
     "slide(BALL, STEEL, steps=[], **HELD)": "steps must",
     "slides(friction=np.ones(28))": "friction must have two dimensions",
     "coefficients(STEEL, STEEL, (1.0, 1.0), cells=-4)": "cells must be .*at least 8",
-    "coefficients(FREE, STEEL, (1.0, 1.0))": "go on along x",
+    "coefficients(FREE, STEEL, (1.0, 1.0))": "without free ends along x",
 }
 
 FRICTION_TYPES = {

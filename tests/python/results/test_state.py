@@ -1,13 +1,16 @@
 """Results have a named state: plain data, exact, refused where a key is wrong."""
 
 import copy
+import dataclasses
+import functools
 import json
 import pickle
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
 import nacre
 import results
@@ -78,6 +81,22 @@ LATER_OF = {
     "shakedown map": {"warnings"},
 }
 """The same, of one kind."""
+
+
+def test_what_the_compiled_module_hands_over_has_the_types_of_the_fields() -> None:
+    """A tuple is no list, an infinite number no None, in reports of progress too."""
+    seen: list[Any] = []
+    nacre.solve(BALL, results.COATED, STEEL, grid=GRID, load=10.0, progress=seen.append)
+    plan = nacre.Contact(STEEL, GRID, counterbody=STEEL)
+    slide = functools.partial(plan.slide, BALL, load=9.0, friction=0.3, force=(1.0, 0.0))
+    slide(progress=lambda step, report: seen.append(report))
+    assert {type(report) for report in seen} == {type(SOLUTION.report), nacre.types.FrictionReport}
+    compiled = ("Report", "StressSummary", "LayerStress", "InterfaceStress", "FrictionReport")
+    for result in (*seen, *(RESULTS[kind] for kind in compiled), solved("creep coefficients")):
+        kinds = get_type_hints(type(result))
+        for field in dataclasses.fields(result):
+            fits = TypeAdapter(kinds[field.name], config={"arbitrary_types_allowed": True})
+            fits.validate_python(getattr(result, field.name), strict=True)
 
 
 @every_result

@@ -100,6 +100,8 @@ VALUES = MADE_BY_A_CALL | {
     "gradient": SOLUTION.gradient("located_peak"),
     "weighted gradient": SOLUTION.vjp(np.ones((48, 50)), ["load"]),
     "direction": SOLUTION.jvp({"load": 1.0}),
+    "card": nacre.materials["TiN"],
+    "number of a card": nacre.materials["TiN"].numbers["young"],
     "friction solution": SLID,
     "friction report": SLID.report,
     "creep coefficients": nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),

@@ -1,0 +1,729 @@
+"""Two bearings with contact angles on one shaft, preloaded: one equilibrium of both.
+
+The inner rings move with the shaft, which is rigid, and the outer ones stand still. Contacts and
+kinematics are those of the single bearings; each ring is set along the axis by its preload.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.arguments import read_fields
+from nacre._tools.typing import among
+from nacre._tools.units import printable
+from nacre.bearing.balls import AngularContactBall
+from nacre.bearing.cone import check_carried
+from nacre.bearing.contact_laws import Law, Reaction, Several, law
+from nacre.bearing.equilibrium import Problem, Shaft, State, kinematics_of
+from nacre.bearing.geometry import Ring, above, bearing_from
+from nacre.bearing.iso import Edge
+from nacre.bearing.life import LINE, POINT
+from nacre.bearing.rollers import TaperedRoller
+from nacre.bearing.solution import VECTORS, BearingReport, BearingSolution, Model
+from nacre.bearing.solving import (
+    CELLS,
+    Along,
+    BearingOptions,
+    Operation,
+    RingConditions,
+    as_arrays,
+    centrifugal_force,
+    check_sides,
+    element_angles,
+    find_equilibrium,
+    issue,
+    largest_of,
+    pressed_by,
+    read_conditions,
+    solution_of,
+    solve_bearing,
+    solved_contacts,
+)
+from nacre.results import display, files
+from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.table_results import TableResult, Tabular
+from nacre.results.values import encode, refusing
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = npt.NDArray[np.float64]
+Arrangement = Literal["O", "X", "tandem"]
+Single = AngularContactBall | TaperedRoller
+
+NAMES = ("first", "second")
+"""Names of both bearings."""
+THRUSTS: dict[str, tuple[int, int]] = {"O": (1, -1), "X": (-1, 1), "tandem": (1, 1)}
+"""Directions along z of the thrusts on the shaft that first and second bearing carry."""
+FARTHEST = 100.0
+"""Largest distance over the pitch diameter: shafts as long bend more than their bearings."""
+PRELOAD_STEPS = 50
+"""Newton steps, at least, for the place of the rings without load: it takes some five."""
+STANDSTILL = Operation(0.0, 0.0, "inner")
+"""Operation in which bearings are preloaded."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two single-row angular contact ball or tapered roller bearings on one rigid shaft.
+
+    z is the axis of the shaft. The first bearing is at ``z = -distance/2`` and the second one at
+    ``z = distance/2``; moments and displacements are about the middle between them. Both inner
+    rings move with the shaft, and the outer rings stand still.
+
+    Parameters
+    ----------
+    first, second : AngularContactBall or TaperedRoller
+        Bearings, both of one kind.
+    arrangement : {"O", "X", "tandem"}
+        "O", back to back: the lines of contact meet the axis outside of the bearings, and the first
+        one carries the thrust on the shaft along z, the second one that against it. "X", face to
+        face: they meet it towards the middle, and the first bearing carries the thrust against z.
+        "tandem": both carry that along z.
+    distance : float
+        Distance of the reference points of both bearings [m]: the middles of tapered rollers, or
+        the centres of the inner grooves of balls in contact, ``(f_i − 1/2) D sin α`` from the
+        middles of the balls, along the thrust that the bearing carries.
+    preload_force : float, optional
+        Axial force of each bearing without load, at standstill [N]. "O" and "X" alone have one.
+    preload_distance : float, optional
+        How far the rings of both bearings together are pressed along the axis beyond touching [m];
+        below 0 they have as much axial play. Without either preload they just touch.
+
+    Raises
+    ------
+    TypeError
+        If a bearing is of another kind.
+    ValueError
+        If an argument is out of range, the bearings differ in kind, both preloads are given, or
+        there is a preload in tandem, where no bearing holds against it.
+
+    Examples
+    --------
+    >>> import math
+    >>> from nacre.bearing import AngularContactBall, Pair
+    >>> ball = AngularContactBall(
+    ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=math.radians(25)
+    ... )
+    >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    >>> solution = pair.solve(force=(0.0, 0.0, 300.0), model="iso16281")
+    >>> [round(one.force[2]) for one in (solution.first, solution.second)]
+    [371, 71]
+    """
+
+    first: Single
+    """Bearing at ``z = -distance/2``."""
+    second: Single
+    """Bearing at ``z = distance/2``."""
+    _: KW_ONLY
+    arrangement: Arrangement
+    """Arrangement."""
+    distance: float
+    """Distance of the reference points of both bearings [m]."""
+    preload_force: float | None = None
+    """Axial force of each bearing without load [N]."""
+    preload_distance: float | None = None
+    """How far the rings of both bearings together are pressed beyond touching [m]."""
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        for name, bearing in zip(NAMES, self.bearings, strict=True):
+            if not isinstance(bearing, Single):
+                raise TypeError(
+                    f"{name} must be an AngularContactBall or a TaperedRoller, which carry thrust "
+                    f"to one side, got {bearing!r}"
+                )
+        if type(self.first) is not type(self.second):
+            raise ValueError(
+                f"second must be of the kind of first, {type(self.first).__name__}, "
+                f"got {self.second!r}"
+            )
+        if not among(self.arrangement, get_args(Arrangement)):
+            raise ValueError(f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}')
+        read_fields(self)
+        above("distance", self.distance)
+        most = FARTHEST * max(one.pitch for one in self.bearings)
+        if self.distance > most:
+            raise ValueError(
+                f"distance must be at most {most:.3g} m, {FARTHEST:g} pitch diameters: bearings "
+                f"are in N, m, Pa and kg; got {self.distance!r}"
+            )
+        self._check_preload()
+
+    def _check_preload(self) -> None:
+        """Raise a `ValueError` unless there is one preload at most, in range."""
+        force, distance = self.preload_force, self.preload_distance
+        if force is not None and distance is not None:
+            raise ValueError(
+                "preload_force and preload_distance must not both be given, "
+                f"got {force!r} and {distance!r}"
+            )
+        if self.arrangement == "tandem" and (force or distance):
+            name = "preload_force" if force else "preload_distance"
+            raise ValueError(
+                f"{name} must be None in tandem, where no bearing holds against a preload, "
+                f"got {force or distance!r}"
+            )
+        limits = [largest_of(one) for one in self.bearings]
+        largest_force = min(one["force"] for one in limits)
+        if force is not None and not 0 <= force <= largest_force:
+            raise ValueError(
+                f"preload_force must be from 0 to {largest_force:.3g} N, got {force!r}"
+            )
+        farthest = min(one["displacement"] for one in limits) / 10
+        if distance is not None and not abs(distance) <= farthest:
+            raise ValueError(
+                f"preload_distance must be at most {farthest:.3g} m, a tenth of the diameter of an "
+                f"element, got {distance!r}"
+            )
+
+    @property
+    def bearings(self) -> tuple[Single, Single]:
+        """Both bearings."""
+        return self.first, self.second
+
+    def solve(
+        self,
+        *,
+        force: Along = None,
+        displacement: Along = None,
+        moment: Along = None,
+        tilt: Along = None,
+        rotation: float = 0.0,
+        speed: float = 0.0,
+        rotating: Ring = "inner",
+        model: Model = "solved",
+        cells: tuple[int, int] | None = None,
+        tolerance: float = 1e-9,
+        max_iterations: int = 50,
+        threads: int | None = None,
+        progress: Any = None,
+        check: bool = True,
+    ) -> PairSolution:
+        """Equilibrium of the shaft and of all elements of both bearings.
+
+        Each of the five degrees of freedom of the shaft is loaded, prescribed, or neither: it is
+        then locked at 0. Displacements count from the place of the shaft without load at
+        standstill; with play, from the middle of it.
+
+        Parameters
+        ----------
+        force : sequence of float or None, optional
+            Forces ``(x, y, z)`` on the shaft [N]; along an axis with a number the displacement is
+            found. None stands for None along all axes, here and below.
+        displacement : sequence of float or None, optional
+            Displacements ``(x, y, z)`` of the shaft in the middle between the bearings [m].
+        moment : sequence of float or None, optional
+            Moments about x and y on the shaft, about the middle between the bearings [N m].
+        tilt : sequence of float or None, optional
+            Slopes of the shaft about x and y: tangents of its angles.
+        rotation : float, optional
+            Angle of element 0 of both bearings from the x axis [rad].
+        speed : float, optional
+            Angular velocity of the rings that rotate [rad/s]. Centrifugal forces add to the
+            preload, whose distance stays.
+        rotating : {"inner", "outer"}, optional
+            Rings that rotate.
+        model : {"solved", "iso16281"}, optional
+            Contacts that nacre solves, or those of ISO/TS 16281, as of single bearings.
+        cells : tuple of int, optional
+            Cells of a contact, as of single bearings.
+        tolerance : float, optional
+            Largest mismatch of forces and moments, relative to those of the elements.
+        max_iterations : int, optional
+            Newton steps before it gives up.
+        threads : int, optional
+            Number of contacts that are solved side by side; by default as for `nacre.Contact`.
+        progress : callable, optional
+            Function that is called with the number of Newton steps and the mismatch after each;
+            returning False stops, and gives the unfinished solution.
+        check : bool, optional
+            Whether to raise an error if the tolerance was not met.
+
+        Returns
+        -------
+        PairSolution
+            Loads of the shaft, and the solution of each bearing.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of range, a degree of freedom is both loaded and prescribed, or
+            no equilibrium carries the loads together.
+        ConvergenceError
+            If the tolerance was not met; the unfinished solution is its `solution`.
+
+        Examples
+        --------
+        >>> import math
+        >>> from nacre.bearing import Pair, TaperedRoller
+        >>> tapered = TaperedRoller(
+        ...     count=17, diameter=8e-3, length=11e-3, pitch_diameter=48e-3, contact_angle=0.25
+        ... )
+        >>> pair = Pair(tapered, tapered, arrangement="X", distance=50e-3, preload_distance=10e-6)
+        >>> solution = pair.solve(force=(4000.0, 0.0, 0.0), moment=(0.0, 0.0), model="iso16281")
+        >>> [round(one.force[0]) for one in (solution.first, solution.second)]
+        [2000, 2000]
+        """
+        conditions = RingConditions(force, displacement, moment, tilt)
+        operation = Operation(rotation, speed, rotating)
+        cells = CELLS[self.first.rolls] if cells is None else cells
+        options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
+        return solve_pair(self, conditions, operation, options)
+
+    def _arguments(self) -> dict[str, Any]:
+        """Return what makes the pair again, for files."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def _ways(pair: Pair) -> list[Array]:
+    """Return how the ring of each bearing moves with the shaft ``(5, 5)``.
+
+    Its axes are a mirror image of the shaft's where it carries the thrust against z.
+    """
+    ways = []
+    for side, sign in zip((-0.5, 0.5), THRUSTS[pair.arrangement], strict=True):
+        way, z = np.eye(5), side * pair.distance
+        way[0, 4], way[1, 3] = z, -z
+        ways.append(np.diag([1, 1, sign, sign, sign]) @ way)
+    return ways
+
+
+def _touching(bearing: Single) -> float:
+    """Return the displacement of the inner ring along z at which all elements touch [m]."""
+    return bearing.play / (2 * math.tan(bearing.nominal_angle)) if bearing.leans else 0.0
+
+
+def _settings(pair: Pair, options: BearingOptions) -> Array:
+    """Return the displacements along z of both inner rings without load, each in its own axes."""
+    settings = np.array([_touching(one) for one in pair.bearings])
+    if pair.preload_force:
+        axial = RingConditions((None, None, pair.preload_force), None, None, None)
+        alone = [solve_bearing(one, axial, STANDSTILL, options) for one in pair.bearings]
+        return np.array([one.displacement[2] for one in alone])
+    settings += (pair.preload_distance or 0.0) / 2
+    if (pair.preload_distance or 0.0) > 0 and pair.first != pair.second:
+        free = RingConditions((None, None, 0.0), None, None, None)
+        _, state, _ = _equilibrium(pair, free, STANDSTILL, options, settings)
+        settings += np.array(THRUSTS[pair.arrangement]) * state.ring[2]
+    return settings
+
+
+def _read(pair: Pair, conditions: RingConditions) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """Return loads, displacements, and which of the five directions are loaded, checked."""
+    one, other = (largest_of(bearing) for bearing in pair.bearings)
+    largest = {name: one[name] + other[name] for name in one} | {"tilt": 1.0}
+    largest["moment"] += (one["force"] + other["force"]) * pair.distance
+    return as_arrays(*read_conditions(conditions, largest))
+
+
+def _equilibrium(
+    pair: Pair,
+    conditions: RingConditions,
+    operation: Operation,
+    options: BearingOptions,
+    settings: Array,
+) -> tuple[Problem, State, tuple[int, str]]:
+    """Return the equilibrium of the shaft with rings that are set so far along their axes."""
+    loads, moved, free = _read(pair, conditions)
+    bearings = pair.bearings
+    parts = [kinematics_of(one, element_angles(one, operation.rotation)) for one in bearings]
+    shaft, counts = Shaft(parts, _ways(pair), settings), [one.elements for one in bearings]
+    laws = [law(one, options.model) for one in bearings]
+    forces = [centrifugal_force(one, operation) for one in bearings]
+    pressed = [pressed_by(one, force) for one, force in zip(laws, forces, strict=True)]
+    problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
+    check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
+
+    def contacts(state: State) -> Law:
+        places = [state.places[rows] for rows in shaft.slices]
+        each = zip(bearings, laws, places, strict=True)
+        return Several([solved_contacts(*one, options) for one in each], counts)
+
+    def check(problem: Problem, state: State, tolerance: float) -> None:
+        each = zip(NAMES, bearings, _parts(problem, state), strict=True)
+        for name, bearing, (part, own) in each:
+            remedy = f"preload or thrust of the {name} bearing"
+            check_sides(bearing, part, own, tolerance, remedy)
+
+    start = problem.start(moved, np.repeat(pressed, counts))
+    return find_equilibrium(problem, start, contacts, check, options)
+
+
+def _parts(problem: Problem, state: State) -> Iterator[tuple[Problem, State]]:
+    """Yield problem and state of each bearing, in its own axes."""
+    shaft, laws = problem.kinematics, problem.law
+    assert isinstance(shaft, Shaft)
+    assert isinstance(laws, Several)
+    for k, (rows, reaction) in enumerate(
+        zip(shaft.slices, laws.split(state.reaction), strict=True)
+    ):
+        ring = shaft.ways[k] @ state.ring
+        ring[2] += shaft.set_to[k]
+        none = np.zeros(5, dtype=bool)
+        force = np.asarray(problem.centrifugal)[rows]
+        part = Problem(shaft.parts[k], laws.laws[k], np.zeros(5), none, force)
+        own = replace(part, law=_constant(reaction)).state(ring, state.own[rows])
+        own.balance = state.balance
+        yield part, own
+
+
+def _constant(reaction: Reaction) -> Law:
+    """Return a law that has one reaction."""
+    return lambda _: reaction
+
+
+def _check_tandem(pair: Pair, solutions: Iterable[BearingSolution], loaded: bool) -> None:
+    """Raise a `ValueError` unless an axial force keeps the rings of balls in tandem together."""
+    if pair.arrangement != "tandem" or pair.first.leans or not loaded:
+        return
+    pushed = axial = 0.0
+    for one in solutions:
+        pushed += math.hypot(*one.force[:2]) * math.tan(one.bearing.nominal_angle)
+        axial += one.force[2]
+    if axial < pushed:
+        raise ValueError(
+            f"force along z must be at least {pushed:.6g} N, by which the radial forces push the "
+            f"rings apart, got {axial:.6g}"
+        )
+
+
+def solve_pair(
+    pair: Pair, conditions: RingConditions, operation: Operation, options: BearingOptions
+) -> PairSolution:
+    """Return the solution of what a user asked of a pair."""
+    for bearing in pair.bearings:
+        operation, options = operation.checked(bearing), options.checked(bearing)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", core.NacreWarning)
+        limit = max(PRELOAD_STEPS, options.max_iterations)
+        quiet = replace(options, max_iterations=limit, progress=None, check=True)
+        settings = _settings(pair, quiet)
+    problem, state, ending = _equilibrium(pair, conditions, operation, options, settings)
+    parts = zip(pair.bearings, _parts(problem, state), strict=True)
+    first, second = (
+        solution_of(bearing, operation, options, part, own, ending)
+        for bearing, (part, own) in parts
+    )
+    if ending[1] == "converged":
+        _check_tandem(pair, (first, second), bool(problem.free[2]))
+    total = (state.wanting + problem.loads).tolist()
+    notes = tuple(
+        f"{name} bearing: {text}"
+        for name, one in zip(NAMES, (first, second), strict=True)
+        for text in one.report.warnings
+    )
+    solution = PairSolution(
+        pair=pair,
+        displacement=tuple(state.ring[:3].tolist()),
+        tilt=tuple(state.ring[3:].tolist()),
+        force=tuple(total[:3]),
+        moment=tuple(total[3:]),
+        first=first,
+        second=second,
+        tangent=(state.tangent + state.tangent.T) / 2,
+        report=BearingReport(ending[1], ending[0], state.balance, notes),  # type: ignore[arg-type]
+    )
+    issue(solution, options)
+    return solution
+
+
+@dataclass(frozen=True, repr=False)
+class PairLife(TableResult):
+    """Reference rating lives of ISO/TS 16281 of a pair: a model, at 90 % reliability.
+
+    Both bearings survive independently, so that ``L^-e = L_1^-e + L_2^-e`` with the Weibull slope
+    e of Lundberg and Palmgren, 10/9 of balls and 9/8 of rollers; Harris, Rolling Bearing Analysis.
+
+    Examples
+    --------
+    >>> from nacre.bearing import AngularContactBall, Pair
+    >>> ball = AngularContactBall(
+    ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+    ... )
+    >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    >>> life = pair.solve(force=(2000.0, 0.0, 0.0), model="iso16281").life()
+    >>> round(life.revolutions / min(life.first, life.second), 3)
+    0.536
+    """
+
+    _QUANTITIES = PAIR_LIFE
+    _TITLE = "reference rating life of a pair of bearings"
+
+    revolutions: float
+    """Life in which 10 % of such pairs lose a bearing, in revolutions."""
+    hours: float
+    """The same in hours of operation; infinite where the bearings are at rest."""
+    first: float
+    """Life of the first bearing in revolutions; infinite without load."""
+    second: float
+    """That of the second bearing."""
+    model: str
+    """Model in words."""
+
+    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
+    save = display.in_si(TableResult.save)
+
+    @display.in_si
+    def _rows(self) -> list[tuple[str, str]]:
+        def text(life: float) -> str:
+            if math.isinf(life):
+                return "infinite: no element is loaded"
+            return f"{life / 1e6:.6g} million revolutions"
+
+        lives = {row.label: text(row.of(self)) for row in PAIR_LIFE if row.name != "hours"}
+        if math.isfinite(self.hours):
+            lives["hours"] = f"{self.hours:.6g}"
+        return [*lives.items(), ("model", self.model)]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PairSolution(Tabular):
+    """A solved pair of bearings on a shaft.
+
+    Each bearing is a `BearingSolution` in its own axes, in which z presses its inner ring into
+    contact: ``first.force[2]`` is the thrust that it carries. Where that is against z of the shaft,
+    the bearing is seen in a mirror: its z, its moments and its tilts are opposite to the shaft's,
+    while x, y and the angles of elements are the same. Its displacements count from where its
+    rings are in the middle of each other and, of balls, touch.
+
+    Examples
+    --------
+    >>> from nacre.bearing import AngularContactBall, Pair
+    >>> ball = AngularContactBall(
+    ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+    ... )
+    >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    >>> solution = pair.solve(force=(500.0, 0.0, 0.0), moment=(0.0, 0.0), model="iso16281")
+    >>> solution.first.loaded, solution.report.converged
+    (12, True)
+    """
+
+    _TITLE = "pair of bearings"
+
+    pair: Pair
+    """Pair that was solved."""
+    displacement: tuple[float, float, float]
+    """Displacements of the shaft along x, y and z in the middle between the bearings [m]."""
+    tilt: tuple[float, float]
+    """Slopes of the shaft about x and y."""
+    force: tuple[float, float, float]
+    """Forces on the shaft [N], which both bearings balance."""
+    moment: tuple[float, float]
+    """Moments about x and y on the shaft, about the middle between the bearings [N m]."""
+    first: BearingSolution
+    """Solution of the first bearing, in its own axes."""
+    second: BearingSolution
+    """Solution of the second bearing, in its own axes."""
+    tangent: Array
+    """Stiffness of the pair ``(5, 5)``, which `stiffness` returns."""
+    report: BearingReport
+    """Report: how the solution came about, with the warnings of both bearings."""
+
+    @property
+    def bearings(self) -> tuple[BearingSolution, BearingSolution]:
+        """Solutions of both bearings."""
+        return self.first, self.second
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure of all contacts [Pa]."""
+        return max(one.peak_pressure for one in self.bearings)
+
+    @property
+    def largest_load(self) -> float:
+        """Largest force of a contact [N]."""
+        return max(one.largest_load for one in self.bearings)
+
+    def stiffness(self) -> Array:
+        """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
+
+        Returns
+        -------
+        numpy.ndarray
+            Derivatives of ``(F_x, F_y, F_z, M_x, M_y)`` on the shaft with respect to
+            ``(δ_x, δ_y, δ_z, θ_x, θ_y)``, in N/m, N and N m.
+
+        Examples
+        --------
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> axial = pair.solve(model="iso16281").stiffness()[2, 2]
+        >>> one = ball.solve(force=(None, None, 200.0), model="iso16281").stiffness()[2, 2]
+        >>> bool(abs(axial / one - 2) < 1e-6)
+        True
+        """
+        return self.tangent.copy()
+
+    def life(
+        self, edge: Edge = "standard", *, rotating: Ring | None = None, **modification: Any
+    ) -> PairLife:
+        """Rate the bearings by ISO/TS 16281: lives of each and of both together.
+
+        Parameters
+        ----------
+        edge : {"standard", "pressure"} or None, optional
+            Factors for the edges of rollers, as those of `BearingSolution.life`.
+        rotating : {"inner", "outer"}, optional
+            Rings that rotate against the load; by default those that rotate in `solve`.
+        **modification
+            Reliability, lubrication and speed, as those of `BearingSolution.life`.
+
+        Returns
+        -------
+        PairLife
+            Lives in revolutions and hours.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind of factors, factors from the pressure are asked of contacts
+            that are those of the standard, or there is a spectrum.
+
+        Examples
+        --------
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> life = pair.solve(force=(0.0, 0.0, 2000.0), model="iso16281").life()
+        >>> life.second  # it has lost contact
+        inf
+        """
+        if "spectrum" in modification:
+            raise ValueError("spectrum must not be given: solve the pair under each of its loads")
+        first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
+        slope = LINE if self.pair.first.rolls else POINT
+        lives = np.array([first.revolutions, second.revolutions])
+        shortest = float(lives.min())
+        shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
+        both = float((shares**slope).sum()) ** (-1 / slope)
+        hours = both * min(first.hours, second.hours)
+        return PairLife(both * shortest, hours, first.revolutions, second.revolutions, first.model)
+
+    @display.in_si
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the shaft's numbers and of both bearings'; needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Numbers by name, with units; those of a bearing begin with "first_" or "second_".
+        """
+        table, variables = [], {}
+        for prefix, solution in (("", self), *zip(NAMES, self.bearings, strict=True)):
+            for row in BEARING if prefix else self._vectors():
+                if (value := row.of(solution)) is not None:
+                    name = f"{prefix}_{row.name}".strip("_")
+                    dims = [f"{prefix}_{dim}" if dim == "element" else dim for dim in row.dims]
+                    table.append((replace(row, name=name), row.si()))
+                    variables[name] = (dims, np.asarray(value))
+        return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
+
+    @staticmethod
+    def _vectors() -> list[Any]:
+        """Return the quantities of the shaft."""
+        kinds = {row.name: row for row in BEARING}
+        return [kinds[name] for name in VECTORS]
+
+    save = display.in_si(Tabular.save)
+
+    def _comments(self) -> dict[str, Any]:
+        vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
+        notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
+        return {"model": self.first.model, **vectors, **notes}
+
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
+        (heads, *rows), (_, *others) = (one._file_rows() for one in self.bearings)
+        yield ["bearing", *heads]
+        for name, elements in zip(NAMES, (rows, others), strict=True):
+            yield from ([name, *row] for row in elements)
+
+    @display.in_si
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+        heavier = max(self.bearings, key=lambda one: one.largest_load)
+        rows = []
+        for row in self._vectors():
+            values = [heavier._rounded(row.name, value) for value in row.of(self)]
+            rows.append((row.label, display.pair(values, row.si())))
+        for name, one in zip(NAMES, self.bearings, strict=True):
+            forces = {"thrust": one.force[2], "radial": math.hypot(*one.force[:2])}
+            texts = [
+                f"{word} {display.number(heavier._rounded('force', value), 'N')}"
+                for word, value in forces.items()
+            ]
+            pressure = display.estimated(one, "peak_pressure", "Pa", one._digits("peak_pressure"))
+            texts += [f"peak pressure {pressure}", f"{one.loaded} of {one.bearing.elements} loaded"]
+            rows.append((f"{name} bearing", ", ".join(texts)))
+        report = self.report
+        contacts = "ISO/TS 16281, a model" if self.first.model != "solved" else "solved contacts"
+        ended = f"{report.termination} after {report.iterations} steps"
+        return [*rows, ("contacts", contacts), ("ended", f"{ended}, balance {report.balance:.0e}")]
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        rows = ", ".join(" ".join(row) for row in self._rows())
+        return printable(f"<{type(self).__name__}: {rows}>")
+
+    def __str__(self) -> str:
+        """Return the main numbers."""
+        return display.text(self._rows(), self.report.warnings)
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.report.warnings)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all numbers are equal; NaN is equal to NaN."""
+        if not isinstance(other, PairSolution):
+            return NotImplemented
+        return repr(self._state()) == repr(other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _state(self) -> dict[str, Any]:
+        state = {name: list(getattr(self, name)) for name in VECTORS}
+        parts = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
+        pair = {name: encode(value) for name, value in self.pair._arguments().items()}
+        return {"pair": pair, **state, **parts, "tangent": self.tangent.tolist()}
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        with refusing(cls.__name__):
+            arguments = dict(state["pair"])
+            bearings: dict[str, Any] = {name: bearing_from(arguments.pop(name)) for name in NAMES}
+            first, second = (BearingSolution._restored(dict(state[name])) for name in NAMES)
+            vectors: dict[str, Any] = {name: tuple(map(float, state[name])) for name in VECTORS}
+            solution = cls(
+                pair=Pair(**bearings, **arguments),
+                first=first,
+                second=second,
+                **vectors,
+                tangent=np.array(state["tangent"], dtype=np.float64),
+                report=BearingReport._restored(dict(state["report"])),
+            )
+            solution._check()
+            return solution
+
+    def _check(self) -> None:
+        """Raise a `ValueError` unless all fields fit each other."""
+        for name in NAMES:
+            if getattr(self, name).bearing != getattr(self.pair, name):
+                raise ValueError(f"{name} must be a solution of that bearing of the pair")
+        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
+        if any(len(getattr(self, name)) != length for name, length in lengths):
+            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
+        if self.tangent.shape != (5, 5):
+            raise ValueError(f"tangent must have the shape (5, 5), got {self.tangent.shape}")

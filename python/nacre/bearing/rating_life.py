@@ -1,0 +1,325 @@
+"""Rating life of a solved bearing: reference life, modified life, and that of a load spectrum."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+
+import nacre._core as core
+from nacre._tools.typing import among
+from nacre.bearing.contact_laws import LAMINAE
+from nacre.bearing.geometry import RINGS, Bearing, Ring, above
+from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, reference_life
+from nacre.bearing.modified import (
+    Lubrication,
+    fatigue_load_limit,
+    reliability_factor,
+    simple_fatigue_load_limit,
+)
+from nacre.bearing.verdict import life_verdict
+from nacre.results import display
+from nacre.results.quantities import BEARING_LIFE
+from nacre.results.table_results import TableResult
+from nacre.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from nacre.bearing.solution import BearingSolution
+
+EDGES = {
+    "standard": "edge factors of ISO/TS 16281, eq. 60",
+    "pressure": "edge factors from the solved pressure, eqs 58 and 59",
+    None: "without edge factors",
+}
+"""Words for the factors of a life."""
+BARRELS = "barrels have none of the standard's edge factors"
+"""The same of spherical rollers."""
+ROUNDED = 1e-3
+"""Largest difference of a sum of shares and 1: thirds with three digits are as good."""
+
+Duty = tuple[float, Sequence[float | None], float]
+"""A part of a load spectrum: share of the time, forces along x, y and z [N], speed [rad/s]."""
+
+
+@dataclass(frozen=True, repr=False)
+class BearingLife(TableResult):
+    """Rating life of ISO/TS 16281 and ISO 281: a model.
+
+    Without lubrication only the reference life counts; neither residual stress nor roughness does.
+    Of coated bodies the life is that of bare ones under the same loads, or pressures.
+
+    Examples
+    --------
+    >>> from nacre.bearing import DeepGrooveBall
+    >>> bearing = DeepGrooveBall(
+    ...     count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, capacity=23.4e3
+    ... )
+    >>> life = bearing.solve(force=(1000.0, 0.0, None), speed=100.0, model="iso16281").life()
+    >>> 13e3 < life.l10 < 13.3e3, round(life.hours / life.revolutions * 3600 * 100, 3)
+    (True, 6.283)
+    """
+
+    _QUANTITIES = BEARING_LIFE
+    _TITLE = "rating life of a bearing"
+    _LATER = (
+        *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
+        *("viscosity_ratio", "contamination_factor"),
+        *("fatigue_load_limit", "simple_fatigue_load_limit"),
+    )
+
+    revolutions: float
+    """Life in revolutions, ``a_1 a_ISO L_10r``; infinite without load."""
+    hours: float
+    """Life in hours of operation; infinite where the bearing is at rest, as without a speed."""
+    l10: float
+    """Reference rating life L_10r in millions of revolutions; infinite without load."""
+    equivalent_load: float
+    """Dynamic equivalent reference load [N]; of a spectrum that of its L_10r."""
+    capacity: float
+    """Dynamic load rating of the bearing [N]: C_r, or C_a of a thrust bearing."""
+    ring_capacities: tuple[float, float]
+    """Ratings of the contact of one element with inner and outer ring [N]."""
+    reliability: float
+    """Share of bearings that reach the life."""
+    reliability_factor: float
+    """Factor a_1."""
+    modification_factor: float | None
+    """Factor a_ISO, of a spectrum that of the whole; None without lubrication."""
+    viscosity_ratio: float | None
+    """Viscosity ratio κ, of a spectrum the smallest; None without lubrication."""
+    contamination_factor: float | None
+    """Contamination factor e_C; None without lubrication."""
+    fatigue_load_limit: float | None
+    """Fatigue load limit C_u [N]; None without lubrication."""
+    simple_fatigue_load_limit: float | None
+    """The same by the standard's simple formula, C_0/22 or C_0/8.2 [N]."""
+    model: str
+    """Model in words."""
+
+    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
+    save = display.in_si(TableResult.save)
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        fields = dict(state)
+        if fields.get("l10") is None:  # states of 0.1.0, of L_10r in millions of revolutions alone
+            fields |= {"l10": state["revolutions"], "revolutions": state["revolutions"] * 1e6}
+            fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
+        return super()._restored(fields)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: how long the bearing lives; no life is required of it."""
+        return life_verdict(self)
+
+    @display.in_si
+    def _rows(self) -> list[tuple[str, str]]:
+        if math.isinf(self.l10):
+            return [("life", "infinite: no element is loaded"), *self._others()]
+        rows = [("life L10r", f"{self.l10:.6g} million revolutions")]
+        if self.modification_factor is not None or self.reliability_factor != 1:
+            name = f"life L{round(100 * (1 - self.reliability), 6):g}{'m' * self._is_modified}"
+            rows.append((name, f"{self.revolutions / 1e6:.6g} million revolutions"))
+        if math.isfinite(self.hours):
+            rows.append(("hours", f"{self.hours:.6g}"))
+        return [*rows, *self._others()]
+
+    @property
+    def _is_modified(self) -> bool:
+        return self.modification_factor is not None
+
+    def _others(self) -> list[tuple[str, str]]:
+        return [*super()._rows(), ("model", self.model)]
+
+
+class _Rate(NamedTuple):
+    """Life of a bearing under one load."""
+
+    reference: ReferenceLife
+    cycles: float
+    """Share of the time, times the speed [rad/s]."""
+    factor: float
+    """Factor a_ISO, 1 without lubrication."""
+    kappa: float | None
+
+
+class _Terms(NamedTuple):
+    """What a life counts: edges, the ring that rotates, lubrication and fatigue load limit [N]."""
+
+    edge: Edge
+    rotating: Ring
+    lubrication: Lubrication
+    limit: float | None
+
+    def rate(self, solution: BearingSolution, share: float, speed: float) -> _Rate:
+        """Return the life under the load of a solution, for a share of the time."""
+        bearing, cycles = solution.bearing, share * abs(speed)
+        reference = reference_of(solution, self.edge, self.rotating)
+        if self.limit is None:
+            return _Rate(reference, cycles, 1.0, None)
+        load = reference.equivalent_load
+        factor = self.lubrication.factor(bearing, speed, self.limit, load)
+        return _Rate(reference, cycles, factor, self.lubrication.kappa(bearing, speed))
+
+
+def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> ReferenceLife:
+    """Return the reference life of a solution with these factors for the edges."""
+    loads, factors = solution.loads, np.array(1.0)
+    if solution.lamina_loads is not None:
+        loads = solution.lamina_loads
+        if edge == "standard" and not solution.bearing.aligns:
+            factors = edge_factors(LAMINAE)
+        elif edge == "pressure":
+            factors = solution.edge_factors()
+    return reference_life(solution.bearing, loads, factors, rotating)
+
+
+def _words(solution: BearingSolution, edge: Edge, reliability: float) -> str:
+    """Return the model of the reference life in words."""
+    words = f"ISO/TS 16281, {100 * reliability:g} % reliability, a model"
+    if solution.lamina_loads is None:
+        return words
+    barrels = edge == "standard" and solution.bearing.aligns
+    return f"{words}; {BARRELS if barrels else EDGES[edge]}"
+
+
+def _duties(solution: BearingSolution, spectrum: Iterable[Duty]) -> list[tuple[float, Any, float]]:
+    """Return the parts of a spectrum, checked, with shares that sum to 1."""
+    duties = list(spectrum) if isinstance(spectrum, Iterable) else []
+    if not duties or not all(isinstance(one, Sequence) and len(one) == 3 for one in duties):
+        raise TypeError(
+            f"spectrum must be a list of shares, forces and speeds, such as "
+            f"(0.5, (1000.0, 0.0, None), 100.0), got {spectrum!r}"
+        )
+    places = [f"spectrum[{k}]" for k in range(len(duties))]
+    shares = [above(f"share of {at}", one[0]) for at, one in zip(places, duties, strict=True)]
+    if abs(sum(shares) - 1) > ROUNDED:
+        raise ValueError(f"spectrum must have shares that sum to 1, got {sum(shares):g}")
+    checked = []
+    for place, share, (_, force, speed) in zip(places, shares, duties, strict=True):
+        number = above(f"speed of {place}", speed, -math.inf)
+        if number == 0:
+            raise ValueError(f"speed of {place} must not be 0: at rest there are no revolutions")
+        checked.append((share / sum(shares), _conditions(solution, place, force), number))
+    return checked
+
+
+def _conditions(solution: BearingSolution, place: str, force: Any) -> dict[str, Any]:
+    """Return the keywords of `solve` for a force of a spectrum; all else is as in the solution."""
+    loaded = solution.loaded_directions
+    if loaded is None:
+        raise ValueError(
+            "spectrum must be that of a solution whose loaded directions are known, got one of a "
+            "file of nacre 0.1.0: solve it again"
+        )
+    forces = core.vector(f"force of {place}", 3, force)
+    for axis, value, is_loaded in zip("xyz", forces, loaded, strict=False):
+        if value is None and is_loaded:
+            raise ValueError(f"force of {place} must have a number along {axis}, which is loaded")
+    moved = zip(forces, solution.displacement, strict=True)
+    tilts = list(zip(solution.tilt, solution.moment, loaded[3:], strict=True))
+    return {
+        "force": forces,
+        "displacement": [place if value is None else None for value, place in moved],
+        "moment": [moment if is_loaded else None for _, moment, is_loaded in tilts],
+        "tilt": [None if is_loaded else tilt for tilt, _, is_loaded in tilts],
+    }
+
+
+def _duty_solution(solution: BearingSolution, conditions: Any, speed: float) -> BearingSolution:
+    """Return the bearing solved under a load of a spectrum."""
+    bearing: Any = solution.bearing
+    keywords = conditions | {"rotation": solution.rotation, "rotating": solution.rotating}
+    model, cells = solution.model, solution.cells
+    solved: BearingSolution = bearing.solve(**keywords, speed=speed, model=model, cells=cells)
+    return solved
+
+
+def life_of(
+    solution: BearingSolution,
+    edge: Edge,
+    rotating: Ring | None,
+    speed: float | None,
+    reliability: float,
+    lubrication: Lubrication,
+    limit: float | None,
+    spectrum: Iterable[Duty] | None,
+) -> BearingLife:
+    """Return what `BearingSolution.life` documents."""
+    if not among(edge, EDGES):
+        raise ValueError(f'edge must be "standard", "pressure" or None, got {edge!r}')
+    rotating = solution.rotating if rotating is None else rotating
+    if not among(rotating, RINGS):
+        raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
+    factor = reliability_factor(reliability)
+    lubrication.check(solution.bearing)
+    limit = _limit(solution.bearing, lubrication, limit)
+    terms = _Terms(edge, rotating, lubrication, limit)
+    if spectrum is None:
+        turns = solution.speed if speed is None else above("speed", speed, -math.inf)
+        rates = [terms.rate(solution, 1.0, turns)]
+    elif speed is not None:
+        raise ValueError("speed must not be given beside spectrum, which has speeds")
+    else:
+        rates = [
+            terms.rate(_duty_solution(solution, conditions, turns), share, turns)
+            for share, conditions, turns in _duties(solution, spectrum)
+        ]
+    words = _words(solution, edge, reliability)
+    if lubrication.is_known:
+        words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
+    if spectrum is not None:
+        words += f"; Miner's sum of {len(rates)} loads"
+    return _combined(solution.bearing, terms, rates, (float(reliability), factor), words)
+
+
+def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:
+    """Return the fatigue load limit [N]: the argument, or that of the bearing; None without oil."""
+    if lubrication.is_known:
+        return fatigue_load_limit(bearing) if limit is None else above("fatigue_load_limit", limit)
+    if limit is not None:
+        raise ValueError("fatigue_load_limit must be given beside a lubrication, got none")
+    return None
+
+
+def _combined(
+    bearing: Bearing,
+    terms: _Terms,
+    rates: Sequence[_Rate],
+    reliability: tuple[float, float],
+    words: str,
+) -> BearingLife:
+    """Return the life under all loads, of which each uses up its share: Miner."""
+    turned, is_known = sum(one.cycles for one in rates), terms.lubrication.is_known
+    shares = [one.cycles / turned for one in rates] if turned else [1.0]
+    l10 = _harmonic(shares, [one.reference.l10 for one in rates])
+    modified = _harmonic(shares, [one.reference.l10 * one.factor for one in rates])
+    revolutions = reliability[1] * modified * 1e6
+    capacity = float(bearing.capacity or 0.0)
+    return BearingLife(
+        revolutions=revolutions,
+        hours=revolutions * 2 * math.pi / turned / 3600 if turned else math.inf,
+        l10=l10,
+        equivalent_load=capacity * l10 ** (-0.3 if bearing.rolls else -1 / 3),
+        capacity=capacity,
+        ring_capacities=rates[0].reference.capacities,
+        reliability=reliability[0],
+        reliability_factor=reliability[1],
+        modification_factor=(
+            (modified / l10 if math.isfinite(l10) else rates[0].factor) if is_known else None
+        ),
+        viscosity_ratio=min((one.kappa for one in rates if one.kappa is not None), default=None),
+        contamination_factor=terms.lubrication.cleanliness(bearing)[0] if is_known else None,
+        fatigue_load_limit=terms.limit,
+        simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,
+        model=words,
+    )
+
+
+def _harmonic(shares: Sequence[float], lives: Sequence[float]) -> float:
+    """Return the mean of lives by Miner's rule; infinite where all are."""
+    used = sum(share / life for share, life in zip(shares, lives, strict=True))
+    return 1 / used if used > 0 else math.inf

@@ -1,0 +1,185 @@
+"""Materials by name: numbers with their ranges and sources, and the elastic constants they make."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import resources
+from types import MappingProxyType
+from typing import Any, Literal
+
+import nacre._core as core
+from nacre._tools.units import printable, written
+
+UNITS = {
+    "young": "Pa",
+    "poisson": "",
+    "hardness": "Pa",
+    "yield_stress": "Pa",
+    "flexural_strength": "Pa",
+    "conductivity": "W/(m K)",
+}
+"""SI units of the numbers of cards."""
+WORDS = {
+    "young": "Young's modulus",
+    "poisson": "Poisson's ratio",
+    "hardness": "hardness",
+    "yield_stress": "yield stress",
+    "flexural_strength": "flexural strength",
+    "conductivity": "thermal conductivity",
+}
+"""What the numbers are."""
+ASSUMED = "assumed"
+"""Source of a Poisson's ratio that was not measured."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a material, in SI, with the range of its sources.
+
+    Examples
+    --------
+    >>> young = nacre.materials["ta-C"].numbers["young"]
+    >>> young.value, young.low, young.high, young.unit
+    (572000000000.0, 493000000000.0, 625000000000.0, 'Pa')
+    """
+
+    value: float
+    """Value that a calculation takes."""
+    low: float | None
+    """Lower end of the range; None where the source has no range."""
+    high: float | None
+    """Upper end of the range."""
+    unit: str
+    """SI unit."""
+    source: str
+    """Source that was read, or "assumed"."""
+
+    def __str__(self) -> str:
+        """Return value, range and source."""
+        text = _text(self.value, self.unit)
+        if self.low is not None and self.high is not None:
+            text += f" ({_text(self.low, self.unit)} to {_text(self.high, self.unit)})"
+        return printable(f"{text}; {self.source}")
+
+
+def _text(value: float, unit: str) -> str:
+    """Return a number with its unit, which prefixes are set before where it is a stress."""
+    return written(value, unit) if unit == "Pa" else f"{value:g} {unit}".rstrip()
+
+
+@dataclass(frozen=True, repr=False)
+class Card:
+    """A material: numbers with ranges and sources, and its elastic constants.
+
+    Cards come from `nacre.materials`. Strengths are on a card only with their heat treatment;
+    limits of fatigue are on none, as no source was read that has cycles and load ratio. Numbers
+    of coatings are those of some films: yours has others, within the range or beyond.
+
+    Examples
+    --------
+    >>> card = nacre.materials["100Cr6"]
+    >>> card.elastic
+    Elastic(young=203400000000.0, poisson=0.285)
+    >>> card.numbers["young"].low, card.numbers["young"].high
+    (190000000000.0, 210000000000.0)
+    """
+
+    name: str
+    """Name, as in `nacre.materials` and in case files."""
+    title: str
+    """What it is, with its treatment."""
+    kind: Literal["body", "coating"]
+    """Whether it is a body's material or a coating's."""
+    elastic: core.Elastic
+    """Elastic constants, of the values of Young's modulus and Poisson's ratio."""
+    numbers: Mapping[str, Number] = field(hash=False)
+    """Numbers by name: ``young`` and ``poisson``, and others that have a source; read-only."""
+    source: str
+    """Source of Young's modulus."""
+
+    def __post_init__(self) -> None:
+        """Make the numbers read-only."""
+        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes the card again."""
+        arguments = self.name, self.title, self.kind, self.elastic, dict(self.numbers), self.source
+        return Card, arguments
+
+    def __repr__(self) -> str:
+        """Return where the card is from."""
+        return f"nacre.materials[{self.name!r}]"
+
+    def __str__(self) -> str:
+        """Return a table of all numbers with their sources."""
+        width = max(len(WORDS[name]) for name in self.numbers)
+        rows = (f"{WORDS[name]:<{width}}  {number}" for name, number in self.numbers.items())
+        return printable("\n".join([f"{self.name}: {self.title}", *rows]))
+
+
+def _card(name: str, entry: Mapping[str, Any]) -> Card:
+    """Return the card that an entry of the file describes."""
+    numbers = {
+        key: Number(one["value"], one.get("low"), one.get("high"), UNITS[key], one["source"])
+        for key, one in entry.items()
+        if key in UNITS
+    }
+    elastic = core.Elastic(numbers["young"].value, numbers["poisson"].value)
+    source = numbers["young"].source
+    return Card(name, entry["title"], entry["kind"], elastic, numbers, source)
+
+
+def unknown(name: object, known: Iterable[str]) -> str:
+    """Return a message about a name that no card has, with those that are close."""
+    lower = {one.casefold(): one for one in known}
+    close = difflib.get_close_matches(str(name).casefold(), lower)
+    names = ", ".join(repr(lower[one]) for one in close)
+    hint = f"; close to it are {names}" if close else ""
+    return f"name must be one of nacre.materials, got {name!r}{hint}"
+
+
+class Materials(Mapping[str, Card]):
+    """Materials by name, read-only, as `nacre.materials`.
+
+    Examples
+    --------
+    >>> "TiN" in nacre.materials, nacre.materials["Si3N4"].elastic.young / 1e9
+    (True, 310.0)
+    >>> coating = nacre.Layer(nacre.materials["ta-C"].elastic, thickness=2e-6)
+    """
+
+    @cached_property
+    def _cards(self) -> dict[str, Card]:
+        """Cards of the file, which is read when the first one is used."""
+        text = resources.files("nacre").joinpath("materials.toml").read_text("utf-8")
+        return {name: _card(name, entry) for name, entry in tomllib.loads(text).items()}
+
+    def __getitem__(self, name: str) -> Card:
+        """Return the card of a name, or raise a `KeyError` that names those that are close."""
+        if isinstance(name, str) and name in self._cards:
+            return self._cards[name]
+        raise KeyError(unknown(name, self._cards))
+
+    def __iter__(self) -> Iterator[str]:
+        """Return the names in the order of the file."""
+        return iter(self._cards)
+
+    def __len__(self) -> int:
+        """Return the number of cards."""
+        return len(self._cards)
+
+    def __repr__(self) -> str:
+        """Return the names."""
+        return f"<nacre.materials: {', '.join(self)}>"
+
+    def __reduce__(self) -> str:
+        """Return the name under which the one instance is known."""
+        return "materials"
+
+
+materials = Materials()
+"""Materials by name, each a `nacre.types.Card`."""

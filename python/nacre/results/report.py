@@ -1,0 +1,350 @@
+"""Reports: a page with all that results say, to print, to sign and to keep.
+
+A page is one file of HTML without scripts and without requests. Each class of results says what
+stands in its `Sections`; what they have in common is made here.
+"""
+
+from __future__ import annotations
+
+import datetime
+import html
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+import nacre._core as core
+from nacre._tools.units import rounded, symbol
+from nacre.results import display, svg, tables
+from nacre.results.quantities import INPUTS, Quantity
+from nacre.results.values import encode
+
+Rows = Sequence[tuple[str, str]]
+
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+"""What a browser may load for a page: nothing from elsewhere."""
+MOST_ROWS = 300
+"""Largest number of rows of a table that stand in a page."""
+MOST_LISTED = 12
+"""Largest number of numbers in an input that are written out."""
+DIGITS, EXACT = 4, 9
+"""Digits of numbers in tables, and of inputs."""
+DUST = 1e-15
+"""Size below which an input is the rounding of 0, as of the centre of a grid that was chosen."""
+MOST_COLUMNS = 11
+"""Largest number of columns on a page; a wider table is continued below, by its first column."""
+UNIT = re.compile(r"(.*) \[(.+)\]")
+"""A heading with a unit."""
+AXIS = re.compile(r"\b[xyz](?= \[|$)")
+"""The axis in the heading of a component."""
+BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", "Grid", "Grid.line"}
+"""Classes that need no row of their own among the inputs."""
+STYLE = (
+    "@page{size:A4;margin:16mm}"
+    "body{font:10.5pt/1.4 sans-serif;color:#222;max-width:178mm;margin:8mm auto;padding:0 4mm}"
+    "h1{font-size:17pt;margin:0}h3{font-size:10.5pt;margin:4mm 0 1mm}"
+    "h2{font-size:12.5pt;margin:7mm 0 2mm;border-bottom:1px solid #999;break-after:avoid}"
+    "table{border-collapse:collapse;font-size:9pt}tr,figure{break-inside:avoid}"
+    "td,th{white-space:nowrap;text-align:left;padding:1px 10px 1px 0;vertical-align:top}"
+    ".long td+td{white-space:normal;overflow-wrap:anywhere}"
+    ".number{margin-bottom:3mm;font-size:8pt}.number td+td,.number th+th{text-align:right}"
+    ".number th{white-space:normal;vertical-align:bottom}"
+    ".verdict{border-left:5px solid #888;padding:1mm 3mm;margin:4mm 0}"
+    ".good{border-color:#2a7d3f}.fair{border-color:#c98a00}.bad{border-color:#b3261e}"
+    ".sign td{border-bottom:1px solid #222;width:60mm;height:11mm;vertical-align:bottom}"
+    ".pictures{display:flex;flex-wrap:wrap;gap:4mm}figure{margin:0;width:86mm}"
+    "figcaption{font-size:9pt}pre{white-space:pre-wrap;font-size:8.5pt;overflow-wrap:anywhere}"
+    + svg.STYLE
+)
+"""Style sheet of the page, for A4."""
+
+
+class Picture(NamedTuple):
+    """A picture as SVG, and what it shows."""
+
+    caption: str
+    drawing: str
+
+
+class Table(NamedTuple):
+    """A table of parts: one unit a column."""
+
+    title: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    notes: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Sections:
+    """What a report says of a result."""
+
+    title: str
+    """What it is."""
+    inputs: Rows = ()
+    """Inputs by name, with units."""
+    numbers: Rows = ()
+    """Quantities by name, with units and errors."""
+    pictures: Sequence[Picture] = ()
+    """Pictures."""
+    tables: Sequence[Table] = ()
+    """Parts: elements, layers, steps, cases."""
+    model: Rows = ()
+    """Theory, grid, how the solution ended, and what is not counted."""
+    warnings: Sequence[str] = ()
+    """Warnings."""
+
+
+class Reported(Protocol):
+    """A result that a report can be written of."""
+
+    @property
+    def _sections(self) -> Callable[..., Sections]: ...
+
+
+def write(
+    path: Path,
+    results: Sequence[Reported],
+    case: str | None = None,
+    inputs: Rows = (),
+    stress: Mapping[str, Any] | None = None,
+) -> None:
+    """Write the report of results of one case, whose file is `case`; its name is that of `path`.
+
+    The first result takes keywords of stresses for its picture over depth.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", core.NacreWarning)
+        judgements = list(verdicts(results))
+        parts = [results[0]._sections(**(stress or {})), *(one._sections() for one in results[1:])]
+    notes = [Sections("", inputs, warnings=[str(one.message) for one in caught])]
+    today = datetime.date.today().isoformat()
+    path.write_text(page(path.stem, today, [*parts, *notes], judgements, case), encoding="utf-8")
+
+
+def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
+    """Return the writer of the report of a result, by its ending."""
+    return {".html": lambda path: write(path, [result])}
+
+
+def verdicts(results: Sequence[Reported]) -> Iterator[Any]:
+    """Yield the verdicts of results; one that has to be computed only where there is no other."""
+    members = [one for one in (getattr(result, "verdict", None) for result in results) if one]
+    properties = [one for one in members if not callable(one)]
+    yield from properties
+    for compute in members if not properties else ():
+        with suppress(ValueError):  # of contacts whose stresses are not known
+            yield compute()
+
+
+def page(
+    name: str,
+    date: str,
+    parts: Sequence[Sections],
+    judgements: Sequence[Any],
+    case: str | None = None,
+) -> str:
+    """Return the page of a report."""
+    title = html.escape(parts[0].title[:1].upper() + parts[0].title[1:])
+    version = html.escape(core.__version__)
+    head = [("case", name), ("date", date), ("computed by", f"nacre {core.__version__}")]
+    texts = list(dict.fromkeys(text for part in parts for text in part.warnings))
+    several = sum(bool(part.title) for part in parts) > 1
+
+    def each(name: str, block: Any) -> str:
+        blocks = [(part.title, block(getattr(part, name))) for part in parts if getattr(part, name)]
+        return "".join(
+            (f"<h3>{html.escape(words)}</h3>" if several and words else "") + text
+            for words, text in blocks
+        )
+
+    chapters = {
+        "Given": each("inputs", _pairs),
+        "Results": each("numbers", _pairs),
+        "Pictures": each("pictures", _figures),
+        "Parts": each("tables", lambda members: "".join(map(_table, members))),
+        "Model and limits": each("model", _pairs),
+        "Warnings": "".join(f"<p>{html.escape(text)}</p>" for text in texts)
+        or "<p>no warnings</p>",
+        "Case file": case and f"<pre>{html.escape(case)}</pre>",
+    }
+    return (
+        f"<!doctype html><html lang='en'><head><meta charset='utf-8'>"
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+        f"<meta name='generator' content='nacre {version}'>"
+        f"<title>{title}: {html.escape(name)}</title><style>{STYLE}</style></head><body>"
+        f"<h1>{title}</h1>{''.join(map(_verdict, judgements))}{_pairs(head)}"
+        "<table class='sign'><tr><td>name</td><td>signature</td></tr></table>"
+        + "".join(f"<h2>{title}</h2>{text}" for title, text in chapters.items() if text)
+        + "</body></html>\n"
+    )
+
+
+def input_rows(values: Mapping[str, Any], units: Mapping[str, str] | None = None) -> Rows:
+    """Return inputs by path, with units: those of `units` first. Arrays stand by their SHA-256."""
+    by_name = INPUTS | dict(units or {})
+    leaves = (_leaves(name, encode(value, digest=True), by_name) for name, value in values.items())
+    return [row for rows in leaves for row in rows]
+
+
+def _leaves(path: str, value: Any, units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Yield the rows of an encoded value."""
+    if isinstance(value, Mapping) and value.keys() == {"array"}:
+        shape, digest = value["array"]
+        yield path, f"{' × '.join(map(str, shape))} numbers, SHA-256 {digest}"
+    elif isinstance(value, Mapping):
+        is_call = len(value) == 1 and (kind := next(iter(value)))[:1].isupper()
+        if is_call and kind not in BODIES:
+            yield path, kind
+        for key, item in (value[kind] if is_call else value).items():
+            yield from _leaves(f"{path}.{key}", item, units)
+    elif isinstance(value, list) and not all(isinstance(one, float | int | None) for one in value):
+        for number, item in enumerate(value):
+            yield from _leaves(f"{path}[{number}]", item, units)
+    elif value is not None and not (isinstance(value, list) and all(v is None for v in value)):
+        # Limits of layers have the unit of the name before.
+        names = re.sub(r"\[\d+\]", "", path).split(".")[:-3:-1]
+        yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
+
+
+def _leaf(value: Any, unit: str) -> str:
+    if isinstance(value, list):
+        texts = ["–" if one is None else _leaf(one, unit) for one in value]
+        more = f" and {len(texts) - MOST_LISTED} more" if len(texts) > MOST_LISTED else ""
+        return ", ".join(texts[:MOST_LISTED]) + more
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    return display.number(value if abs(value) > DUST else 0.0, unit, EXACT)
+
+
+def other_numbers(result: Any) -> Rows:
+    """Return the quantities of a result that its printed table leaves out."""
+    rows = []
+    for row, value in tables.numbers(result):
+        if not row.label and "." not in row.path and np.isfinite(value).all():
+            number = display.pair if row.dims else display.number
+            rows.append((row.words, number(value, result._si(row))))
+    return rows
+
+
+def table(
+    title: str,
+    rows: Iterable[Iterable[Any]],
+    quantities: Iterable[Quantity] = (),
+    notes: Sequence[str] = (),
+) -> Table:
+    """Return a table of rows, the heading first; columns get the units of quantities by name."""
+    head, *body = ([*row] for row in rows)
+    units = {row.name: symbol(row.unit) for row in quantities}
+    columns = {str(name): [row[k] for row in body] for k, name in enumerate(head)}
+    columns = {name: values for name, values in columns.items() if not _is_empty(values)}
+    largest: dict[str, float] = {}
+    for name, values in columns.items():
+        stem = AXIS.sub("", name)
+        largest[stem] = max([largest.get(stem, 0.0), *map(abs, filter(_is_number, values))])
+    cells = [
+        _column(name, values, units.get(name, ""), display.SLIGHT * largest[AXIS.sub("", name)])
+        for name, values in columns.items()
+    ]
+    texts = [*zip(*(column for _, column in cells), strict=True)][:MOST_ROWS]
+    more = [f"and {len(body) - MOST_ROWS} more rows"] if len(body) > MOST_ROWS else []
+    return Table(title, [name for name, _ in cells], texts, [*notes, *more])
+
+
+def _is_empty(values: Sequence[Any]) -> bool:
+    """Return whether a column has rows, but nothing in them."""
+    return bool(values) and all(value != value or value == "" for value in values)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _column(name: str, values: Sequence[Any], unit: str, rounding: float) -> tuple[str, list[str]]:
+    """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
+    if match := UNIT.fullmatch(name):
+        name, unit = match.groups()
+    numbers = [abs(value) for value in values if _is_number(value)]
+    scale = display.scale_in(max(numbers, default=0.0), unit)
+    scale = scale if max(numbers, default=0.0) > rounding else display.scale_in(0.0, unit)
+
+    def cell(value: Any) -> str:
+        if _is_number(value):
+            return rounded(scale.factor * value if abs(value) > rounding else 0.0, DIGITS)
+        return "" if value != value else {math.inf: "∞", -math.inf: "−∞"}.get(value, str(value))
+
+    words = name.replace("_", " ")
+    return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
+
+
+def contact_pictures(result: Any) -> list[Picture]:
+    """Return the pressure of a contact along x and y through its largest, and over the cells."""
+    pressure, places, grid = result.pressure, (result.x, result.y), result.grid
+    if not pressure.any():
+        return []
+    cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
+    peak = np.unravel_index(pressure.argmax(), pressure.shape)
+    y_axis, pictures = svg.Axis("pressure", "Pa"), []
+    for axis in (1,) if grid.is_line else (0, 1):
+        line = np.take(pressure, peak[1 - axis], axis=1 - axis)[cells[axis]]
+        curve = svg.Curve(places[axis][cells[axis]], line)
+        drawing = svg.lines([curve], (svg.Axis("xy"[axis], "m"), y_axis))
+        pictures.append(Picture(f"Pressure along {'xy'[axis]}, through the largest.", drawing))
+    if not grid.is_line:
+        ends = [
+            (float(side[part][0] - step / 2), float(side[part][-1] + step / 2))
+            for side, part, step in zip(places, cells, grid.spacing, strict=True)
+        ]
+        sides = [svg.Axis(name, "m", end) for name, end in zip("xy", ends, strict=True)]
+        loaded = np.where(pressure > 0, pressure, np.nan)[cells[0], cells[1]]
+        drawing = svg.image(loaded, (sides[0], sides[1], y_axis))
+        pictures.append(
+            Picture(
+                "Pressure over the contact, x and y each to its scale; white: no contact.", drawing
+            )
+        )
+    return pictures
+
+
+def _pairs(rows: Rows) -> str:
+    """Return a table of names and texts, in which a zero has no exponent."""
+    pairs = ((html.escape(name), html.escape(text.replace("0e+00", "0"))) for name, text in rows)
+    cells = (f"<tr><td>{name}</td><td>{text}</td></tr>" for name, text in pairs)
+    return f"<table class='long'>{''.join(cells)}</table>"
+
+
+def _figures(pictures: Iterable[Picture]) -> str:
+    figures = (
+        f"<figure>{one.drawing}<figcaption>{html.escape(one.caption)}</figcaption></figure>"
+        for one in pictures
+    )
+    return f"<div class='pictures'>{''.join(figures)}</div>"
+
+
+def _table(members: Table) -> str:
+    """Return a table, in parts as wide as a page."""
+    lines, parts = [members.head, *members.rows], []
+    for first in range(1, max(len(members.head), 2), MOST_COLUMNS - 1):
+        columns = [0, *range(first, min(first + MOST_COLUMNS - 1, len(members.head)))]
+        rows = "".join(
+            "<tr>" + "".join(f"<{tag}>{html.escape(line[k])}</{tag}>" for k in columns) + "</tr>"
+            for tag, line in zip(("th", *["td"] * len(members.rows)), lines, strict=True)
+        )
+        parts.append(f"<table class='number'>{rows}</table>")
+    notes = "".join(f"<p>{html.escape(note)}</p>" for note in members.notes)
+    return f"<h3>{html.escape(members.title)}</h3>{''.join(parts)}{notes}"
+
+
+def _verdict(verdict: Any) -> str:
+    """Return a verdict: its level, its sentence, and further lines."""
+    lines = "".join(f"<br>{html.escape(line)}" for line in verdict.lines)
+    level = html.escape(verdict.level)
+    return f"<p class='verdict {level}'><b>{level}: {html.escape(verdict.words)}</b>{lines}</p>"

@@ -1,0 +1,302 @@
+"""Pictures as SVG, from numbers to text: curves, loads around a ring, and maps of cells.
+
+Colours are names of classes, which `STYLE` sets, so that a page can have others in print. Numbers
+are in SI, and are drawn in the units that are set.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import math
+import struct
+import zlib
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._tools.units import Scale, symbol
+from nacre.results import display
+
+Array = npt.NDArray[np.float64]
+Ends = tuple[float, float]
+
+WIDTH, HEIGHT = 460, 290
+LEFT, RIGHT, TOP, BOTTOM = 62, 12, 12, 42
+"""Sides of a picture, and what is left free around its curves, in pixels."""
+LINE = 16
+"""Height of a line of text."""
+BAR = 78
+"""Width of a colour bar with its numbers."""
+MOST_POINTS, MOST_CELLS = 300, 240
+"""Largest numbers of points of a curve, and of cells along a side of a map."""
+ABREAST, STACKED = 52, 32
+"""Least distances of ticks along x and along y, where numbers are above each other."""
+INNER, OUTER = 56.0, 130.0
+"""Radii of the ring from which bars stand out, and of the largest load."""
+MOST_NUMBERS = 20
+"""Largest number of elements of a ring that are numbered."""
+INSET, ABOVE = 0.36, 2.0
+"""Size of an inset over that of the picture, and of y over the curves, so that it is free."""
+HEADROOM = 0.05
+"""Share of the range that stays free beyond curves, where they do not end at 0."""
+VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725"
+"""Colours of Matplotlib's map viridis, at equal distances."""
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555")
+"""Colours of curves that everybody can tell apart: Wong, Nature Methods 8 (2011) 441."""
+STYLE = (
+    "svg text{font:11px sans-serif;fill:#222}"
+    "svg .frame{fill:none;stroke:#888}svg .paper{fill:#fff}svg .grid{stroke:#ddd}"
+    "svg .mark{stroke:#666;stroke-dasharray:2 3}svg polyline{fill:none;stroke-width:1.6}"
+    "svg .dashed{stroke-dasharray:6 4}"
+    "svg .middle{text-anchor:middle}svg .end{text-anchor:end}svg image{image-rendering:pixelated}"
+    + "".join(f"svg .c{k}{{stroke:{c}}}svg .p{k}{{fill:{c}}}" for k, c in enumerate(COLOURS))
+)
+"""Style sheet of pictures."""
+
+
+class Axis(NamedTuple):
+    """What is drawn along an axis; the ends are those of the numbers by default."""
+
+    name: str
+    unit: str = ""
+    ends: Ends | None = None
+
+
+class Curve(NamedTuple):
+    """Numbers along x and y, drawn as a line, a dashed line or points."""
+
+    x: npt.ArrayLike
+    y: npt.ArrayLike
+    label: str = ""
+    look: str = "line"
+
+
+class Side:
+    """An axis in a picture: which coordinate a number has.
+
+    >>> Side(Axis("x", "m", (0.0, 2e-3)), (0.0, 2e-3), 60, 460).at(np.array([5e-4])).tolist()
+    [160.0]
+    """
+
+    def __init__(self, axis: Axis, ends: Ends, start: float, end: float) -> None:
+        self.scale: Scale = display.scale_in(max(map(abs, ends)), symbol(axis.unit))
+        unit = f"[{self.scale.unit}]" if self.scale.unit else ""
+        self.label = f"{axis.name} {unit}".strip()
+        self.low, self.high = (self.scale.factor * one for one in ends)
+        self.start, self.end = start, end
+
+    def at(self, values: Array) -> Array:
+        """Return the coordinates of numbers in SI."""
+        return self.place(self.scale.factor * values)
+
+    def place(self, values: Array) -> Array:
+        """Return the coordinates of numbers in the unit of the axis."""
+        share = (values - self.low) / ((self.high - self.low) or 1.0)
+        return self.start + share * (self.end - self.start)
+
+    def ticks(self) -> list[tuple[float, str]]:
+        """Return the coordinates of round numbers, and these as text."""
+        apart = ABREAST if self.end > self.start else STACKED
+        values = round_numbers(self.low, self.high, abs(self.end - self.start) / apart)
+        return [(float(self.place(v)), f"{v:.6g}") for v in values]
+
+
+def round_numbers(low: float, high: float, most: float) -> Array:
+    """Return multiples of 1, 2 or 5 times a power of ten between two numbers.
+
+    >>> round_numbers(-0.3, 0.92, 7).tolist()
+    [-0.2, 0.0, 0.2, 0.4, 0.6, 0.8]
+    """
+    if not high > low:
+        return np.array([low])
+    least = (high - low) / max(most, 2.0)
+    power = math.floor(math.log10(least))
+    step = next(factor for factor in (1, 2, 5, 10) if factor * 10.0**power >= least)
+    first, last = (r / (step * 10.0**power) for r in (low, high))
+    counts = np.arange(math.ceil(first - 1e-9), math.floor(last + 1e-9) + 1)
+    return np.round(counts * step * 10.0**power, max(0, -power)) + 0.0
+
+
+def lines(
+    curves: Sequence[Curve],
+    axes: tuple[Axis, Axis],
+    marks: Sequence[float] = (),
+    inset: Ends | None = None,
+    size: tuple[float, float] = (WIDTH, HEIGHT),
+) -> str:
+    """Return a picture of curves, with vertical lines at `marks`, and a part of x as an inset.
+
+    The inset is in the upper right corner, above the curves.
+    """
+    points = [_thinned(curve, axes[0].ends or (-math.inf, math.inf)) for curve in curves]
+    low, high = _ends([part for _, part in points], has_zero=True)
+    x_ends = axes[0].ends or _ends([part for part, _ in points])
+    labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
+    x = Side(axes[0], x_ends, LEFT, size[0] - RIGHT)
+    y_ends = axes[1].ends or (low, high * (1.0 if inset is None else ABOVE))
+    y = Side(axes[1], y_ends, size[1] - BOTTOM, TOP + LINE * len(labels))
+    parts = [_frame(x, y)]
+    parts += [_curve(k, one.look, x, y, points[k]) for k, one in enumerate(curves)]
+    for mark in x.at(np.array([one for one in marks if x_ends[0] < one < x_ends[1]])):
+        parts.append(f"<path class='mark' d='M{mark:.1f} {y.start:.1f}V{y.end:.1f}'/>")
+    for row, (k, label) in enumerate(labels):
+        parts.append(f"<path class='c{k % 7}' stroke-width='2' d='M{LEFT} {TOP + LINE * row}h18'/>")
+        parts.append(_text(label, LEFT + 24, TOP + LINE * row + 4))
+    if inset is not None:
+        small = (INSET * size[0], INSET * size[1])
+        place = (
+            f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}' width='{small[0]}' height='{small[1]}'"
+        )
+        units = axes[0]._replace(name="", ends=inset), axes[1]._replace(name="")
+        inner = lines([one._replace(label="") for one in curves], units, marks, None, small)
+        parts.append(inner.replace("<svg", f"<svg {place}", 1))
+    return _picture(parts, size)
+
+
+def bars(
+    angles: npt.ArrayLike, loads: npt.ArrayLike, axis: Axis, labels: Sequence[str] = ()
+) -> str:
+    """Return loads ``(Z, n)`` around a ring: bars at angles from x [rad], n beside each other."""
+    heights = np.asarray(loads, dtype=np.float64)
+    count, series = heights.shape
+    places = np.broadcast_to(np.asarray(angles, dtype=np.float64).reshape(count, -1), heights.shape)
+    x, y = WIDTH / 2, TOP + LINE * (len(labels) + 1) + OUTER
+    radius = Side(axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
+    width = min(7.0, 0.7 * 2 * math.pi * INNER / (count * series))
+    parts = [_text(radius.label, x, TOP + 4, "middle")]
+    for length, number in radius.ticks():
+        parts.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
+        parts.append(_text(number, x + 3, y - length - 2))
+    for k, label in enumerate(labels):
+        parts.append(f"<path class='c{k}' stroke-width='7' d='M4 {TOP + LINE * (k + 1)}h10'/>")
+        parts.append(_text(label, 20, TOP + LINE * (k + 1) + 4))
+    shifts = 1.2 * width / INNER * (np.arange(series) - (series - 1) / 2)
+    for (j, k), end in np.ndenumerate(radius.at(heights)):
+        c, s = math.cos(places[j, k] + shifts[k]), -math.sin(places[j, k] + shifts[k])
+        ends = f"M{x + INNER * c:.1f} {y + INNER * s:.1f}L{x + end * c:.1f} {y + end * s:.1f}"
+        if end > INNER:
+            parts.append(f"<path class='c{k}' stroke-width='{width:.1f}' d='{ends}'/>")
+        if k == 0 and j % math.ceil(count / MOST_NUMBERS) == 0:
+            across, down = math.cos(places[j, 0]), -math.sin(places[j, 0])
+            place = x + (INNER - 12) * across, y + (INNER - 12) * down + 4
+            parts.append(_text(f"{j}", *place, "middle"))
+    return _picture(parts, (WIDTH, y + OUTER + LINE))
+
+
+def image(values: Array, axes: tuple[Axis, Axis, Axis]) -> str:
+    """Return a map of cells ``(nx, ny)``, x to the right and y upwards; NaN stays white.
+
+    The axes are those of x and y, whose ends are those of the map, and of the values.
+    """
+    finite = values[np.isfinite(values)]
+    low, high = axes[2].ends or (0.0, float(finite.max(initial=0.0)) or 1.0)
+    spans = [end - start for start, end in (axis.ends or (0.0, 1.0) for axis in axes[:2])]
+    widest, highest = WIDTH - LEFT - RIGHT - BAR, 1.2 * HEIGHT
+    width = max(60.0, min(widest, highest * spans[0] / spans[1]))
+    height = max(60.0, min(highest, width * spans[1] / spans[0]))
+    x = Side(axes[0], axes[0].ends or (0.0, 1.0), LEFT, LEFT + width)
+    y = Side(axes[1], axes[1].ends or (0.0, 1.0), TOP + height, TOP)
+    right = LEFT + width + RIGHT
+    colour = Side(axes[2], (low, high), y.start, y.end)
+    scale = np.linspace(low, high, 128)[None, :]
+    parts = [
+        _cells((values - low) / ((high - low) or 1.0), LEFT, TOP, width, height),
+        _cells((scale - low) / ((high - low) or 1.0), right, TOP, 12, height),
+        _frame(x, y, "frame"),
+        *(_text(number, right + 16, place + 4) for place, number in colour.ticks()),
+        _text(colour.label, right + 12, TOP + height + 34, "end"),
+    ]
+    return _picture(parts, (WIDTH, TOP + height + BOTTOM))
+
+
+def _cells(shares: Array, x: float, y: float, width: float, height: float) -> str:
+    """Return an image of shares of the colour map, in place."""
+    data = base64.b64encode(png(shares)).decode()
+    place = f"x='{x:.1f}' y='{y:.1f}' width='{width:.1f}' height='{height:.1f}'"
+    return f"<image {place} preserveAspectRatio='none' href='data:image/png;base64,{data}'/>"
+
+
+def png(shares: Array) -> bytes:
+    """Return a PNG of shares of viridis ``(nx, ny)`` from 0 to 1, y upwards; NaN is white."""
+    keep = [np.linspace(0, n - 1, min(n, MOST_CELLS)).round().astype(int) for n in shares.shape]
+    rows = shares[np.ix_(*keep)].T[::-1]
+    index = 1 + np.round(254 * np.clip(np.nan_to_num(rows), 0.0, 1.0))
+    pixels = np.where(np.isfinite(rows), index, 0).astype(np.uint8)
+    nodes = np.array([list(bytes.fromhex(colour)) for colour in VIRIDIS.split()])
+    along = np.linspace(0, len(nodes) - 1, 255)
+    colours = [np.interp(along, np.arange(len(nodes)), nodes[:, k]).round() for k in range(3)]
+    palette = b"\xff\xff\xff" + np.stack(colours, axis=1).astype(np.uint8).tobytes()
+    head = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 3, 0, 0, 0)
+    lines_of = np.insert(pixels, 0, 0, axis=1).tobytes()  # each begins with its filter, none
+    chunks = [
+        (b"IHDR", head),
+        (b"PLTE", palette),
+        (b"IDAT", zlib.compress(lines_of, 9)),
+        (b"IEND", b""),
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks
+    )
+
+
+def _thinned(curve: Curve, ends: Ends) -> tuple[Array, Array]:
+    """Return the finite points of a curve between two places, not too many, with its extremes."""
+    x, y = (np.asarray(part, dtype=np.float64) for part in (curve.x, curve.y))
+    inside = np.isfinite(x) & np.isfinite(y) & (x >= ends[0]) & (x <= ends[1])
+    x, y = x[inside], y[inside]
+    if x.size <= MOST_POINTS:
+        return x, y
+    places = np.linspace(0, x.size - 1, MOST_POINTS - 2).round().astype(int)
+    keep = np.union1d(places, [y.argmax(), y.argmin()])
+    return x[keep], y[keep]
+
+
+def _ends(parts: Sequence[Array], has_zero: bool = False) -> Ends:
+    """Return the ends of numbers; with 0 among them, they have room beyond."""
+    values = np.concatenate([*parts, [0.0]] if has_zero or not any(map(np.size, parts)) else parts)
+    low, high = float(values.min()), float(values.max())
+    if low == high:  # one number, or none
+        low, high = min(low, 0.0), max(high, 0.0) or 1.0
+    room = HEADROOM * (high - low) if has_zero else 0.0
+    return low - room * (low < 0), high + room * (high > 0)
+
+
+def _frame(x: Side, y: Side, paper: str = "frame paper") -> str:
+    """Return the frame of a picture, with ticks and labels."""
+    width, height = x.end - x.start, y.start - y.end
+    size = f"width='{width:.1f}' height='{height:.1f}'"
+    parts = [f"<rect class='{paper}' x='{x.start}' y='{y.end}' {size}/>"]
+    for place, number in x.ticks():
+        parts.append(f"<path class='frame' d='M{place:.1f} {y.start:.1f}v4'/>")
+        parts.append(_text(number, place, y.start + 16, "middle"))
+    for place, number in y.ticks():
+        parts.append(f"<path class='frame' d='M{x.start:.1f} {place:.1f}h-4'/>")
+        parts.append(_text(number, x.start - 7, place + 4, "end"))
+    parts.append(_text(x.label, (x.start + x.end) / 2, y.start + 34, "middle"))
+    middle = (y.start + y.end) / 2
+    turned = f"<g transform='rotate(-90 12 {middle:.1f})'>"
+    return "".join(parts) + turned + _text(y.label, 12, middle + 2, "middle") + "</g>"
+
+
+def _curve(number: int, look: str, x: Side, y: Side, points: tuple[Array, Array]) -> str:
+    """Return a curve, cut off at the ends of y and x."""
+    places = np.stack([x.at(points[0]), y.at(points[1])], axis=1)
+    if look == "points":
+        dots = (
+            f"<circle class='p{number % 7}' cx='{a:.1f}' cy='{b:.1f}' r='2.2'/>" for a, b in places
+        )
+        return "".join(dots)
+    text = " ".join(f"{a:.1f},{b:.1f}" for a, b in places)
+    return f"<polyline class='c{number % 7} {look}' points='{text}'/>"
+
+
+def _text(words: str, x: float, y: float, side: str = "start") -> str:
+    return f"<text class='{side}' x='{x:.1f}' y='{y:.1f}'>{html.escape(words)}</text>"
+
+
+def _picture(parts: Sequence[str], size: tuple[float, float]) -> str:
+    return f"<svg viewBox='0 0 {size[0]:.0f} {size[1]:.0f}'>{''.join(parts)}</svg>"
