@@ -344,7 +344,8 @@ def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     again = back.contact(7, "outer")
     assert again is not None
     assert again.load == pytest.approx(contact.load, rel=1e-8)
-    # Six lines say what was solved, one the error of the peak: there is no pressure at the edge.
+    # Seven lines have the verdict and what was solved, one the error of the peak: there is no
+    # pressure at the edge.
     assert light.edge_pressure == 0.0
     assert light.save(tmp_path / "spherical.csv").read_text("utf-8").count("\n") == 14 + 1 + 7 + 1
     assert light.save(tmp_path / "spherical.png").stat().st_size > 10_000

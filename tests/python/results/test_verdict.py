@@ -9,7 +9,6 @@ import math
 import pickle
 import re
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,6 @@ from bodies import STEEL, quiet
 from nacre import fatigue
 from nacre._tools.units import plain
 from nacre.bearing import BearingSolution, CylindricalRoller, DeepGrooveBall
-from nacre.bearing.verdict import life_verdict
 from nacre.indent import Fit
 from nacre.results.verdict import Demand, Verdict, judged
 from results import solved
@@ -30,7 +28,8 @@ DLC = nacre.Layer(nacre.Elastic(300e9, 0.25), 2e-6, name="DLC")
 COATED = nacre.HalfSpace(STEEL, [DLC])
 SENTENCE = re.compile(
     r"(?P<outcome>[A-Z][a-z ]+), (?P<factor>[\d. ]+) times: (?P<part>[^,]+), [^\d]+"
-    r"(?P<value>[\d.][\d. ]*) (?P<unit>\S+)( ± [^a-z]+ %)?( at [^,]+)?, of (?P<limit>[\d. ]+) \S+\."
+    r"(?P<value>[\d.][\d. ]*) (?P<unit>\S+)( ± (over )?[\d.]+ %)?( at [^,]+)?"
+    r", of (?P<limit>[\d. ]+) \S+\."
 )
 """A sentence on a limit."""
 HALF_DIGIT = 0.005
@@ -426,13 +425,13 @@ def test_an_unfinished_bearing_is_not_judged() -> None:
 
 def test_lives() -> None:
     still, turning = borne("balls"), borne("balls", 2 * math.pi * 25)
-    millions = still.life().revolutions
+    millions = still.life().revolutions / 1e6
     assert still.verdict.words == (
         f"Lives {plain(millions, 3)} million revolutions (L10r; 90 %, ISO/TS 16281, without "
         "lubrication)."
     )
     # 25 turns a second are 1500 a minute.
-    millions = turning.life().revolutions
+    millions = turning.life().revolutions / 1e6
     hours = plain(1e6 * millions / 1500 / 60, 3)
     assert turning.verdict.words == (
         f"Lives {hours} h (L10r {plain(millions, 3)} million revolutions at 1500/min; 90 %, "
@@ -445,16 +444,17 @@ def test_lives() -> None:
     assert infinite.words == "Lives without end: no element is loaded."
 
 
-def test_a_life_that_knows_hours_and_lubrication_tells_them() -> None:
-    life: Any = SimpleNamespace(revolutions=1.28e9, hours=14200.0, l10=1280.0)
-    assert life_verdict(life).words == (
+def test_hours_reliability_and_lubrication_of_a_life_are_told() -> None:
+    known = borne("balls").life()
+    life = dataclasses.replace(known, revolutions=1.278e9, hours=14200.0)
+    assert life.verdict.words == (
         "Lives 14 200 h (L10r 1280 million revolutions at 1500/min; 90 %, ISO/TS 16281, without "
         "lubrication)."
     )
-    life = SimpleNamespace(
-        **vars(life) | {"reliability": 0.95, "modification_factor": 2.0, "hours": math.inf}
+    oiled = dataclasses.replace(
+        known, revolutions=1.28e9, hours=math.inf, reliability=0.95, modification_factor=2.0
     )
-    assert life_verdict(life).words == (
+    assert oiled.verdict.words == (
         "Lives 1280 million revolutions (L5m; 95 %, ISO 281, with a_ISO)."
     )
 
