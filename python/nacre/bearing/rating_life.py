@@ -12,6 +12,7 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.typing import among
+from nacre._tools.units import rounded
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, above
 from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, reference_life
@@ -121,12 +122,12 @@ class BearingLife(TableResult):
     def _rows(self) -> list[tuple[str, str]]:
         if math.isinf(self.l10):
             return [("life", "infinite: no element is loaded"), *self._others()]
-        rows = [("life L10r", f"{self.l10:.6g} million revolutions")]
+        rows = [("life L10r", f"{rounded(self.l10, 4)} million revolutions")]
         if self.modification_factor is not None or self.reliability_factor != 1:
             name = f"life L{round(100 * (1 - self.reliability), 6):g}{'m' * self._is_modified}"
-            rows.append((name, f"{self.revolutions / 1e6:.6g} million revolutions"))
+            rows.append((name, f"{rounded(self.revolutions / 1e6, 4)} million revolutions"))
         if math.isfinite(self.hours):
-            rows.append(("hours", f"{self.hours:.6g}"))
+            rows.append(("hours", rounded(self.hours, 4)))
         return [*rows, *self._others()]
 
     def _sections(self) -> Sections:

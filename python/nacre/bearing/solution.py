@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import among
-from nacre._tools.units import printable, symbol
+from nacre._tools.units import printable, rounded, symbol
 from nacre.bearing.contact_laws import LAMINAE, bodies_of
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
@@ -67,10 +67,17 @@ ARRAYS = (
     "tangent",
 )
 """Arrays in the state of a solution."""
+ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": ("mrad", 1e3)}
+"""Units in which angles are printed, and how many there are in a radian."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
 """What a report says of the model."""
+
+
+def _angles(name: str, values: Iterable[float]) -> list[str]:
+    """Return angles in the units in which they are printed."""
+    return [rounded(ANGLES[name][1] * value, 4) for value in values]
 
 
 def edge_pressure(pressures: Array) -> Array:
@@ -645,7 +652,8 @@ class BearingSolution(Tabular):
         rows = []
         for row in (kinds[name] for name in VECTORS):
             values = [self._rounded(row.name, value) for value in row.of(self)]
-            rows.append((row.label, display.pair(values, row.si())))
+            angles = f"({', '.join(_angles(row.name, values))}) mrad" if row.name == "tilt" else ""
+            rows.append((row.label, angles or display.pair(values, row.si())))
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
             if not math.isnan(getattr(self, name)):
                 unit, digits = kinds[name].si(), self._digits(name)
@@ -666,6 +674,14 @@ class BearingSolution(Tabular):
                 f"balance {report.balance:.0e}",
             ),
         ]
+
+    def _printed(self, row: Quantity, name: str, values: Array) -> list[str]:
+        """Return heading and cells of a column of the table of elements, in one unit."""
+        numbers = [self._rounded(row.name, float(value)) for value in values]
+        if row.name in ANGLES:
+            return [f"{name} [{ANGLES[row.name][0]}]", *_angles(row.name, numbers)]
+        heading, texts = display.column(name, numbers, row.si(), self._digits(row.name))
+        return [heading, *texts]
 
     def _rounded(self, name: str, value: float) -> float:
         """Return a number as it is printed: 0 where it is rounding beside loads and approaches."""
@@ -693,11 +709,10 @@ class BearingSolution(Tabular):
     def __str__(self) -> str:
         """Return the verdict, the main numbers, and a table of the loaded elements."""
         columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
-        lines = [["element", *(name for _, name, _ in columns)]]
-        for j in np.flatnonzero(carrying(self.loads).any(axis=1)):
-            values = [(row, self._rounded(row.name, float(v[j]))) for row, _, v in columns]
-            texts = (display.number(v, row.si(), self._digits(row.name)) for row, v in values)
-            lines.append([f"{j}", *texts])
+        loaded = np.flatnonzero(carrying(self.loads).any(axis=1))
+        cells = [["element", *map(str, loaded)]]
+        cells += [self._printed(row, name, values[loaded]) for row, name, values in columns]
+        lines = [*zip(*cells, strict=True)]
         table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
         return (
             f"{self.verdict}\n\n"

@@ -388,7 +388,7 @@ class FatigueSummary(Tabular, Warned):
 
     def _printed(self) -> tuple[list[list[str]], list[str]]:
         """Return the rows of the printed table, the heading first, and notes below it."""
-        rows = [["", "needs", "value", "z", "y", "safety factor"]]
+        rows = [["", "limit needed", "value", "z", "y", "safety factor"]]
         words = {row.name: row.label for row in PROFILE}
         for layer in self.layers:
             top, bottom = (written(depth, "m") for depth in layer.depths)

@@ -116,9 +116,13 @@ def test_a_bearing_in_millimetres_is_printed_in_its_units(tmp_path: Path, capsys
         """,
     )
     assert command("solve", case) == 0
-    assert "1000 N" in (printed := capsys.readouterr().out)
+    printed = capsys.readouterr().out
+    assert "1000 N" in printed
     assert " MPa" in printed
-    assert " mm" in printed
+    heading, first, second, *_ = printed.partition("\n\nelement")[2].splitlines()
+    assert heading.split()[:5] == ["angle", "[°]", "load", "inner", "[N]"]
+    assert [line.split()[1] for line in (first, second)] == ["0", f"{360 / 7:.2f}"]
+    assert "tilt           (0, 0) mrad" in printed
 
 
 def test_an_error_of_a_history_names_the_step(tmp_path: Path, capsys: Capture) -> None:

@@ -21,7 +21,7 @@ from nacre.results.quantities import PARAMETERS, Quantity
 # Read by hand here, apart from the code that writes: units of SI in newtons, metres and others.
 PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 UNITS = {"N": {"N": 1}, "m": {"m": 1}, "Pa": {"N": 1, "m": -2}, "J": {"N": 1, "m": 1}}
-UNITS |= {"s": {"s": 1}, "rad": {"rad": 1}}
+UNITS |= {"s": {"s": 1}, "rad": {"rad": 1}, "million": {}, "revolutions": {"revolution": 1}}
 IMPERIAL = {"lbf": (4.4482216152605, {"N": 1}), "in": (0.0254, {"m": 1})}
 IMPERIAL |= {"psi": (4.4482216152605 / 0.0254**2, {"N": 1, "m": -2})}
 SYSTEMS = {
