@@ -7,7 +7,9 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # claims, drawings
+sys.path.insert(
+    0, str(Path(__file__).parent / "extensions")
+)  # claims, drawings, names
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
@@ -23,6 +25,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",
     "claims",
+    "names",
 ]
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
@@ -32,7 +35,9 @@ myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 math_eqref_format = "({number})"
 numfig = True
-numfig_format = {"code-block": "%.0s"}  # captions of code are file names, without numbers
+numfig_format = {
+    "code-block": "%.0s"
+}  # captions of code are file names, without numbers
 numfig_secnum_depth = 1
 
 # The compiled classes have NumPy docstrings and signatures without types.
@@ -50,8 +55,14 @@ html_static_path = ["_static"]
 html_css_files = ["nacre.css"]
 html_show_sphinx = False
 html_theme_options = {
-    "light_css_variables": {"color-brand-primary": "#0072B2", "color-brand-content": "#0072B2"},
-    "dark_css_variables": {"color-brand-primary": "#56B4E9", "color-brand-content": "#56B4E9"},
+    "light_css_variables": {
+        "color-brand-primary": "#0072B2",
+        "color-brand-content": "#0072B2",
+    },
+    "dark_css_variables": {
+        "color-brand-primary": "#56B4E9",
+        "color-brand-content": "#56B4E9",
+    },
 }
 copybutton_prompt_text = ">>> |$ "
 copybutton_prompt_is_regexp = False

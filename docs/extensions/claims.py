@@ -16,7 +16,9 @@ HEAD = "| problem | error | reference |\n|---|---|---|\n"
 
 def claims() -> list[dict[str, Any]]:
     """All claims: name, section, problem, figure, bar, reference, test."""
-    rows: list[dict[str, Any]] = json.loads((DOCS / "claims.json").read_text(encoding="utf-8"))
+    rows: list[dict[str, Any]] = json.loads(
+        (DOCS / "claims.json").read_text(encoding="utf-8")
+    )
     return rows
 
 
@@ -30,7 +32,10 @@ def number(value: float) -> str:
 
 def section(name: str) -> str:
     """Markdown table of a section: the measured figure beside the bar that its test asserts."""
-    lines = ["| problem | error | bar of the test | reference | test |", "|---|---|---|---|---|"]
+    lines = [
+        "| problem | error | bar of the test | reference | test |",
+        "|---|---|---|---|---|",
+    ]
     for row in claims():
         if row["section"] == name:
             figure = f"{number(row['figure'])} {row.get('of', '')}".strip()
@@ -54,7 +59,11 @@ def readme() -> str:
 
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put tables in the place of `{claims} SECTION` blocks."""
-    source[0] = re.sub(r"```\{claims\} (\w+)\n```\n", lambda match: section(match[1]), source[0])
+    source[0] = re.sub(
+        r"```\{claims\} (\w+)\n```\n",
+        lambda match: section(match[1]),
+        source[0],
+    )
 
 
 def setup(app: Any) -> dict[str, bool]:
@@ -67,4 +76,6 @@ if __name__ == "__main__":
     path = DOCS.parent / "README.md"
     text = path.read_text(encoding="utf-8")
     before, rest = text.split(HEAD)
-    path.write_text(before + readme() + rest[rest.index("\n\n") + 1 :], encoding="utf-8")
+    path.write_text(
+        before + readme() + rest[rest.index("\n\n") + 1 :], encoding="utf-8"
+    )

@@ -10,9 +10,30 @@ from sphinx_gallery.scrapers import figure_rst
 from paper.figures import Drawing
 
 FIRST = (
-    *("stress_section", "coating_chart", "overview", "free_ends", "best_profile", "tilt_curve"),
-    *("groove", "creep_curves", "both_coated", "study", "which_numbers", "where_to_remove"),
-    *("rough_surface", "rough_bodies", "wave_stacks", "dent", "fretting_loop", "partial_slip"),
+    *(
+        "stress_section",
+        "coating_chart",
+        "overview",
+        "free_ends",
+        "best_profile",
+        "tilt_curve",
+    ),
+    *(
+        "groove",
+        "creep_curves",
+        "both_coated",
+        "study",
+        "which_numbers",
+        "where_to_remove",
+    ),
+    *(
+        "rough_surface",
+        "rough_bodies",
+        "wave_stacks",
+        "dent",
+        "fretting_loop",
+        "partial_slip",
+    ),
 )
 """Pictures that come first in the gallery, in this order: coatings, then rollers."""
 
@@ -23,7 +44,9 @@ def place(file: str) -> tuple[int, str]:
     return (FIRST.index(name) if name in FIRST else len(FIRST), name)
 
 
-def scraper(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
+def scraper(
+    block: Any, variables: dict[str, Any], settings: dict[str, Any]
+) -> str:
     """Show each figure of Spinu et al. that a block of an example has drawn."""
     shown = variables.setdefault("drawings_shown", set())
     paths = []

@@ -12,7 +12,13 @@ import math
 from nacre.bearing import CylindricalRoller
 
 bearing = CylindricalRoller(
-    count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
+    count=14,
+    diameter=10e-3,
+    length=9.6e-3,
+    pitch_diameter=65e-3,
+    clearance=41e-6,
 )
-solution = bearing.solve(force=(4450.0, 0.0, None), tilt=(None, math.tan(math.radians(2 / 60))))
+solution = bearing.solve(
+    force=(4450.0, 0.0, None), tilt=(None, math.tan(math.radians(2 / 60)))
+)
 axes = solution.plot()

@@ -16,7 +16,9 @@ from nacre import plot
 from nacre.bearing import CylindricalRoller
 
 steel = nacre.Elastic(young=210e9, poisson=0.3)
-bearing = CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
+bearing = CylindricalRoller(
+    count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3
+)
 loads = np.geomspace(200.0, 2000.0, 7)
 grid = nacre.Grid((120, 48), (9.6e-3, 6e-4))
 ended = nacre.HalfSpace(steel, ends=(-4.8e-3, 4.8e-3))
@@ -36,7 +38,9 @@ solved = {
     name: np.array(
         [
             sum(
-                nacre.Contact(steel, grid, roller).solve(bearing.shape(ring), load=load).approach
+                nacre.Contact(steel, grid, roller)
+                .solve(bearing.shape(ring), load=load)
+                .approach
                 for ring in ("inner", "outer")
             )
             for load in loads
@@ -45,11 +49,23 @@ solved = {
     for name, roller in (("half-spaces", steel), ("free ends", ended))
 }
 with plt.rc_context(plot.STYLE):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.2), layout="constrained")
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(7, 3.2), layout="constrained"
+    )
     left.plot(loads, laminae * 1e6, "k-", label="ISO/TS 16281")
-    for (name, values), colour in zip(solved.items(), ("#0072B2", "#D55E00"), strict=True):
-        left.plot(loads, values * 1e6, "o-", color=colour, markersize=3, label=name)
-        right.plot(loads, 100 * (values / laminae - 1), "o-", color=colour, markersize=3)
+    for (name, values), colour in zip(
+        solved.items(), ("#0072B2", "#D55E00"), strict=True
+    ):
+        left.plot(
+            loads, values * 1e6, "o-", color=colour, markersize=3, label=name
+        )
+        right.plot(
+            loads,
+            100 * (values / laminae - 1),
+            "o-",
+            color=colour,
+            markersize=3,
+        )
 left.set(xlabel="load of a roller [N]", ylabel="approach of both rings [µm]")
 right.set(xlabel="load of a roller [N]", ylabel="against the laminae [%]")
 right.axhspan(-6, 6, color="0.92", zorder=0)

@@ -19,11 +19,18 @@ from nacre.bearing import CylindricalRoller
 
 steel = nacre.Elastic(young=210e9, poisson=0.3)
 bronze = nacre.Layer(nacre.Elastic(young=100e9, poisson=0.33), thickness=20e-6)
-races = {"bare": nacre.HalfSpace(steel), "coated": nacre.HalfSpace(steel, [bronze])}
+races = {
+    "bare": nacre.HalfSpace(steel),
+    "coated": nacre.HalfSpace(steel, [bronze]),
+}
 minutes = np.linspace(0.0, 10.0, 6)
 with plt.rc_context(plot.STYLE):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.4), layout="constrained")
-    for (name, race), colour in zip(races.items(), ("#0072B2", "#D55E00"), strict=True):
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(7, 3.4), layout="constrained"
+    )
+    for (name, race), colour in zip(
+        races.items(), ("#0072B2", "#D55E00"), strict=True
+    ):
         bearing = CylindricalRoller(
             count=14,
             diameter=10e-3,
@@ -53,10 +60,16 @@ with plt.rc_context(plot.STYLE):
             "solved": [one.life("pressure").l10 for one in solved],
             "none": [one.life(None).l10 for one in solved],
         }
-        for (words, life), dashes in zip(lives.items(), ("-", "--", ":"), strict=True):
+        for (words, life), dashes in zip(
+            lives.items(), ("-", "--", ":"), strict=True
+        ):
             right.plot(minutes, life, dashes, label=words, **style)
 left.set(xlabel="tilt of the ring [']", ylabel="pressure [GPa]", ylim=(0, None))
-right.set(xlabel="tilt of the ring [']", ylabel="life, a model [million rev.]", ylim=(0, None))
+right.set(
+    xlabel="tilt of the ring [']",
+    ylabel="life, a model [million rev.]",
+    ylim=(0, None),
+)
 right.axvspan(0, 4, color="0.93", zorder=0)
 for axes in (left, right):
     axes.legend(frameon=False, fontsize=7)

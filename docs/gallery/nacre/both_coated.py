@@ -26,14 +26,22 @@ highest = max(above.max(), below.max())
 figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
 for sign, field in ((1, below), (-1, above)):
     drawn = axes.pcolormesh(
-        *(1e6 * solution.x, sign * 1e6 * depths, field), vmin=0, vmax=highest, shading="nearest"
+        *(1e6 * solution.x, sign * 1e6 * depths, field),
+        vmin=0,
+        vmax=highest,
+        shading="nearest",
     )
 for depth in (-6e-6, 0.0, 12e-6):
-    axes.axhline(1e6 * depth, color="white", linewidth=1.6 if depth == 0 else 0.8)
+    axes.axhline(
+        1e6 * depth, color="white", linewidth=1.6 if depth == 0 else 0.8
+    )
 axes.invert_yaxis()
 axes.yaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
 axes.set_aspect("equal")
-for y, name in ((-70, "ceramic ball, 6 µm of carbon"), (74, "steel plate, 12 µm of carbon")):
+for y, name in (
+    (-70, "ceramic ball, 6 µm of carbon"),
+    (74, "steel plate, 12 µm of carbon"),
+):
     axes.text(-116, y, name, color="white", va="center")
 axes.set(xlabel="x [µm]", ylabel="distance from the plane of contact [µm]")
 figure.colorbar(drawn, ax=axes, label="von Mises stress [GPa]")

@@ -15,7 +15,10 @@ import numpy as np
 
 import nacre
 
-soft, stiff = nacre.Elastic(young=1.0, poisson=0.3), nacre.Elastic(young=4.0, poisson=0.3)
+soft, stiff = (
+    nacre.Elastic(young=1.0, poisson=0.3),
+    nacre.Elastic(young=4.0, poisson=0.3),
+)
 body = nacre.HalfSpace(soft, layers=[nacre.Layer(stiff, thickness=8.0)])
 grid = nacre.Grid(shape=(64, 64), size=(64.0, 64.0))
 exact = nacre.influence_coefficients(body, grid)
@@ -31,6 +34,13 @@ for method, style in styles.items():
         error = np.abs(converted / exact - 1)
         label = f"{method}, χ = {refinement}"
         axes.semilogy(error[:, 0], color=colour, linestyle=style, label=label)
-        print(f"{label:20} loaded cell {error[0, 0]:.1e}, largest {error.max():.1e}")
-axes.set(xlabel="offset [cells]", ylabel="relative error of the coefficient", xlim=(0, 63))
+        print(
+            f"{label:20} loaded cell {error[0, 0]:.1e}, "
+            f"largest {error.max():.1e}"
+        )
+axes.set(
+    xlabel="offset [cells]",
+    ylabel="relative error of the coefficient",
+    xlim=(0, 63),
+)
 axes.legend(frameon=False, ncols=2)

@@ -21,7 +21,9 @@ plate = nacre.HalfSpace(steel, layers=[nacre.Layer(hard, thickness=20e-6)])
 turns = [0.0, 3.2, -3.2, 3.2]
 forces = np.interp(np.linspace(0, 3, 25), range(4), turns)
 steps = [{"force": (force, None)} for force in forces]
-loop = nacre.slide(nacre.Sphere(5e-3), plate, steel, load=20.0, friction=0.2, steps=steps)
+loop = nacre.slide(
+    nacre.Sphere(5e-3), plate, steel, load=20.0, friction=0.2, steps=steps
+)
 axes = plot.loop(loop)
 dissipated = sum(step.dissipated for step in loop[9:])
 print(f"dissipated in a cycle: {dissipated * 1e9:.0f} nJ")

@@ -20,18 +20,33 @@ solution = nacre.solve(ball, steel, counterbody=steel, load=200.0)
 ellipse = nacre.hertz.Ellipse(5e-3, 5e-3, modulus, 200.0, -5.2e-3, 20e-3)
 a, b = ellipse.semi_axes
 
-figure, (above, below) = plt.subplots(2, 1, figsize=(7, 4.6), layout="constrained")
+figure, (above, below) = plt.subplots(
+    2, 1, figsize=(7, 4.6), layout="constrained"
+)
 plot.pressure_map(solution, axes=above)
 angle = np.linspace(0, 2 * np.pi, 400)
-above.plot(1e3 * a * np.cos(angle), 1e6 * b * np.sin(angle), "--", color="#D55E00", label="Hertz")
+above.plot(
+    1e3 * a * np.cos(angle),
+    1e6 * b * np.sin(angle),
+    "--",
+    color="#D55E00",
+    label="Hertz",
+)
 above.set_title("x and y to different scales", loc="left")
 above.set_xlim(-1.0, 1.0)
 row = solution.pressure.shape[1] // 2
-below.plot(1e3 * solution.x, solution.pressure[:, row] / 1e9, label="nacre: circles")
+below.plot(
+    1e3 * solution.x, solution.pressure[:, row] / 1e9, label="nacre: circles"
+)
 inside = np.sqrt(np.clip(1 - (solution.x / a) ** 2, 0, None))
 hertz = ellipse.peak_pressure / 1e9 * inside
-below.plot(1e3 * solution.x, hertz, "--", color="#D55E00", label="Hertz: parabolas")
+below.plot(
+    1e3 * solution.x, hertz, "--", color="#D55E00", label="Hertz: parabolas"
+)
 below.set(
-    xlabel="x, across the groove [mm]", ylabel="pressure [GPa]", xlim=(-1.0, 1.0), ylim=(0, None)
+    xlabel="x, across the groove [mm]",
+    ylabel="pressure [GPa]",
+    xlim=(-1.0, 1.0),
+    ylim=(0, None),
 )
 below.legend(frameon=False, loc="lower center")

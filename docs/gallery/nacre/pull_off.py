@@ -12,5 +12,8 @@ from nacre.indent.charts import pull_off_over_thickness
 from nacre.plot import indent_charts
 
 thickness = np.geomspace(0.03, 30, 91)
-forces = {ratio: pull_off_over_thickness(ratio, thickness) for ratio in (0.1, 0.5, 2.0, 10.0)}
+forces = {
+    ratio: pull_off_over_thickness(ratio, thickness)
+    for ratio in (0.1, 0.5, 2.0, 10.0)
+}
 axes = indent_charts.pull_off(thickness, forces)

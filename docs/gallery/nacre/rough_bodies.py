@@ -14,11 +14,24 @@ from nacre import plot, rough
 
 side = 256e-6
 surface = rough.random_surface(
-    (256, 256), (side, side), hurst=0.8, rms_slope=0.02, shortest=16e-6, longest=64e-6, seed=2
+    (256, 256),
+    (side, side),
+    hurst=0.8,
+    rms_slope=0.02,
+    shortest=16e-6,
+    longest=64e-6,
+    seed=2,
 )
-steel, hard = nacre.Elastic(young=210e9, poisson=0.3), nacre.Elastic(young=630e9, poisson=0.3)
+steel, hard = (
+    nacre.Elastic(young=210e9, poisson=0.3),
+    nacre.Elastic(young=630e9, poisson=0.3),
+)
 graded = nacre.graded_layers(
-    steel, 10e-6, young=lambda z: 630e9 - 420e9 * z / 10e-6, poisson=0.3, tolerance=1e-2
+    steel,
+    10e-6,
+    young=lambda z: 630e9 - 420e9 * z / 10e-6,
+    poisson=0.3,
+    tolerance=1e-2,
 )
 bodies = {
     "bare": nacre.HalfSpace(steel),

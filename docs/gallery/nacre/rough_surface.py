@@ -26,7 +26,9 @@ parts = solution.plot()
 
 # %%
 # The smooth ball on the same cells, for comparison:
-smooth = nacre.solve(nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0)
+smooth = nacre.solve(
+    nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0
+)
 for name, solved in {"smooth": smooth, "rough": solution}.items():
     peak, area = solved.peak_pressure, solved.contact_area
     print(f"{name:8} peak {peak / 1e9:.2f} GPa, area {area * 1e12:.0f} µm²")

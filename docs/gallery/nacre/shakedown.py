@@ -13,7 +13,9 @@ from nacre import fatigue, plot
 
 steel = nacre.Elastic(young=210e9, poisson=0.3)
 hard = nacre.Elastic(young=420e9, poisson=0.3)
-coated = nacre.HalfSpace(steel, layers=[nacre.Layer(hard, thickness=15e-6, name="coat")])
+coated = nacre.HalfSpace(
+    steel, layers=[nacre.Layer(hard, thickness=15e-6, name="coat")]
+)
 roller, grid = nacre.Cylinder(5e-3), nacre.Grid.line(160, 150e-6)
 
 friction = [0.05 * k for k in range(9)]
@@ -26,6 +28,8 @@ for name, body in (("bare", steel), ("coated", coated)):
 # %%
 # # What each depth needs, with both sides of the interface: the largest yield stress decides.
 summary = fatigue.assess(
-    solution, criteria=[fatigue.DangVan(bending=520e6, torsion=330e6)], friction=0.1
+    solution,
+    criteria=[fatigue.DangVan(bending=520e6, torsion=330e6)],
+    friction=0.1,
 )
 axes = summary.plot()

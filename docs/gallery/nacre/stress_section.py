@@ -39,6 +39,10 @@ summary = solution.stress_summary(
 )
 for layer in summary.layers:
     mises, tension = layer.von_mises[0] / 1e9, layer.tension[0] / 1e9
-    print(f"layers[{layer.layer}]: von Mises {mises:.2f} GPa, tension {tension:.2f} GPa", end=", ")
+    print(
+        f"layers[{layer.layer}]: von Mises {mises:.2f} GPa, "
+        f"tension {tension:.2f} GPa",
+        end=", ",
+    )
     print(f"safety factor {layer.yield_safety_factor:.2f}")
 print(f"interface: shear {summary.interfaces[0].shear[0] / 1e9:.2f} GPa")

@@ -17,7 +17,11 @@ def ball(young: float, thickness: float) -> dict[str, object]:
     """Return the contact of a ball of 5 mm under 20 N on coated steel."""
     steel = nacre.Elastic(young=210e9, poisson=0.3)
     layer = nacre.Layer(nacre.Elastic(young, poisson=0.3), thickness)
-    return {"shape": nacre.Sphere(5e-3), "body": nacre.HalfSpace(steel, [layer]), "load": 20.0}
+    return {
+        "shape": nacre.Sphere(5e-3),
+        "body": nacre.HalfSpace(steel, [layer]),
+        "load": 20.0,
+    }
 
 
 parameters = {

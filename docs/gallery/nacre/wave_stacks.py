@@ -13,8 +13,12 @@ import numpy as np
 import nacre
 
 length, height, cells = 100e-6, 0.2e-6, 128
-grid = nacre.Grid((cells, 8), (length, 8 * length / cells), periodic=(True, True))
-wave = np.repeat(height * np.cos(2 * np.pi * grid.x / length)[:, np.newaxis], 8, axis=1)
+grid = nacre.Grid(
+    (cells, 8), (length, 8 * length / cells), periodic=(True, True)
+)
+wave = np.repeat(
+    height * np.cos(2 * np.pi * grid.x / length)[:, np.newaxis], 8, axis=1
+)
 shape = nacre.HeightMap(wave, spacing=length / cells, periodic=(True, True))
 
 steel = nacre.Elastic(young=210e9, poisson=0.3)
@@ -37,7 +41,9 @@ for ax, (name, body) in zip(axes, bodies.items(), strict=True):
         ax.plot(1e6 * grid.x, solution.pressure[:, 0] / full, label=label)
     ax.set(xlabel="x [µm]", title=f"{name}\np* = {full / 1e6:.0f} MPa")
 axes[0].set_ylabel("pressure / p*")
-figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+figure.legend(
+    *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3
+)
 
 # %%
 # At p̄ = p* the pressure is p* (1 + cos(2πx/λ)) on every body, and the gap is closed:

@@ -28,14 +28,21 @@ numbers = {
 outputs: dict[str, Any] = {
     "peak pressure": "located_peak",
     "approach": "approach",
-    "shear at the interface": {"stress": "plane_shear", "interface": 0, "sharpness": 200.0},
+    "shear at the interface": {
+        "stress": "plane_shear",
+        "interface": 0,
+        "sharpness": 200.0,
+    },
 }
 gradients = solution.gradient(list(outputs.values()), list(numbers))
 
 figure, axes = plt.subplots(figsize=(7, 3.6), layout="constrained")
 places, height = np.arange(len(numbers)), 0.26
 for k, (name, gradient) in enumerate(zip(outputs, gradients, strict=True)):
-    shares = [gradient[path] * value / gradient.value for path, (_, value) in numbers.items()]
+    shares = [
+        gradient[path] * value / gradient.value
+        for path, (_, value) in numbers.items()
+    ]
     bars = axes.barh(places + (k - 1) * height, shares, height, label=name)
     axes.bar_label(bars, fmt="%+.2f", padding=3, fontsize=8)
 axes.axvline(0, color="black", linewidth=0.8)

@@ -20,6 +20,6 @@ drawing = figures.figure(1, results)
 print("E1/E2      peak   approach   pressure")
 for deviation in paper.deviations(results):
     print(
-        f"{deviation.ratio:5.2f}   {deviation.peak:+.1e}   {deviation.approach:+.1e}"
-        f"   {deviation.pressure:.1e}"
+        f"{deviation.ratio:5.2f}   {deviation.peak:+.1e}"
+        f"   {deviation.approach:+.1e}   {deviation.pressure:.1e}"
     )

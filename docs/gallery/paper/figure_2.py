@@ -21,6 +21,7 @@ print(f"{'':34}E1/E2     riser      area")
 for claim in paper.claims(results):
     if claim.series in paper.CENTRED:
         print(
-            f"{claim.series.title:34}{claim.ratio:5.2f}{100 * claim.riser:+8.1f} %"
+            f"{claim.series.title:34}{claim.ratio:5.2f}"
+            f"{100 * claim.riser:+8.1f} %"
             f"{100 * claim.area:+8.0f} %"
         )

@@ -131,7 +131,7 @@ def check_carried(
                 side = "least" if change > 0 else "most"
                 bounds.append(
                     f"{WORDS[row]} must be at {side} {bound:.{DIGITS}g} {UNITS[row]}, "
-                    f"got {float(loads[row])!r}"
+                    f"got {float(loads[row])!r} {UNITS[row]}"
                 )
         if bounds:
             raise ValueError(f"{', or '.join(bounds)}: contacts only push and balance no such load")
@@ -141,5 +141,5 @@ def check_carried(
     raise ValueError(
         f"{WORDS[largest]} must be one that contacts, which only push, balance; "
         f"{left[largest] / units[largest]:.6g} {UNITS[largest]} of it are left, "
-        f"got {float(loads[largest])!r}"
+        f"got {float(loads[largest])!r} {UNITS[largest]}"
     )

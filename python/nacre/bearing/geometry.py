@@ -213,7 +213,9 @@ class Bearing(ABC):
             value = vars(self).get(name)
             for length in value if isinstance(value, tuple | list) else (value,):
                 if isinstance(length, int | float) and most < length < math.inf:
-                    raise ValueError(f"{name} must be at most {most:g} m: {_si()}; got {length:g}")
+                    raise ValueError(
+                        f"{name} must be at most {most:g} m: {_si()}; got {length:g} m"
+                    )
         for name in ("element", *RINGS):
             body = getattr(self, name)
             layers = body.layers if isinstance(body, core.HalfSpace) else ()
@@ -225,22 +227,22 @@ class Bearing(ABC):
                 if isinstance(material, core.Elastic) and not least <= material.young <= STIFFEST:
                     raise ValueError(
                         f"{place} must have a modulus from {least:g} to {STIFFEST:g} Pa: {_si()}; "
-                        f"got {material.young:g}"
+                        f"got {material.young:g} Pa"
                     )
             for k, one in enumerate(layers):
                 if one.thickness > self.diameter / 2:
                     raise ValueError(
                         f"{name}.layers[{k}] must be thinner than an element, "
-                        f"{self.diameter / 2:g} m: {_si()}; got {one.thickness:g}"
+                        f"{self.diameter / 2:g} m: {_si()}; got {one.thickness:g} m"
                     )
         if not LIGHTEST <= self.density <= HEAVIEST:
             raise ValueError(
                 f"density must be from {LIGHTEST:g} to {HEAVIEST:g} kg/m³: {_si()}; "
-                f"got {self.density!r}"
+                f"got {self.density!r} kg/m³"
             )
         if self.diameter < SMALLEST:
             raise ValueError(
-                f"diameter must be at least {SMALLEST:g} m: {_si()}; got {self.diameter!r}"
+                f"diameter must be at least {SMALLEST:g} m: {_si()}; got {self.diameter!r} m"
             )
 
     def _check_given_pitch(self) -> None:
@@ -281,7 +283,7 @@ class Bearing(ABC):
         if capacity is not None and not usual / 100 <= capacity <= 100 * usual:
             raise ValueError(
                 f"capacity must be in N, some {usual:.3g}, that of ISO 281: {_si()}; "
-                f"got {capacity!r}"
+                f"got {capacity!r} N"
             )
         if self.play < -4 * DEEPEST * diameter:
             raise ValueError(

@@ -159,7 +159,7 @@ class IoannidesHarris(LundbergPalmgren):
         if 0 < self.fatigue_limit < LEAST_FATIGUE_LIMIT:
             raise ValueError(
                 f"fatigue_limit must be 0, or at least {LEAST_FATIGUE_LIMIT:g} Pa, "
-                f"got {self.fatigue_limit!r}"
+                f"got {self.fatigue_limit!r} Pa"
             )
 
     @property

@@ -49,6 +49,7 @@ from nacre.bearing.solving import (
 )
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.report import Sections
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
 
@@ -484,6 +485,10 @@ class PairLife(TableResult):
             lives["hours"] = f"{self.hours:.6g}"
         return [*lives.items(), ("model", self.model)]
 
+    def _sections(self) -> Sections:
+        numbers = [row for row in self._rows() if row[0] != "model"]
+        return replace(super()._sections(), numbers=numbers)
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PairSolution(Tabular):
@@ -631,6 +636,33 @@ class PairSolution(Tabular):
                     table.append((replace(row, name=name), row.si()))
                     variables[name] = (dims, np.asarray(value))
         return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
+
+    @display.in_si
+    def _sections(self) -> Sections:
+        parts = [one._sections() for one in self.bearings]
+
+        def rows(name: str) -> list[tuple[str, str]]:
+            pairs = zip(NAMES, parts, strict=True)
+            return [
+                (f"{which}: {key}", text)
+                for which, part in pairs
+                for key, text in getattr(part, name)
+            ]
+
+        tables = [
+            one._replace(title=f"{one.title}, {which} bearing")
+            for which, part in zip(NAMES, parts, strict=True)
+            for one in part.tables
+        ]
+        return Sections(
+            self._TITLE,
+            rows("inputs"),
+            [*self._rows(), *rows("numbers")],
+            [picture for part in parts for picture in part.pictures],
+            tables,
+            rows("model"),
+            self.report.warnings,
+        )
 
     @staticmethod
     def _vectors() -> list[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ from nacre.bearing.modified import (
 from nacre.bearing.verdict import life_verdict
 from nacre.results import display
 from nacre.results.quantities import BEARING_LIFE
+from nacre.results.report import Sections
 from nacre.results.table_results import TableResult
 from nacre.results.verdict import Verdict
 
@@ -126,6 +128,10 @@ class BearingLife(TableResult):
         if math.isfinite(self.hours):
             rows.append(("hours", f"{self.hours:.6g}"))
         return [*rows, *self._others()]
+
+    def _sections(self) -> Sections:
+        numbers = [row for row in self._rows() if row[0] != "model"]
+        return dataclasses.replace(super()._sections(), numbers=numbers)
 
     @property
     def _is_modified(self) -> bool:

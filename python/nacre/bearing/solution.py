@@ -571,7 +571,7 @@ class BearingSolution(Tabular):
                     columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return columns
 
-    def _file_rows(self) -> Iterable[Iterable[object]]:
+    def _file_rows(self) -> Iterable[Iterable[Any]]:
         columns = self._columns()
         units = [symbol(row.si()) for row, _, _ in columns]
         names = [name for _, name, _ in columns]

@@ -86,7 +86,7 @@ class Operation:
         if not among(rotating, RINGS):
             raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
         if abs(rotation) > TURNED:
-            raise ValueError(f"rotation must be at most {TURNED:g} rad, got {rotation!r}")
+            raise ValueError(f"rotation must be at most {TURNED:g} rad, got {rotation!r} rad")
         if abs(bearing.cage_speed(speed, rotating)) * bearing.pitch / 2 > FASTEST:
             raise ValueError(
                 f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
@@ -213,7 +213,7 @@ def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
     if bearing.nominal_angle > 0 and axial < pushed:
         raise ValueError(
             f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
-            f"the rings apart, got {axial!r}"
+            f"the rings apart, got {axial!r} N"
         )
 
 

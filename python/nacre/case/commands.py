@@ -16,7 +16,7 @@ from typer.core import TyperCommand
 import nacre
 from nacre._tools.disk import PICTURES, check_folder, replacing
 from nacre._tools.progress import alive
-from nacre._tools.units import system
+from nacre._tools.units import printable, system
 from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
@@ -26,7 +26,7 @@ from nacre.case.bearing import scaled, sizes_of
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import files, report, tables
-from nacre.results.display import SLIGHT, shown_in
+from nacre.results.display import SLIGHT, aligned, column, shown_in
 from nacre.results.quantities import BEARING, ERROR
 from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
@@ -346,7 +346,8 @@ def sweep(
     if as_json:
         print(json.dumps(_plain(dataset.to_dict()), indent=2))
     else:
-        _print_study(dataset)
+        with shown_in(case_file.units):
+            _print_study(dataset)
         where = f"; all in {study['store']}" if "store" in study else ""
         for text in (str(warning.message) for warning in caught):
             if " cases failed" not in text:  # the last line says that
@@ -504,14 +505,21 @@ def _check_ending(path: Path) -> None:
         raise typer.BadParameter(message, param_hint="'--save'")
 
 
-def _cell(value: object, error: float) -> str:
-    """Return a value of a study, with its estimated error."""
-    if not isinstance(value, float | int):
-        return str(value)
-    share = 100 * abs(error / value) if value else 0.0
+def _column(name: str, values: Any, unit: str, errors: Any) -> list[str]:
+    """Return heading and cells of a column of a study, with estimated errors."""
+    if values.dtype.kind not in "if":
+        return [name, *map(str, values)]
+    heading, texts = column(name, values.tolist(), unit, digits=5)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(values == 0, 0.0, 100 * np.abs(errors / values))
+    return [heading, *(t + _share(share) for t, share in zip(texts, shares, strict=True))]
+
+
+def _share(share: float) -> str:
+    """Return an estimated error in percent; nothing where there is none."""
     if not 100 * SLIGHT < share < np.inf:
-        return f"{value:.5g}"
-    return f"{value:.5g} ± {share:.1g} %" if share < 9.5 else f"{value:.5g} ± {share:.0f} %"
+        return ""
+    return f" ± {share:.1g} %" if share < 9.5 else f" ± {share:.0f} %"
 
 
 def _print_study(dataset: Any) -> None:
@@ -520,13 +528,10 @@ def _print_study(dataset: Any) -> None:
     rows = frame.to_dataframe().reset_index()
     names = [str(name) for name in rows.columns if name not in ("error", "warnings")]
     names = [name for name in names if not name.endswith(ERROR)]
-    units = {name: dataset[name].attrs.get("units") for name in names}
-    lines = [[f"{name} [{units[name]}]" if units[name] else name for name in names]]
-    for _, row in rows.head(ROWS).iterrows():
-        lines.append([_cell(row[name], row.get(name + ERROR, 0.0)) for name in names])
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    for line in lines:
-        print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))
+    first, units = rows.head(ROWS), {name: dataset[name].attrs.get("units", "") for name in names}
+    errors = {name: first.get(name + ERROR, 0.0) for name in names}
+    columns = [_column(name, first[name].to_numpy(), units[name], errors[name]) for name in names]
+    print("\n".join(map(printable, aligned([*zip(*columns, strict=True)]))))
     if len(rows) > ROWS:
         print(f"and {len(rows) - ROWS} more cases")
     for _, row in rows[rows["error"] != ""].iterrows():

@@ -155,6 +155,7 @@ def solve(
     0.00287
     """
     setup = Setup(body, counterbody, grid, max_cells, threads)
+    setup.check_end(shape, load, initial)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     state, callback = _initial_state(initial), _report_callback(progress)
     options = SolveOptions(hardness, tolerance, max_iterations, algorithm, state, callback, check)
@@ -298,6 +299,7 @@ def slide(
     ([2.0, -2.0, 2.0], True)
     """
     setup = Setup(body, counterbody, grid, max_cells, threads)
+    setup.check_end(shape, load, initial)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     step = FrictionStep(motion, friction, shift, force, twist, torque)
     state, callback = _last_state(initial), _step_callback(progress)
@@ -431,6 +433,7 @@ def roll(
     (1.5, True)
     """
     setup = Setup(body, counterbody, grid, max_cells, threads)
+    setup.check_end(shape, load, initial)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
     state, callback = _last_state(initial), _step_callback(progress)

@@ -6,6 +6,7 @@ They may be arrays, whose equality is no truth value: groups are not compared.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, Self, TypedDict
@@ -16,8 +17,11 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import Algorithm, Along, Body, Matrix
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
+from nacre.hertz import Line
 
 RollingDirection = Literal["+x", "-x", "+y", "-y"]
+WIDTHS = 3.0
+"""Half-widths of Hertz across a grid that holds a line contact, which takes two of them."""
 StepProgress = Callable[[int, FrictionReport], object]
 """Function that is told the number of a step and its report."""
 
@@ -58,6 +62,29 @@ class Setup:
             raise ValueError(
                 "max_cells must not be given beside grid: it limits a grid that is chosen"
             )
+
+    def check_end(self, shape: object, load: object, initial: object) -> None:
+        """Raise a `ValueError` that names a grid if a cylinder has none."""
+        if not isinstance(shape, core.Cylinder) or self.grid or initial is not None:
+            return
+        compliance = _compliance(self.body) + _compliance(self.counterbody)
+        if compliance > 0 and isinstance(load, int | float) and 0 < load < math.inf:
+            half_width = Line(shape.equivalent_radius, 1 / compliance, load).half_width
+            raise ValueError(
+                "grid must be given for a cylinder, whose contact is as long as the grid, such as "
+                f"Grid.line(256, {WIDTHS * half_width:.3g}): {WIDTHS / 2:g} contacts of Hertz "
+                f"under a load of {load:g} per unit length"
+            )
+
+
+def _compliance(body: Body | None) -> float:
+    """Return 1/E* of the softest material of a body; 0 of a response, which has none."""
+    if isinstance(body, core.Elastic):
+        return 1 / body.plane_strain_modulus
+    if not isinstance(body, core.HalfSpace):
+        return 0.0
+    parts = (body.substrate, *(layer.material for layer in body.layers))
+    return max((_compliance(part) for part in parts if isinstance(part, core.Elastic)), default=0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from typing import Any
 
 import nacre._core as core
 from nacre._tools.typing import Field, Pair
+from nacre.results import display
 from nacre.results.base import Fields, same
 
 Output = str | tuple[str, float] | tuple[str, Pair] | dict[str, Any]
@@ -237,6 +238,11 @@ class Gradient(Fields):
         return all(same(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]
+
+    def _repr_html_(self) -> str:
+        rows = [(self.output, f"{self.value:.6e}")]
+        rows += [(f"by {path}", f"{value:.6e}") for path, value in self.items()]
+        return display.markup(rows, self.warnings)
 
     def __repr__(self) -> str:
         """Return the output with its value and derivatives."""

@@ -983,8 +983,19 @@ def _nothing(_: object) -> None:
 
 def _centred(solution: Solution, name: str, unit: str, scale: float = 1.0) -> str | None:
     """Return a position or a moment; rounding leaves 1e-16 of the largest possible one."""
-    values: tuple[float, float] = getattr(solution, name)
     limits = [display.NOISE * scale * side for side in solution.report.grid.size]
+    return _beyond(solution, name, unit, limits)
+
+
+def _peak_place(solution: Solution) -> str | None:
+    """Return the place of the peak; one in a cell at the middle may be in the middle."""
+    halves = [(0.5 + display.NOISE) * side for side in solution.report.grid.spacing]
+    return _beyond(solution, "peak_position", "m", halves)
+
+
+def _beyond(solution: Solution, name: str, unit: str, limits: Sequence[float]) -> str | None:
+    """Return components; those below their limits are printed as 0."""
+    values: tuple[float, float] = getattr(solution, name)
     components = [0.0 if abs(v) < limit else v for v, limit in zip(values, limits, strict=True)]
     return display.along([None if math.isnan(v) else written(v, unit) for v in components])
 
@@ -1009,9 +1020,16 @@ def _extent(solution: Solution) -> str | None:
 
 def _contact_share(solution: Solution) -> str | None:
     """Return the share of the area; beside one contact, the area of the grid means nothing."""
-    return (
-        f"{100 * solution.contact_share:.3g} % of the area" if all(solution.grid.periodic) else None
-    )
+    if all(solution.grid.periodic):
+        return f"{100 * solution.contact_share:.3g} % of the area"
+    return f"{100 * solution.contact_share:.3g} % of the grid" if _has_spots(solution) else None
+
+
+def _has_spots(solution: Solution) -> bool:
+    """Return whether the contact consists of spots: a line crosses more than the two of a ring."""
+    inside = solution.in_contact.astype(np.int8)
+    begins = [np.diff(inside, axis=axis, prepend=0) == 1 for axis in range(2)]
+    return any(bool((one.sum(axis) > 2).any()) for axis, one in enumerate(begins))
 
 
 def _hardness(solution: Solution) -> str | None:
@@ -1069,7 +1087,7 @@ TEXTS: dict[str, Callable[[Solution], str | None]] = {
     "approach": _approach,
     "tilt": _tilt,
     "peak_pressure": lambda s: display.estimated(s, "peak_pressure", "Pa"),
-    "peak_position": lambda s: _centred(s, "peak_position", "m"),
+    "peak_position": _peak_place,
     "contact_extent": _extent,
     "contact_share": _contact_share,
     "hardness": _hardness,

@@ -18,7 +18,7 @@ from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, am
 from nacre._tools.units import printable, rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
-from nacre.results.quantities import EXTREMES
+from nacre.results.quantities import EXTREME_UNITS, EXTREMES
 from nacre.results.report import Picture, Sections, table
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
@@ -106,6 +106,12 @@ class Stress(Result, Warned):
     >>> round(value / solution.peak_pressure, 2), round(z / radius, 1)
     (0.31, 0.5)
     """
+
+    _UNITS = dict.fromkeys("xyz", "m") | {
+        "components": "Pa",
+        "displacement": "m",
+        "uncertainty": "Pa",
+    }
 
     _DERIVED = ("warnings",)
     _LATER = ("uncertainty",)
@@ -308,6 +314,7 @@ class _Extremes(Result):
 
     _COMPILED = True
     _DERIVED = ("uncertainty",)
+    _UNITS = EXTREME_UNITS
     _PEAKS: ClassVar[tuple[str, ...]]
 
     uncertainty: dict[str, float]

@@ -22,7 +22,7 @@ from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
-from nacre.results.quantities import FATIGUE, PROFILE
+from nacre.results.quantities import EXTREME_UNITS, FATIGUE, PROFILE
 from nacre.results.report import Picture, Sections, table
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
@@ -80,6 +80,8 @@ class LayerFatigue(Result):
     >>> round(solution.peak_pressure / k, 2)
     4.0
     """
+
+    _UNITS = EXTREME_UNITS
 
     layer: int
     """Number of the layer, from 0 at the surface; the substrate comes after the last layer."""
@@ -162,6 +164,8 @@ class InterfaceFatigue(Result):
     >>> interface.depth, bool(interface.shear_range > 0.0)
     (1.5e-05, True)
     """
+
+    _UNITS = EXTREME_UNITS
 
     interface: int
     """Number of the interface, from 0 below the first layer."""

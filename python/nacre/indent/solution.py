@@ -439,6 +439,8 @@ IndentState = IndentSolution
 class IndentCurve(Warned):
     """Loads at approaches, with their derivatives; see `Indentation.curve`."""
 
+    _UNITS = UNITS | {"slope": "N/m"}
+
     approach: Field
     """Approaches [m]."""
     load: Field
@@ -460,6 +462,8 @@ class IndentCurve(Warned):
 @dataclass(frozen=True)
 class PullOff(Fields):
     """Last stable state of a tip that is pulled off; see `Indentation.pull_off`."""
+
+    _UNITS = UNITS
 
     load: float
     """Load [N], below 0."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
+from nacre.plot.stress import enlarge_depth
 from nacre.plot.style import COLOURS, checked_axes, look, new_axes, styled
 from nacre.results.quantities import PROFILE
 
@@ -24,6 +25,8 @@ BARE = 0.03
 
 def fatigue_depth(summary: FatigueSummary, *, axes: Axes | None = None) -> Axes:
     """Draw what a material needs at each depth, with the interfaces.
+
+    Beside it, a new figure enlarges layers thinner than a twentieth of the depth.
 
     Parameters
     ----------
@@ -52,18 +55,27 @@ def fatigue_depth(summary: FatigueSummary, *, axes: Axes | None = None) -> Axes:
     'stress [MPa]'
     """
     labels = {row.name: row.label for row in PROFILE}
-    length = Scale.of(float(summary.depths.max()), "m")
+    deepest = float(summary.depths.max())
     highest = max(float(np.abs(values).max()) for values in summary.profiles.values())
     scale = Scale.of(highest, "Pa")
-    z = length.factor * summary.depths
-    with styled():
-        axes = checked_axes(axes) or new_axes(0.75, 0.45)
+    interfaces = [face.depth for face in summary.interfaces]
+
+    def draw(axes: Axes, bottom: float) -> None:
+        length = Scale.of(bottom, "m")
         for number, (name, values) in enumerate(summary.profiles.items()):
-            axes.plot(z, scale.factor * values, **look(number), label=labels.get(name, name))
-        for face in summary.interfaces:
-            axes.axvline(length.factor * face.depth, color="0.5", linewidth=0.8)
-        axes.set(xlabel=f"z [{length.unit}]", ylabel=f"stress [{scale.unit}]")
-        axes.set_xlim(0.0, float(z.max()) or 1.0)
+            curve = (length.factor * summary.depths, scale.factor * values)
+            axes.plot(*curve, **look(number), label=labels.get(name, name))
+        for interface in interfaces:
+            axes.axvline(length.factor * interface, color="0.5", linewidth=0.8)
+        axes.set_xlabel(f"z [{length.unit}]")
+        axes.set_xlim(0.0, length.factor * bottom or 1.0)
+
+    with styled():
+        is_new, axes = axes is None, checked_axes(axes) or new_axes(0.75, 0.45)
+        draw(axes, deepest)
+        if is_new:
+            enlarge_depth(axes, interfaces, deepest, draw)
+        axes.set_ylabel(f"stress [{scale.unit}]")
         axes.set_ylim(min(0.0, axes.get_ylim()[0]), (1.0 + BARE) * scale.factor * highest)
         axes.legend()
     return axes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -37,6 +37,8 @@ LABELS = {
     "tension": "largest principal stress",
 }
 """Labels of the quantities that can be drawn."""
+THIN, ENLARGED = 0.05, 3.0
+"""Share of the depth below which layers are enlarged, and their thicknesses that are drawn then."""
 
 
 def stress_section(
@@ -53,7 +55,9 @@ def stress_section(
     """Draw a vertical section, with the interfaces.
 
     The cross marks the largest value. A section much longer than deep is drawn out of scale, and
-    the picture says so. Beyond a free end of the body nothing is drawn.
+    the picture says so. Beyond a free end of the body nothing is drawn. Below it, a new
+    figure enlarges layers thinner than a twentieth of the depth: it shows three times their
+    thickness.
 
     Parameters
     ----------
@@ -114,8 +118,9 @@ def stress_section(
     scale = Scale.of(highest, "Pa")
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
     largest = scale.factor * highest or 1.0
-    with styled():
-        axes = axes or new_axes(0.75, 0.45)
+    row, column = np.unravel_index(np.nanargmax(values), values.shape)
+
+    def draw(axes: Axes, bottom: float, down: Scale) -> QuadMesh:
         mesh = axes.pcolormesh(
             across.factor * sides,
             down.factor * edges,
@@ -126,23 +131,37 @@ def stress_section(
             rasterized=True,
         )
         axes.grid(visible=False)
-        colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
         for interface in body.interfaces:
             if interface < bottom:
                 for colour, width in (("white", 2.0), ("black", 0.9)):
                     axes.axhline(down.factor * interface, color=colour, linewidth=width)
-        row, column = np.unravel_index(np.nanargmax(values), values.shape)
         peak = (across.factor * centres[column], down.factor * field.z[row])
         for colour, width in (("black", 2.6), ("white", 1.2)):
             axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
         axes.set(xlabel=f"{along} [{across.unit}]", ylabel=f"z [{down.unit}]")
         axes.set_xlim(across.factor * low, across.factor * high)
         axes.set_ylim(down.factor * bottom, 0.0)
+        return mesh
+
+    enlarged = enlarged_depth(body.interfaces, bottom) if axes is None else 0.0
+    with styled():
+        axes = axes or new_axes(0.75, 0.75 if enlarged else 0.45)
+        mesh = draw(axes, bottom, down)
+        colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
+        if enlarged:
+            halves = axes.figure.add_gridspec(2)
+            axes.set_subplotspec(halves[0])
+            below = axes.figure.add_subplot(halves[1])
+            draw(below, enlarged, Scale.of(enlarged, "m"))
+            axes.set_xlabel("")
+            axes.tick_params(labelbottom=False)
         other = "y" if along == "x" else "x"
         title = f"at {other} = {written(at, 'm', 3)}; the cross marks the largest value, "
         title += written(float(np.nanmax(values)), "Pa", 3)
         if same:
             axes.set_aspect("equal")
+            if enlarged:
+                below.set_box_aspect(bottom / (high - low))
         else:
             title += f"\n{along} and z to different scales"
         axes.set_title(title)
@@ -160,6 +179,9 @@ def stress_depth(
     **options: Any,
 ) -> Axes:
     """Draw stresses against depth below a point, with both sides of every interface.
+
+    Beside it, a new figure enlarges layers thinner than a twentieth of the depth: it shows three
+    times their thickness.
 
     Parameters
     ----------
@@ -211,23 +233,51 @@ def stress_depth(
     z = np.concatenate([above.z, below.z])
     order = np.argsort(z, kind="stable")
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
-    length = Scale.of(bottom, "m")
     if not all(np.isfinite(values).all() for values in drawn):
         raise ValueError(f"at must be in the body, whose ends are {body.ends}, got x = {at[0]:g}")
     scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
-    with styled():
-        axes = axes or new_axes(1.0, 0.5)
+
+    def draw(axes: Axes, bottom: float) -> None:
+        length = Scale.of(bottom, "m")
         for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
             curve = (length.factor * z[order], scale.factor * values)
             axes.plot(*curve, **look(number), label=LABELS[quantity])
         for interface in body.interfaces:
             if interface < bottom:
                 axes.axvline(length.factor * interface, color="0.5", linewidth=0.8)
-        axes.set(xlabel=f"z [{length.unit}]", ylabel=f"stress [{scale.unit}]")
+        axes.set_xlabel(f"z [{length.unit}]")
         axes.set_xlim(0.0, length.factor * bottom)
+
+    with styled():
+        is_new, axes = axes is None, axes or new_axes(1.0, 0.5)
+        draw(axes, bottom)
+        if is_new:
+            enlarge_depth(axes, body.interfaces, bottom, draw)
+        axes.set_ylabel(f"stress [{scale.unit}]")
         axes.set_title(f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}")
         axes.legend()
     return axes
+
+
+def enlarged_depth(interfaces: Sequence[float], bottom: float) -> float:
+    """Return the depth to which a picture enlarges thin layers; 0 where there are none."""
+    coat = max(interfaces, default=0.0)
+    return ENLARGED * coat if coat < THIN * bottom else 0.0
+
+
+def enlarge_depth(
+    axes: Axes,
+    interfaces: Sequence[float],
+    bottom: float,
+    draw: Callable[[Axes, float], object],
+) -> None:
+    """Draw curves again beside axes of a new figure, down to three thicknesses of thin layers."""
+    if enlarged := enlarged_depth(interfaces, bottom):
+        grid = axes.figure.add_gridspec(1, 2, width_ratios=(3, 2))
+        axes.set_subplotspec(grid[0])
+        beside = axes.figure.add_subplot(grid[1], sharey=axes)
+        draw(beside, enlarged)
+        beside.tick_params(labelleft=False)
 
 
 def colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:
@@ -282,8 +332,11 @@ def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
     if rows < 1:
         raise ValueError(f"the number of depths must be at least 1, got {rows}")
     faces = [0.0, *(z for z in body.interfaces if z < bottom), bottom]
+    if enlarged := enlarged_depth(body.interfaces, bottom):
+        faces.insert(-1, enlarged)
+    least = max(4, rows // 4) if enlarged else 4
     parts = [
-        np.linspace(top, end, max(4, round(rows * (end - top) / bottom)), endpoint=False)
+        np.linspace(top, end, max(least, round(rows * (end - top) / bottom)), endpoint=False)
         for top, end in pairwise(faces)
     ]
     return np.concatenate([*parts, [bottom]])

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.results import values
+from nacre.results import display, values
 from nacre.results.quantities import Quantity
 
 
@@ -144,7 +144,13 @@ def _fitted(kind: Any, value: Any) -> Any:
 
 
 class Fields:
-    """Base of what is read by its fields: NumPy makes no array of it."""
+    """Base of what is read by its fields: NumPy makes no array of it, notebooks show a table."""
+
+    _UNITS: ClassVar[Mapping[str, str]] = {}
+    """SI units of fields that have one, in the table of a notebook."""
+
+    def _repr_html_(self) -> str:
+        return display.markup(display.fields(self, self._UNITS), getattr(self, "warnings", ()))
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None

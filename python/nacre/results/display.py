@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import functools
 import html
 import io
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, ParamSpec, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -117,6 +119,15 @@ def number(value: float, unit: str, digits: int = 4) -> str:
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
 
 
+def column(
+    heading: str, values: Sequence[float], unit: str, digits: int = 4
+) -> tuple[str, list[str]]:
+    """Return the heading of a column of numbers, with their one unit, and their texts."""
+    scale = scale_of(max((abs(v) for v in values if math.isfinite(v)), default=0.0), unit)
+    texts = [rounded(scale.factor * value, digits) for value in values]
+    return f"{heading} [{scale.unit}]" if scale.unit else heading, texts
+
+
 def scale_of(largest: float, unit: str) -> Scale:
     """Return the scale of numbers, whose SI unit is given, in units set or `shown_in`."""
     if (units := _units.get()) is None:
@@ -184,6 +195,33 @@ def without_rounding(values: Sequence[float]) -> list[float]:
 def pair(values: Iterable[float], unit: str) -> str:
     """Return components with their units."""
     return f"({', '.join(number(value, unit) for value in values)})"
+
+
+def fields(instance: Any, units: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return the printed rows of the public fields of a dataclass, some of which have SI units."""
+    names = [one.name for one in dataclasses.fields(instance) if one.name[0] != "_"]
+    values = {name: getattr(instance, name) for name in names if name != "warnings"}
+    return [
+        (name.replace("_", " "), _field(value, units.get(name, "")))
+        for name, value in values.items()
+        if not (value is None or (isinstance(value, Mapping | tuple | list) and not value))
+    ]
+
+
+def _field(value: Any, unit: str) -> str:
+    """Return a field in words: numbers with their unit, a peak and its place, an array's range."""
+    if isinstance(value, float | np.floating):
+        return number(float(value), unit)
+    if isinstance(value, np.ndarray):
+        ends = [np.fmin.reduce(value, None), np.fmax.reduce(value, None)] if value.size else []
+        return " × ".join(map(str, value.shape)) + f": {' to '.join(_field(v, unit) for v in ends)}"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_field(item, unit)}" for name, item in value.items())
+    if isinstance(value, tuple | list):
+        if len(value) > 1 and isinstance(value[1], tuple):
+            return f"{_field(value[0], unit)} at {pair(value[1], 'm')}"
+        return f"({', '.join(_field(item, unit) for item in value)})"
+    return str(value)
 
 
 def text(rows: Sequence[tuple[str, str]], warnings: Sequence[str]) -> str:

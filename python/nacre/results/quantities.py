@@ -197,6 +197,15 @@ ASSESSMENT = (
 )
 """Numbers of fatigue that studies keep."""
 
+EXTREME_UNITS = dict.fromkeys(("depth", "depths"), "m") | dict.fromkeys(
+    (
+        *("von_mises", "max_shear", "tension", "compression", "shear", "jump", "uncertainty"),
+        *("shakedown", "first_yield", "orthogonal_shear", "criteria", "shear_range"),
+    ),
+    "Pa",
+)
+"""SI units of fields of a layer or an interface in summaries of stress and fatigue."""
+
 EXTREMES = (
     Quantity("part", "layer or interface"),
     Quantity("quantity", "name of the extreme"),
@@ -299,7 +308,7 @@ BEARING = (
     Quantity("largest_load", "largest force of a contact", "N", label="largest load"),
     Quantity("peak_pressure", "largest pressure", "Pa", label="peak pressure"),
     Quantity("edge_pressure", "largest pressure in outer tenths", "Pa", label="edge pressure"),
-    Quantity("reference_life", "life of ISO/TS 16281, million revolutions"),
+    Quantity("reference_life", "life of ISO/TS 16281", "million revolutions"),
     Quantity("loaded", "number of loaded elements"),
     Quantity("cage_speed", "speed of the elements about the axis", "rad/s", label="cage speed"),
     Quantity("angles", "angles of the elements", "rad", dims=("element",)),
@@ -404,6 +413,10 @@ PARAMETERS = {
     "compliance": "m/N",
     "force_offset": "N",
     "force_slope": "N/m",
+    "force": "N",
+    "displacement": "m",
+    "yield_stress": "Pa",
+    "shear_yield": "Pa",
 }
 """SI units of parameters of studies and fits, by the last part of their names."""
 LENGTHS = (
@@ -429,6 +442,19 @@ INPUTS |= {"capacity": "N", "force": "N", "rotation": "rad", "speed": "rad/s", "
 INPUTS |= {"yield_stress": "Pa", "residual": "Pa", "poisson": "", "exponent": "", "slope": ""}
 INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
 """SI units of all arguments of contacts, indentations and bearings, by their names."""
+
+
+def parameter_unit(path: str, units: Mapping[str, str]) -> str:
+    """Return the SI unit of the number at a path: that of its name in `units` or `PARAMETERS`.
+
+    A component is of the quantity above it.
+
+    >>> parameter_unit("body.layers[0].thickness", {}), parameter_unit("bearing.solve.tilt.y", {})
+    ('m', 'rad')
+    """
+    *_, outer, name = ["", *path.split(".")]
+    quantity = outer if name in ("x", "y", "z") else name
+    return units.get(quantity, PARAMETERS[quantity]) if quantity in PARAMETERS else ""
 
 
 def units(

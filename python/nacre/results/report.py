@@ -134,10 +134,13 @@ def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
 
 
 def verdicts(results: Sequence[Reported]) -> Iterator[Any]:
-    """Yield the verdicts of results; one that has to be computed only where there is no other."""
+    """Yield the verdicts of results, the first of those with equal words.
+
+    One that has to be computed stands only where there is no other.
+    """
     members = [one for one in (getattr(result, "verdict", None) for result in results) if one]
-    properties = [one for one in members if not callable(one)]
-    yield from properties
+    properties = {one.words: one for one in reversed(members) if not callable(one)}
+    yield from reversed(properties.values())
     for compute in members if not properties else ():
         with suppress(ValueError):  # of contacts whose stresses are not known
             yield compute()

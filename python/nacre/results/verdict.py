@@ -38,7 +38,7 @@ class Verdict(Result):
     >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=5.0, max_cells=4096)
     >>> verdict = solution.verdict(yield_stress={"substrate": 2.2e9})
     >>> print(verdict)
-    Holds, ... times: substrate, von Mises 789 MPa ± ... % at 26... µm, of 2200 MPa.
+    Holds, ... times: substrate, von Mises 789 MPa ± ... % at 20.8 µm, of 2200 MPa.
     >>> verdict.level, verdict.decided_by
     ('good', 'substrate, von Mises')
     """

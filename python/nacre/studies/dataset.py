@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import SI, Within, symbol, system
 from nacre.results import quantities
-from nacre.results.quantities import ERROR, PARAMETERS
+from nacre.results.quantities import ERROR, parameter_unit
 from nacre.studies.journal import Record
 from nacre.studies.outputs import (
     AXES,
@@ -132,10 +132,11 @@ def assemble(
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
-    for coordinate in dataset.coords if kinds["bears"] else ():
-        # Pictures take them for numbers in the units that are set otherwise.
-        if unit := PARAMETERS.get(str(coordinate).rpartition(".")[2]):
-            dataset[coordinate].attrs["units"] = unit
+    for name in map(str, dataset.coords):
+        # What the parameters of a function are is not known; those of bearings are in SI.
+        is_known = kinds["bears"] or "." in name
+        if is_known and (unit := parameter_unit(name, units)):
+            dataset[name].attrs["units"] = symbol(unit)
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
         "source": f"nacre {core.__version__}",

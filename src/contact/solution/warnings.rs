@@ -103,6 +103,9 @@ pub enum Unestimated {
 /// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
 const LARGE_CONTACT: f64 = 0.2;
 
+/// Question where a contact is wider than the body it is on.
+const WRONG_UNITS: &str = ": are moduli and lengths in consistent units, such as Pa and m?";
+
 /// Cells across the contact below which pressure errs by some per cent.
 const FEW_CELLS: usize = 8;
 
@@ -204,12 +207,15 @@ impl fmt::Display for Warning {
                  which does not resolve their pressure; take a finer grid",
                 along(axis)
             ),
-            Self::LargeContact { axis, ratio } => write!(
-                f,
-                "the contact is not small compared with the radius along {}: half-width/radius = \
-                 {ratio:.2}; the bodies are taken as half-spaces",
-                along(axis)
-            ),
+            Self::LargeContact { axis, ratio } => {
+                write!(
+                    f,
+                    "the contact is not small compared with the radius along {}: half-width/radius = \
+                     {ratio:.2}; the bodies are taken as half-spaces",
+                    along(axis)
+                )?;
+                f.write_str(if *ratio > 1.0 { WRONG_UNITS } else { "" })
+            }
             Self::OutsideGrid { depth } => write!(
                 f,
                 "outside the grid that was chosen, the shape overlaps the deformed surface by {depth:.3e}: \
@@ -499,8 +505,16 @@ impl Outline {
 mod tests {
     use ndarray::Array2;
 
-    use super::Outline;
+    use super::{Outline, Warning};
     use crate::model::grid::full_window;
+
+    #[test]
+    fn a_contact_wider_than_its_radius_asks_for_units() {
+        let asks = |ratio| {
+            Warning::LargeContact { axis: 1, ratio }.to_string().contains("consistent units")
+        };
+        assert!(asks(1.1) && !asks(0.9));
+    }
 
     /// Outline of the contact with these pressures, in a window of the whole grid.
     fn outline(pressure: &Array2<f64>, gap: &Array2<f64>) -> Outline {

@@ -424,7 +424,7 @@ def test_solution_is_saved_loaded_pickled_and_printed(
     assert known is not None
     assert again.peak_pressure == pytest.approx(known.peak_pressure, rel=1e-7)
     text = coated.save(tmp_path / "bearing.csv").read_text("utf-8")
-    assert text.count("\n") == 14 + 1 + 6 + 2  # elements, heading, comments, errors
+    assert text.count("\n") == 14 + 1 + 7 + 2  # elements, heading, comments, errors
     assert "loaded         5 of 14 elements" in str(coated)
     assert "<table" in coated._repr_html_()
     assert coated.save(tmp_path / "bearing.png").stat().st_size > 10_000

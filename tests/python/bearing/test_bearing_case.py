@@ -325,7 +325,10 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
     assert told["film"]["ellipticity"] is None  # infinite
     assert f"film ratio λ    {film.film_ratio:.4g}" in out
     assert command("sweep", path) == 0
-    assert "4 cases, 0 failed" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "bearing.clearance [µm]" in printed
+    assert "reference_life [million revolutions]" in printed
+    assert "4 cases, 0 failed" in printed
     import xarray
 
     with xarray.open_dataset(tmp_path / "study.nc") as study:

@@ -144,8 +144,8 @@ def test_tilted_rollers_between_held_rings_are_in_equilibrium() -> None:
 
 
 def test_a_missing_thrust_or_moment_is_named() -> None:
-    message = r"force along z must be at least (\S+) N, got 760\.0, or moment about y must be at "
-    message += r"most (\S+) N m, got 0\.0: contacts only push"
+    message = r"force along z must be at least (\S+) N, got 760\.0 N, or moment about y must be at "
+    message += r"most (\S+) N m, got 0\.0 N m: contacts only push"
     with pytest.raises(ValueError, match=message) as caught:
         TAPERED.solve(force=(3000.0, 0.0, 760.0), moment=(0.0, 0.0), **STANDARD)
     bounds = re.search(message, str(caught.value))
@@ -178,7 +178,7 @@ def test_thrust_of_a_polygon_of_rollers() -> None:
 def test_two_rollers_carry_along_one_line() -> None:
     bearing = CylindricalRoller(**SIZE | {"count": 2})
     assert bearing.solve(force=(100.0, 0.0, None), **STANDARD).force[0] == pytest.approx(100.0)
-    with pytest.raises(ValueError, match=r"force along y must be at most 0 N, got 100\.0"):
+    with pytest.raises(ValueError, match=r"force along y must be at most 0 N, got 100\.0 N"):
         bearing.solve(force=(0.0, 100.0, None), **STANDARD)
     # Along the line at the angle 0.3: 100/tan 0.3.
     with pytest.raises(ValueError, match=r"force along x must be at least 323\.273 N, got"):

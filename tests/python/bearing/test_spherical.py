@@ -346,7 +346,7 @@ def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     assert again.load == pytest.approx(contact.load, rel=1e-8)
     # Six lines say what was solved, one the error of the peak: there is no pressure at the edge.
     assert light.edge_pressure == 0.0
-    assert light.save(tmp_path / "spherical.csv").read_text("utf-8").count("\n") == 14 + 1 + 6 + 1
+    assert light.save(tmp_path / "spherical.csv").read_text("utf-8").count("\n") == 14 + 1 + 7 + 1
     assert light.save(tmp_path / "spherical.png").stat().st_size > 10_000
     with pytest.raises(ValueError, match="element must be from 0 to 13, got 14"):
         light.contact(14, "outer")

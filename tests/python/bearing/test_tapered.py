@@ -271,7 +271,9 @@ def test_wrong_bearings_are_refused(given: dict[str, Any], message: str) -> None
 
 
 def test_radial_load_needs_an_axial_one() -> None:
-    with pytest.raises(ValueError, match=r"force along z must be at least 255\.342 N.*got 100\.0"):
+    with pytest.raises(
+        ValueError, match=r"force along z must be at least 255\.342 N.*got 100\.0 N"
+    ):
         tapered().solve(force=(1000.0, None, 100.0))
     held = tapered().solve(force=(1000.0, None, None), **STANDARD)
     assert held.force[2] > 255.342

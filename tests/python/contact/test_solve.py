@@ -365,6 +365,37 @@ def test_each_warning_is_issued_and_reported(
     assert solution.report.converged
 
 
+def test_a_contact_of_spots_prints_its_share_of_the_grid() -> None:
+    spots = quiet(nacre.solve, SPOTS, STEEL, load=LOAD)
+    assert f"share          {100 * spots.contact_share:.3g} % of the grid" in str(spots)
+    assert "share" not in str(nacre.solve(BALL, STEEL, load=LOAD))
+
+
+def test_a_peak_beside_the_middle_is_printed_in_the_middle() -> None:
+    ball = CONTACT.solve(BALL, load=LOAD)
+    half = [pytest.approx(0.5 * side) for side in ball.report.grid.spacing]
+    assert [*map(abs, ball.peak_position)] == half
+    middle = re.compile(r"\nat +\(0 m, 0 m\)\n")
+    assert middle.search(str(ball))
+    assert not middle.search(str(CONTACT.solve(BALL.shifted(2e-5, 0.0), load=LOAD)))
+
+
+@pytest.mark.parametrize("body", [STEEL, coated(20e9, 20e-6)])
+def test_the_error_of_a_cylinder_without_a_grid_names_one(
+    body: nacre.Elastic | nacre.HalfSpace,
+) -> None:
+    cylinder = nacre.Cylinder(5e-3)
+    with pytest.raises(ValueError, match=r"grid must be given") as caught:
+        nacre.solve(cylinder, body, load=1e5)
+    named = re.search(r"Grid\.line\((\d+), (\S+)\)", str(caught.value))
+    assert named is not None
+    solution = nacre.solve(
+        cylinder, body, load=1e5, grid=nacre.Grid.line(int(named[1]), float(named[2]))
+    )
+    assert solution.report.warnings == []
+    assert solution.in_contact.mean() > 0.25
+
+
 def test_a_warning_can_be_made_an_error() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", nacre.NacreWarning)

@@ -3,10 +3,12 @@
 import contextlib
 import doctest
 import re
+import runpy
 import shlex
+import tomllib
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -103,6 +105,53 @@ def test_the_commands_of_a_page_run(page: str, files: set[str], tmp_path: Path) 
             assert program == "nacre"
             assert command(*arguments) == 0
     assert {path.name for path in tmp_path.iterdir()} >= files
+
+
+def test_lines_of_code_fit_their_boxes() -> None:
+    for page in [*DOCS.glob("*.md"), *DOCS.glob("*/*.md")]:
+        for block in blocks(page):
+            if block.language in ("python", "rust", "sh", "toml"):
+                assert max(map(len, block.text.splitlines()), default=0) <= 80, (page, block.text)
+    for program in DOCS.glob("gallery/*/*.py"):
+        code = program.read_text(encoding="utf-8").rpartition('"""\n\n')[2]
+        lines = [line for line in code.splitlines() if not line.startswith("#")]
+        assert max(map(len, lines)) <= 80, program
+
+
+def test_the_front_page_lists_what_readme_lists() -> None:
+    def listed(page: Path) -> list[str]:
+        entries = page.read_text(encoding="utf-8").partition("On this core stand:\n\n- ")[2]
+        return entries.partition("\n\n")[0].split("\n- ")
+
+    assert listed(DOCS / "index.md") == listed(ROOT / "README.md") != [""]
+
+
+def test_the_list_of_pages_says_what_each_is_for() -> None:
+    index = (DOCS / "howto" / "index.md").read_text(encoding="utf-8")
+    card = r":link: (\w+)\n:link-type: doc\n(?::img-top: \S+\n)?[A-Z][^\n]+\.\n:::"
+    entries = re.findall(card, index)
+    pages = {page.stem for page in DOCS.glob("howto/*.md")} - {"index"}
+    assert sorted(entries) == sorted(pages)
+
+
+def test_the_reference_opens_with_a_line_on_every_name() -> None:
+    source = DOCS / "extensions" / "names.py"
+    names: dict[str, Any] = runpy.run_path(str(source))
+    missing = [name for name in names["names"]() if not names["sentence"](name)]
+    values = {"nacre.RIGID", "nacre.FREE", "nacre.materials", "nacre.plot.STYLE"}
+    assert {name for name in missing if not name.startswith(("nacre.torch", "nacre.jax"))} == values
+    assert len(names["table"]().splitlines()) == 2 + len(names["names"]()) > 150
+
+
+def test_all_installs_what_readme_says() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "optional-dependencies"
+    ]
+    (everything,) = extras.pop("all")
+    left = extras.keys() - set(everything.partition("[")[2].rstrip("]").split(","))
+    assert left == {"view", "jax", "torch"}
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "extras `view` (PyVista),\n`jax` and `torch` are large, and not in it" in readme
 
 
 def test_every_public_name_is_in_the_reference() -> None:

@@ -20,6 +20,7 @@ from matplotlib.text import Text
 import nacre
 import support
 from bodies import BALL, ROD, STEEL
+from bodies import coated as layered
 from nacre import design, plot
 from nacre._tools.units import Scale, written
 from support import errors, table
@@ -333,6 +334,21 @@ def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solutio
         value = coated.stress(30e-6, x=0.0, y=0.0, side=side).xx  # type: ignore[arg-type]
         assert curve[row, 1] == pytest.approx(float(value) / 1e9)
     assert axes.get_xlim() == pytest.approx((0.0, 90.0))
+
+
+def test_a_thin_coat_is_enlarged_in_a_new_figure() -> None:
+    grid = nacre.Grid((32, 32), (4e-4, 4e-4))
+    thin = nacre.solve(BALL, layered(420e9, 1e-6), load=10.0, grid=grid)
+    enlarged = plot.stress_section(thin, rows=12).figure.axes[1]
+    drawn(enlarged.figure)
+    assert enlarged.get_ylim() == pytest.approx((3.0, 0.0))
+    curves, enlarged = plot.stress_depth(thin, ["xx"], points=12).figure.axes
+    drawn(enlarged.figure)
+    assert enlarged.get_xlim() == pytest.approx((0.0, 3.0))
+    depths, _ = np.asarray(enlarged.lines[0].get_xydata()).T
+    assert (depths < 3.0).sum() >= 8
+    given = plot.stress_depth(thin, ["xx"], points=12, axes=curves)
+    assert given.figure.axes == [curves, enlarged]
 
 
 def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:

@@ -12,7 +12,9 @@ import pytest
 import nacre
 from bodies import BALL, STEEL, quiet
 from nacre import fatigue
+from nacre._tools.units import written
 from nacre.results import values
+from nacre.results.base import Fields
 from support import python
 
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
@@ -147,6 +149,27 @@ def test_pickles_and_copies_are_equal_values(value: object) -> None:
         np.testing.assert_equal(kept[name], attribute, err_msg=name)
 
 
+def test_a_notebook_shows_every_result_as_a_table() -> None:
+    hard = nacre.HalfSpace(STEEL)
+    test = nacre.indent.Indentation(hard, nacre.indent.Tip.paraboloid(1e-5))
+    state = test.at(load=[1e-3, 2e-3])
+    shown = [
+        *VALUES.values(),
+        state.derivatives(["body.substrate.young"])["body.substrate.young"],
+        test.curve(approach=[1e-8, 2e-8]),
+        nacre.indent.Indentation(
+            hard, nacre.indent.Tip.paraboloid(1e-5), adhesion=nacre.indent.Adhesion.jkr(0.05)
+        ).pull_off(),
+    ]
+    for result in shown:
+        if isinstance(result, Fields):
+            table = result._repr_html_()
+            assert table.count("<tr>") > 1, result
+            assert "array(" not in table, result
+    layer = SUMMARY.layers[0]
+    assert written(layer.von_mises[0], "Pa") in layer._repr_html_()
+
+
 @pytest.mark.parametrize("value", MADE_BY_A_CALL.values(), ids=MADE_BY_A_CALL.keys())
 def test_repr_is_the_call_that_makes_it(value: object) -> None:
     back = eval(repr(value), {"array": np.array} | vars(nacre) | vars(nacre.hertz))
@@ -223,7 +246,9 @@ def test_sums_and_shifts_are_one_list() -> None:
 
 SUMS = """
 import functools, operator, pickle, nacre
+from nacre._tools.units import written
 from nacre.results import values
+from nacre.results.base import Fields
 
 part = nacre.Paraboloid(1.0, 1.0)
 grid = nacre.Grid((8, 8), (1e-3, 1e-3))
