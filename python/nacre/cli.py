@@ -39,15 +39,15 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        from nacre.case.commands import app
+        from nacre.app.command import commands
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 
     try:
         if not argv:
-            app(["--help"], prog_name="nacre", standalone_mode=False)
+            commands(["--help"], prog_name="nacre", standalone_mode=False)
             return 2
-        return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)
+        return int(commands(arguments, prog_name="nacre", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _fail(error.format_message(), 2)
     except (ValueError, ModuleNotFoundError) as error:

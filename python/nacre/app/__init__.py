@@ -1,0 +1,1 @@
+"""The page of ``nacre app``, on this computer alone: verdicts, pictures, reports without code."""

@@ -1,0 +1,387 @@
+"""Answers to the questions of the page: a function of a case and a stage, and of nothing else."""
+
+from __future__ import annotations
+
+import datetime
+import html
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+import nacre
+import nacre._core as core
+from nacre.app.reading import apparent_modulus, substrate_verdict
+from nacre.case import Case, CaseError, toml
+from nacre.indent import solve as solve_indentation
+from nacre.results import display, report
+from nacre.results.svg import Axis, Curve, bars, lines
+from nacre.results.verdict import Verdict
+
+Answer = dict[str, Any]
+Going = Callable[[], bool]
+"""Function that says whether the answer is still wanted."""
+
+STAGES = ("draft", "full", "stress")
+"""Stages of an answer, each of which names the next."""
+ROLLER_CELLS, FEWEST_CELLS = 16384, 4096
+"""Largest number of cells of a draft: of rollers; and of others, the fewest that nacre takes."""
+EVERY = 3
+"""Loads of which one is in a draft of an indentation."""
+CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
+BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
+"""Numbers that the page shows."""
+DEPTHS, DEEPEST = 40, 1.25
+"""Depths of the picture of stresses, and the largest over the width of the contact."""
+SLIDING = ("body", "friction", "direction", "residual")
+"""Keywords of stresses that pictures over depth take, too."""
+DIGITS = 5
+"""Digits of the main number."""
+ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
+"""What calculations raise."""
+
+
+class Stopped(Exception):
+    """The answer is no longer wanted."""
+
+
+def answer(
+    case: Case, stage: str, going: Going = lambda: True, fixed: Answer | None = None
+) -> Answer:
+    """Return what the page shows of a case at a stage.
+
+    Parameters
+    ----------
+    case
+        Case.
+    stage
+        One of `STAGES`; or "case" for its file, or "report".
+    going
+        Function that says whether the answer is still wanted.
+    fixed
+        Arguments in place of those of the case.
+
+    Returns
+    -------
+    dict
+        Parts of the page by name, and the next stage; or an error in a sentence.
+
+    Raises
+    ------
+    Stopped
+        If the answer was no longer wanted.
+    """
+    try:
+        # Bearings are in SI, and shown in the units of the case.
+        units = display.shown_in if case.kind == "bearing" else nacre.display_units
+        with units(case.units):
+            arguments = case.arguments() | (fixed or {})
+            if stage == "case":
+                return {"case": file_text(case)}
+            if stage == "report":
+                return {"report": _report(case, arguments, going)}
+            return SOLVERS[case.kind](case, arguments, stage, going)
+    except ERRORS as error:
+        if not going():
+            raise Stopped from error
+        return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
+
+
+def file_text(case: Case) -> str:
+    """Return the case file of what the page shows."""
+    notes = f"{case.name}: nacre solve FILE", f"written by nacre {core.__version__}"
+    return toml.text(case.data, notes)
+
+
+def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+    """Return the answer on a contact: coated beside bare, and with the last stage its stresses."""
+    if stage == "draft" and "grid" not in arguments:
+        is_long = isinstance(arguments["shape"], core.Roller)
+        arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
+    solution = _solved_contact(case, arguments, going)
+    bare = _bare(case, arguments, going)
+    parts: Answer = {
+        "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
+        "rows": _rows(_selected(solution, CONTACT_ROWS), bare and _selected(bare, CONTACT_ROWS)),
+        "picture-1": _pressures(solution, bare),
+        "warnings": list(solution._warnings),
+    }
+    if stage != "stress":
+        return _answer(parts, "full" if stage == "draft" else "stress")
+    keywords = case.stress() or {}
+    try:
+        summary = solution.stress_summary(**keywords, progress=lambda _: going())
+    except ValueError as error:
+        verdict = Verdict("unknown", f"Cannot tell: {error}.", (), None, None, None)
+        return _answer(parts | _judged(verdict))
+    _check(going)
+    parts["picture-2"] = _stresses(solution, bare, keywords)
+    parts["warnings"] = list(dict.fromkeys([*parts["warnings"], *summary.warnings]))
+    return _answer(parts | _judged(summary.verdict))
+
+
+def _solved_contact(case: Case, arguments: Answer, going: Going) -> Any:
+    """Return the solution of a contact, the last one of a history."""
+    outcome = getattr(nacre, case.friction or "solve")(
+        **arguments, progress=lambda *_: going(), check=False
+    )
+    _check(going)
+    solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
+    if not solution.report.converged:
+        raise CaseError("no solution was found: the solve did not converge")
+    return solution
+
+
+def _bare(case: Case, arguments: Answer, going: Going) -> Any:
+    """Return the solution without layers, or None where there are none or friction is solved."""
+    body = arguments["body"]
+    if case.friction or not isinstance(body, core.HalfSpace) or not body.layers:
+        return None
+    if not isinstance(body.substrate, core.Elastic):
+        return None
+    bare = core.HalfSpace(body.substrate, ends=body.ends)
+    try:
+        return _solved_contact(case, arguments | {"body": bare}, going)
+    except ERRORS:
+        _check(going)
+        return None
+
+
+def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+    """Return the answer on a bearing; the last stage compares it with aligned rings."""
+    bearing = arguments.pop("bearing")
+    draft = {"model": "iso16281", "cells": None} if stage == "draft" else {}
+    keywords = arguments | draft | {"progress": lambda *_: going(), "check": False}
+    solution = bearing.solve(**keywords)
+    _check(going)
+    if not solution.report.converged:
+        raise CaseError("no equilibrium was found: the solve did not converge")
+    life = case.life()
+    rows = _selected(solution, BEARING_ROWS)
+    rows += [] if life is None else solution.life(**life)._rows()
+    is_tilted = any(arguments.get("tilt") or ())
+    aligned = None
+    if is_tilted and stage != "full":
+        aligned = bearing.solve(**keywords | {"tilt": (0.0, 0.0)})
+        _check(going)
+    parts = {
+        "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
+        "rows": _rows(rows),
+        "picture-1": _along_roller(solution, aligned),
+        "picture-2": _ring(solution),
+        "warnings": list(solution.report.warnings),
+    }
+    following = {"draft": "full", "full": "stress" if is_tilted and bearing.rolls else None}
+    return _answer(parts | _judged(solution.verdict), following.get(stage))
+
+
+def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+    """Return the answer on an indentation, with and without the substrate."""
+    given = next(name for name in ("load", "approach", "radius") if name in arguments)
+    values = np.atleast_1d(np.asarray(arguments[given], dtype=float))
+    if stage == "draft":
+        values = values[::-1][::EVERY][::-1]
+    arguments = arguments | {given: values}
+    solution = solve_indentation(**arguments)
+    _check(going)
+    last = int(np.argmax(solution.approach))
+    numbers = {
+        name: display.number(float(getattr(solution, path)[last]), unit)
+        for name, path, unit in (
+            ("largest load", "load", "N"),
+            ("largest depth", "approach", "m"),
+            ("contact radius there", "radius", "m"),
+            ("stiffness there", "stiffness", "N/m"),
+            ("central pressure there", "central_pressure", "Pa"),
+        )
+    }
+    parts: Answer = {
+        "peak": ("largest depth", display.number(float(solution.approach[last]), "m", DIGITS)),
+        "rows": _rows([*numbers.items()]),
+        "picture-1": _loads(arguments, solution, given),
+        "warnings": list(solution.warnings),
+    }
+    reading = apparent_modulus(solution)
+    _check(going)
+    if reading is not None:
+        parts["picture-2"] = _moduli(reading)
+    parts |= _judged(substrate_verdict(reading))
+    return _answer(parts, "full" if stage == "draft" else None)
+
+
+SOLVERS = {"contact": _contact, "bearing": _bearing, "indent": _indentation}
+"""Functions of the kinds of cases."""
+
+
+def _report(case: Case, arguments: Answer, going: Going) -> str:
+    """Return the report of a case, as a page of HTML."""
+    results: list[Any]
+    inputs, sliding = [("units of the case", case.units)], {}
+    if case.kind == "contact":
+        results, keywords = [_solved_contact(case, arguments, going)], case.stress()
+        sliding = {name: value for name, value in (keywords or {}).items() if name in SLIDING}
+        inputs += report.input_rows({"stress": keywords})
+        if keywords is not None:
+            results.append(results[0].stress_summary(**keywords, progress=lambda _: going()))
+    elif case.kind == "bearing":
+        bearing, life = arguments.pop("bearing"), case.life()
+        results = [bearing.solve(**arguments, progress=lambda *_: going())]
+        results += [] if life is None else [results[0].life(**life)]
+    else:
+        results = [solve_indentation(**arguments)]
+    _check(going)
+    judgements = list(report.verdicts(results))
+    if case.kind == "indent":
+        judgements.append(substrate_verdict(apparent_modulus(results[0])))
+    first, *others = results
+    sections = [first._sections(**sliding), *(one._sections() for one in others)]
+    sections.append(report.Sections("", inputs))
+    today = datetime.date.today().isoformat()
+    return report.page(case.name, today, sections, judgements, file_text(case))
+
+
+def _check(going: Going) -> None:
+    if not going():
+        raise Stopped
+
+
+def _answer(parts: Answer, following: str | None = None) -> Answer:
+    return {"parts": parts, "next": following}
+
+
+def _judged(verdict: Verdict) -> Answer:
+    """Return the verdict as a part of the page."""
+    return {"verdict": {"level": verdict.level, "words": verdict.words, "lines": verdict.lines}}
+
+
+def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
+    return [row for row in result._rows() if row[0] in names]
+
+
+def _rows(rows: Sequence[tuple[str, str]], bare: Sequence[tuple[str, str]] | None = None) -> str:
+    """Return a table of numbers, those of a bare body beside them."""
+    beside = dict(bare or ())
+    lines = []
+    for name, text in rows:
+        other = f"<td>{html.escape(beside.get(name, ''))}</td>" if bare else ""
+        lines.append(f"<tr><th>{html.escape(name)}</th><td>{html.escape(text)}</td>{other}</tr>")
+    head = "<tr><th></th><th>coated</th><th>bare</th></tr>" if bare else ""
+    return f"<table>{head}{''.join(lines)}</table>"
+
+
+def _figure(caption: str, drawing: str) -> str:
+    words = html.escape(caption)
+    drawing = drawing.replace("<svg", f"<svg role='img' aria-label='{words}'", 1)
+    return f"<figure>{drawing}<figcaption>{words}</figcaption></figure>"
+
+
+def _section(solution: Any, axis: int | None = None) -> tuple[int, Any, Any]:
+    """Return the longer axis of a contact, or another, places along it and the pressure there."""
+    pressure = solution.pressure
+    if axis is None:
+        spans = [high - low for low, high in solution.contact_extent]
+        axis = int(spans[1] > spans[0]) if np.isfinite(spans).all() else 1
+        axis = 1 if pressure.shape[0] == 1 else axis
+    peak = np.unravel_index(pressure.argmax(), pressure.shape)
+    low, high = display.loaded_parts(pressure)[axis]
+    cells = slice(low, high + 1)
+    places = (solution.x, solution.y)[axis][cells]
+    return axis, places, np.take(pressure, peak[1 - axis], axis=1 - axis)[cells]
+
+
+def _pressures(solution: Any, bare: Any) -> str:
+    """Return the picture of the pressure along the longer side of a contact."""
+    axis, x, pressure = _section(solution)
+    curves = [Curve(x, pressure, "" if bare is None else "coated")]
+    if bare is not None:
+        curves.append(Curve(*_section(bare, axis)[1:], "bare", "dashed"))
+    drawing = lines(curves, (Axis("xy"[axis], "m"), Axis("pressure", "Pa")))
+    return _figure("Pressure through the largest.", drawing)
+
+
+def _stresses(solution: Any, bare: Any, keywords: Answer) -> str:
+    """Return the picture of the von Mises stress against depth, coated and bare."""
+    body = solution.report.body
+    interfaces = [float(z) for z in body.interfaces] if isinstance(body, core.HalfSpace) else []
+    widths = [high - low for low, high in solution.contact_extent if high > low]
+    bottom = DEEPEST * min(widths, default=min(solution.grid.size))
+    inset = (0.0, 3 * interfaces[0]) if interfaces and interfaces[0] < bottom / 10 else None
+    sliding = {name: keywords[name] for name in SLIDING if name in keywords}
+    curves = [Curve(*_over_depth(solution, bottom, interfaces, sliding), "coated" if bare else "")]
+    if bare is not None:
+        sliding.pop("residual", None)
+        curves.append(Curve(*_over_depth(bare, bottom, interfaces, sliding), "bare", "dashed"))
+    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
+    words = "Von Mises stress below the largest pressure; dotted: interfaces"
+    words += "; inset: the first three thicknesses" if inset else ""
+    return _figure(f"{words}.", lines(curves, axes, interfaces, inset))
+
+
+def _over_depth(
+    solution: Any, bottom: float, interfaces: Sequence[float], sliding: Answer
+) -> tuple[Any, Any]:
+    """Return depths and von Mises stresses; an interface is there twice, for its two sides."""
+    faces = [0.0, *(z for z in interfaces if z < bottom)]
+    within = [np.linspace(top, 3 * top or bottom, DEPTHS) for top in faces]
+    within += [np.linspace(0.0, z, DEPTHS // 3) for z in faces[1:]]
+    below = np.unique(np.concatenate([one[one <= bottom] for one in within]))
+    place = dict(zip("xy", solution.peak_position, strict=True))
+    stresses = [solution.stress(below, **place, **sliding).von_mises]
+    if faces[1:]:
+        above = solution.stress(np.array(faces[1:]), side="above", **place, **sliding).von_mises
+        stresses.append(above)
+    depths = np.concatenate([below, faces[1:]])
+    order = np.lexsort((-np.arange(depths.size), depths))
+    return depths[order], np.concatenate([np.ravel(one) for one in stresses])[order]
+
+
+def _along_roller(solution: Any, aligned: Any) -> str:
+    """Return the picture of the pressure along the heaviest element, and of aligned rings."""
+    curves = [Curve(*_profile(solution), "as it stands" if aligned else "")]
+    if aligned is not None:
+        curves.append(Curve(*_profile(aligned), "aligned", "dashed"))
+    drawing = lines(curves, (Axis("x", "m"), Axis("pressure", "Pa")))
+    return _figure("Pressure along the heaviest element, inner ring.", drawing)
+
+
+def _profile(solution: Any) -> tuple[Any, Any]:
+    """Return places along the heaviest element, and the largest pressure there."""
+    heaviest = int(solution.loads[:, 0].argmax())
+    if solution.lamina_pressures is not None:
+        pressure = solution.lamina_pressures[heaviest, 0]
+        places = ((np.arange(pressure.size) + 0.5) / pressure.size - 0.5) * solution.bearing.length
+        return places, pressure
+    if solution.model != "solved" or (contact := solution.contact(heaviest, "inner")) is None:
+        return [0.0], [float(solution.peak_pressures[heaviest, 0])]
+    return contact.x, contact.pressure.max(axis=1)
+
+
+def _ring(solution: Any) -> str:
+    """Return the picture of the loads around the ring."""
+    count, rows = solution.bearing.count, solution.bearing.rows
+    loads = solution.loads.reshape(rows, count, 2)[:, :, 0].T
+    angles = solution.angles.reshape(rows, count).T
+    drawing = bars(angles, loads, Axis("load on the inner ring", "N"))
+    return _figure("Loads of the elements around the ring, x to the right.", drawing)
+
+
+def _loads(arguments: Answer, solution: Any, given: str) -> str:
+    """Return the picture of load over depth, and of the film without a substrate."""
+    body = arguments["body"]
+    layers = body.layers if isinstance(body, core.HalfSpace) else []
+    curves = [Curve(solution.approach, solution.load, "on the substrate" if layers else "")]
+    if layers:
+        bare = solve_indentation(**arguments | {"body": core.HalfSpace(layers[0].material)})
+        curves.append(Curve(bare.approach, bare.load, "film alone", "dashed"))
+    drawing = lines(curves, (Axis("depth", "m"), Axis("load", "N")))
+    return _figure("Load over depth.", drawing)
+
+
+def _moduli(reading: Any) -> str:
+    """Return the picture of the modulus that a bare film of each depth's load would have."""
+    curves = [
+        Curve(reading.depths, reading.moduli, "read as a bare film"),
+        Curve(reading.depths, np.full(reading.depths.size, reading.modulus), "film", "dashed"),
+    ]
+    drawing = lines(curves, (Axis("depth", "m"), Axis("apparent modulus", "Pa")))
+    return _figure("Apparent modulus over depth.", drawing)

@@ -1,0 +1,95 @@
+"""What an indentation of a film would tell of it if it were read without the substrate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._tools.units import plain
+from nacre.indent import solve
+from nacre.results.verdict import DIGITS, Level, Verdict, number
+
+Array = npt.NDArray[np.float64]
+
+GOOD, FAIR = 0.05, 0.20
+"""Largest errors of a modulus of a good and of a fair indentation."""
+TOLERATED = 0.10
+"""Error of the modulus whose depth is told."""
+DEPTHS, SHALLOWEST = 40, 1e-3
+"""Number of depths, and the smallest over the largest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Moduli of a film, of bare half-spaces that bear the same load at the same depth."""
+
+    depths: Array
+    """Depths [m]."""
+    moduli: Array
+    """Young's moduli that are read there [Pa]."""
+    modulus: float
+    """Young's modulus of the film [Pa]."""
+    has_adhesion: bool
+    """Whether the indentation has adhesion, which the loads here have not."""
+
+
+def apparent_modulus(solution: Any) -> Reading | None:
+    """Return the readings of an indentation up to its largest depth, or None without a film.
+
+    With a stiffness E' = E/(1 − ν²) of the tip, loads at one depth are as 1/(1/E'_film + 1/E'_tip).
+    """
+    body = solution.body
+    largest = float(np.max(solution.approach))
+    if not body.layers or not largest > 0:
+        return None
+    film, depths = body.layers[0].material, largest * np.geomspace(SHALLOWEST, 1.0, DEPTHS)
+    loads, bare = (
+        solve(one, solution.tip, counterbody=solution.counterbody, approach=depths).load
+        for one in (body, core.HalfSpace(film))
+    )
+    tip = solution.counterbody
+    compliance = 0.0 if tip is None else 1 / tip.substrate.plane_strain_modulus
+    reduced = loads / bare / (1 / film.plane_strain_modulus + compliance)
+    # Beyond the tip's own stiffness no film can be read.
+    left = 1 / reduced - compliance
+    with np.errstate(divide="ignore"):
+        moduli = np.where(left > 0, (1 - film.poisson**2) / left, math.inf)
+    return Reading(depths, moduli, film.young, solution.adhesion is not None)
+
+
+def substrate_verdict(reading: Reading | None) -> Verdict:
+    """Return whether the largest depth tells the modulus of the film."""
+    if reading is None:
+        return Verdict("unknown", "Cannot tell: there is no film.", (), None, None, None)
+    ratio = float(reading.moduli[-1]) / reading.modulus
+    error = abs(ratio - 1)
+    level: Level = "good" if error <= GOOD else "fair" if error <= FAIR else "bad"
+    read, film = number(float(reading.moduli[-1]), "Pa"), number(reading.modulus, "Pa")
+    start = "The film is read" if level == "good" else "The substrate shows"
+    words = f"{start}: as a bare film, this curve gives {read} for a film of {film}"
+    words += f" ({plain(ratio, DIGITS)} times)."
+    if not math.isfinite(ratio):
+        words = "The substrate shows: at this depth the curve tells nothing of the film."
+    lines = [_depth(reading)]
+    lines += ["Adhesion is left out of this reading."] if reading.has_adhesion else []
+    return Verdict(level, words, tuple(lines), ratio, "substrate", None)
+
+
+def _depth(reading: Reading) -> str:
+    """Return up to which depth the error is tolerated."""
+    errors = np.abs(reading.moduli / reading.modulus - 1)
+    beyond = np.flatnonzero(errors > TOLERATED)
+    share = f"{plain(100 * TOLERATED, DIGITS)} %"
+    if not beyond.size:
+        return f"The error is below {share} at all these depths."
+    if not (first := int(beyond[0])):
+        least = number(float(reading.depths[0]), "m")
+        return f"The error is above {share} from {least} of depth on."
+    ends = slice(first - 1, first + 1)
+    depth = np.interp(TOLERATED, errors[ends], reading.depths[ends])
+    return f"The error is below {share} only up to {number(float(depth), 'm')} of depth."

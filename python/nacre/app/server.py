@@ -1,0 +1,224 @@
+"""The server of the page: on this computer alone, without state, by Python's own `http.server`."""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import time
+import warnings
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+import nacre
+from nacre.app.answer import STAGES, Going, Stopped, answer
+from nacre.app.cards import Card, FieldError
+from nacre.app.page import files
+from nacre.case import CaseError
+
+ADDRESS = "127.0.0.1"
+PORTS = 10
+"""Number of ports that are tried."""
+MOST_BYTES = 64 * 1024
+"""Largest size of a question."""
+MOST_PAGES = 64
+"""Number of pages whose newest question is known."""
+LANE = 2
+"""Number of drafts, and of other answers, at a time."""
+SECONDS = 30.0
+"""Longest time of an answer, and of a connection without a question."""
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+        "img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-store",
+    "Referrer-Policy": "no-referrer",
+}
+
+
+class Refused(Exception):
+    """A request that is refused, with the code of HTTP."""
+
+    def __init__(self, code: int, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class Server(ThreadingHTTPServer):
+    """Server of the page with some cards."""
+
+    daemon_threads = True
+    block_on_close = False
+    allow_reuse_address = sys.platform != "win32"  # where it would share a port that is taken
+
+    def __init__(self, port: int, cards: Mapping[str, Card]) -> None:
+        super().__init__((ADDRESS, port), Handler)
+        self.cards = cards
+        self.files = files(cards)
+        self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
+        self.newest: OrderedDict[str, float] = OrderedDict()
+        self.lock = threading.Lock()
+        self.lanes = {True: threading.Semaphore(LANE), False: threading.Semaphore(LANE)}
+        self.is_open = True
+
+    @property
+    def url(self) -> str:
+        """Address of the page."""
+        return f"http://{ADDRESS}:{self.server_port}/"
+
+    def server_bind(self) -> None:
+        """Bind the port, without looking up the name of this computer."""
+        self.socket.bind(self.server_address)
+        self.server_address = self.socket.getsockname()
+        self.server_name, self.server_port = ADDRESS, self.server_address[1]
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Say nothing of a page that has gone."""
+
+    def going(self, page: str, age: float) -> Going:
+        """Return the function that says whether a question is still the newest of its page."""
+        with self.lock:
+            self.newest[page] = max(age, self.newest.pop(page, age))
+            if len(self.newest) > MOST_PAGES:
+                self.newest.popitem(last=False)
+        end = time.monotonic() + SECONDS
+
+        def is_wanted() -> bool:
+            if time.monotonic() > end:
+                raise CaseError(f"this takes longer than {SECONDS:g} s: choose a smaller case")
+            return self.is_open and self.newest.get(page, age) <= age
+
+        return is_wanted
+
+    def reply(self, question: dict[str, Any], stages: tuple[str, ...]) -> dict[str, Any]:
+        """Return the answer to a question."""
+        stage, values = question.get("stage"), question.get("values", {})
+        card = self.cards.get(str(question.get("card")))
+        page, age = str(question.get("page"))[:60], question.get("age", 0)
+        is_age = isinstance(age, int | float) and not isinstance(age, bool)
+        if card is None or stage not in stages or not isinstance(values, dict) or not is_age:
+            raise Refused(400, "no such question")
+        going = self.going(page, age)
+        try:
+            case = card.case(values)
+            with self.lane(stage == "draft", going):
+                return answer(case, stage, going, card.fixed)
+        except FieldError as error:
+            return {"error": str(error), "field": error.path}
+        except (LookupError, ValueError) as error:
+            return {"error": " ".join(str(error).split())}
+        except Stopped:
+            return {"stopped": True}
+
+    @contextmanager
+    def lane(self, is_draft: bool, going: Going) -> Iterator[None]:
+        """Wait until there is room: drafts never wait for other answers."""
+        lane = self.lanes[is_draft]
+        while not lane.acquire(timeout=0.05):
+            if not going():
+                raise Stopped
+        try:
+            yield
+        finally:
+            lane.release()
+
+
+class Handler(BaseHTTPRequestHandler):
+    """Requests: three files and two questions."""
+
+    server: Server
+    protocol_version = "HTTP/1.1"
+    timeout = SECONDS
+
+    def do_GET(self) -> None:
+        """Send a file of the page."""
+        self._answered(self._file)
+
+    def do_POST(self) -> None:
+        """Send an answer."""
+        self._answered(self._reply)
+
+    def _answered(self, make: Any) -> None:
+        try:
+            self._check_origin()
+            code, (kind, body) = 200, make()
+        except Refused as error:
+            code, kind, body = error.code, "text/plain", str(error).encode()
+            self.close_connection = True  # its body is not read
+        self.send_response(code)
+        self.send_header("Content-Type", f"{kind}; charset=utf-8")
+        self.send_header("Content-Length", str(len(body)))
+        if self.close_connection:
+            self.send_header("Connection", "close")
+        self.end_headers()
+        self.wfile.write(body)
+
+    def _check_origin(self) -> None:
+        """Refuse what another site could have sent."""
+        if self.headers.get("Host") not in self.server.hosts:
+            raise Refused(400, "Host must be that of this page")
+        origin = self.headers.get("Origin")
+        if origin is not None and origin.removeprefix("http://") not in self.server.hosts:
+            raise Refused(403, "Origin must be this page")
+
+    def _file(self) -> tuple[str, bytes]:
+        if self.path not in self.server.files:
+            raise Refused(404, "there is no such page")
+        return self.server.files[self.path]
+
+    def _reply(self) -> tuple[str, bytes]:
+        stages = {"/answer": (*STAGES, "case"), "/report": ("report",)}.get(self.path)
+        if stages is None:
+            raise Refused(404, "there is no such page")
+        reply = self.server.reply(self._question(), stages)
+        return "application/json", json.dumps(reply, allow_nan=False).encode()
+
+    def _question(self) -> dict[str, Any]:
+        """Return the question in the body of a request."""
+        if self.headers.get_content_type() != "application/json":
+            raise Refused(400, "Content-Type must be application/json")
+        length = self.headers.get("Content-Length", "")
+        if not (length.isascii() and length.isdigit()):
+            raise Refused(411, "Content-Length is missing")
+        if int(length[:9]) > MOST_BYTES or len(length) > 9:
+            raise Refused(413, f"a question has at most {MOST_BYTES} bytes")
+        try:
+            question = json.loads(self.rfile.read(int(length)), parse_constant=_no_number)
+        except (ValueError, RecursionError):
+            raise Refused(400, "a question is JSON") from None
+        if not isinstance(question, dict):
+            raise Refused(400, "a question is a table")
+        return question
+
+    def end_headers(self) -> None:
+        """Send the headers that every answer has."""
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
+        super().end_headers()
+
+    def version_string(self) -> str:
+        """Return the name of the server."""
+        return "nacre"
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Write no log."""
+
+
+def _no_number(text: str) -> float:
+    raise ValueError(text)
+
+
+def open_server(port: int, cards: Mapping[str, Card]) -> Server:
+    """Return a server on a port, or on the first free one of those after it."""
+    warnings.simplefilter("ignore", nacre.NacreWarning)  # answers have them
+    for one in range(port, min(port + PORTS, 65536)):
+        try:
+            return Server(one, cards)
+        except OSError as error:
+            reason = error
+    raise CaseError(f"--port: none of {port} to {port + PORTS - 1} is free: {reason.strerror}")

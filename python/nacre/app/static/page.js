@@ -1,0 +1,192 @@
+"use strict";
+// The page asks the server for answers, and shows them. It knows no field and no physics.
+const REST = 300, DELAYS = [200, 400, 800, 1600, 3200, 6400];
+const one = (selector, root = document) => root.querySelector(selector);
+const all = (selector, root = document) => [...root.querySelectorAll(selector)];
+const forms = all("form"), status = one("output"), problem = one(".error"), note = one(".note");
+const verdict = one(".verdict"), id = crypto.randomUUID();
+let form, age = 0, timer, request = null, drafting = false;
+
+const inputs = () => all("input[name]", form);
+const changed = () => inputs().filter((input) => input.value !== input.dataset.default);
+
+function show(state, words) {
+  status.dataset.state = state;
+  status.textContent = words ?? state;
+}
+
+function tell(element, words) {
+  element.hidden = !words;
+  element.textContent = words ?? "";
+}
+
+function question(stage) {
+  const values = Object.fromEntries(changed().map((input) => [input.name, input.value]));
+  return { card: form.dataset.card, values, stage, page: id, age };
+}
+
+async function post(path, body, signal) {
+  for (const delay of [...DELAYS, null]) {
+    try {
+      const headers = { "Content-Type": "application/json" };
+      const reply = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+      return reply.ok ? await reply.json() : { error: await reply.text() };
+    } catch (error) {
+      if (signal?.aborted) return { stopped: true };
+      if (delay === null) return { error: "the program no longer answers: start it again" };
+      await new Promise((next) => setTimeout(next, delay));
+    }
+  }
+}
+
+// A draft under way ends before the next is asked; all else is given up for it.
+function change() {
+  age += 1;
+  clearTimeout(timer);
+  show("busy", "computing …");
+  all("[data-part]").forEach((part) => part.classList.add("stale"));
+  keep();
+  if (!drafting) {
+    request?.abort();
+    ask("draft");
+  }
+}
+
+async function ask(stage) {
+  const mine = age, card = form;
+  request = new AbortController();
+  drafting = stage === "draft";
+  const reply = await post("/answer", question(stage), request.signal);
+  if (stage !== "draft" && mine !== age) return;
+  drafting = false;
+  if (card === form && !reply.stopped) put(reply);
+  if (mine !== age) return ask("draft");
+  if (reply.error) return show("failed");
+  if (reply.stopped) return;
+  const states = { draft: "draft", full: "solved" };
+  show(reply.next ? states[stage] : "done", reply.next ? `${states[stage]}, computing …` : "solved");
+  if (reply.next) timer = setTimeout(() => ask(reply.next), stage === "draft" ? REST : 0);
+}
+
+function put(reply) {
+  tell(problem, reply.error);
+  all(".field.wrong").forEach((field) => field.classList.remove("wrong"));
+  if (reply.field) form.elements[reply.field]?.closest(".field").classList.add("wrong");
+  for (const [name, content] of Object.entries(reply.parts ?? {})) {
+    const part = one(`[data-part="${name}"]`);
+    part.classList.remove("stale");
+    if (name === "verdict") judge(content);
+    else if (name === "warnings") list(part, content);
+    else if (name === "peak") [one(".name", part).textContent, one("strong", part).textContent] = content;
+    else part.innerHTML = content; // pictures and tables, escaped by the server
+  }
+}
+
+function judge({ level, words, lines }) {
+  verdict.dataset.level = level;
+  one(".level", verdict).textContent = level;
+  one(".words", verdict).textContent = words;
+  list(one("ul", verdict), lines);
+}
+
+function list(element, texts) {
+  element.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+// Sliders: the value over the default is 20 to their power, or they are linear.
+function slide(slider) {
+  const input = one("input[name]", slider.parentElement), { scale, low, high } = slider.dataset;
+  const value = scale === "linear" ? +slider.value : input.dataset.default * 20 ** slider.value;
+  input.value = +Math.min(Math.max(value, low), high).toPrecision(3);
+}
+
+function follow(input) {
+  const slider = one("input[type=range]", input.parentElement), value = +input.value.replace(",", ".");
+  if (!slider) return;
+  slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.dataset.default) / Math.log(20) || 0;
+}
+
+function choose(select) {
+  const option = select.selectedOptions[0], numbers = JSON.parse(option.dataset.numbers ?? "null");
+  const path = `materials.${select.dataset.material}.`;
+  for (const input of numbers ? inputs().filter((one) => one.name.startsWith(path)) : []) {
+    const value = numbers[input.name.slice(path.length)];
+    input.value = value === undefined ? "" : +(value / input.dataset.si).toPrecision(9);
+    follow(input);
+  }
+  tell(select.parentElement.nextElementSibling, option.dataset.source);
+  change();
+}
+
+function release(input) {
+  for (const select of all(".material", form)) {
+    if (!input.name.startsWith(`materials.${select.dataset.material}.`)) continue;
+    select.value = "";
+    tell(select.parentElement.nextElementSibling);
+  }
+}
+
+function open(card) {
+  form = card;
+  forms.forEach((other) => (other.hidden = other !== form));
+  all(".tab").forEach((tab) => tab.setAttribute("aria-pressed", tab.dataset.group === form.dataset.group));
+  all(".variant", form).forEach((select) => (select.value = form.dataset.card));
+  one("[data-testid=copy-link]").disabled = form.dataset.card === "own";
+  all('[data-part^="picture"]').forEach((part) => part.replaceChildren());
+  inputs().forEach(follow);
+  change();
+}
+
+// The fragment of the address holds the card and the values that differ from its defaults.
+function keep() {
+  const values = changed().map((input) => [input.dataset.key, input.value]);
+  history.replaceState(null, "", "#" + new URLSearchParams([["card", form.dataset.card], ...values]));
+}
+
+function restore() {
+  const values = new URLSearchParams(location.hash.slice(1)), left = [];
+  const card = forms.find((other) => other.dataset.card === values.get("card"));
+  form = card ?? forms.find((other) => other.dataset.card === "own") ?? forms.find((other) => other.dataset.card === "contact");
+  if (card) inputs().forEach((input) => (input.value = input.dataset.default));
+  for (const [key, value] of card ? values : []) {
+    const input = inputs().find((other) => other.dataset.key === key);
+    if (input) input.value = value;
+    else if (key !== "card") left.push(key);
+  }
+  tell(note, left.length ? `The link has values that are not known here: ${left.join(", ")}` : "");
+  open(form);
+}
+
+function download(name, kind, text) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: kind }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1e4);
+}
+
+async function save(path, stage, kind, ending) {
+  const reply = await post(path, question(stage));
+  tell(problem, reply.stopped ? "the values have changed: ask again" : reply.error);
+  if (reply[stage]) download(`${form.dataset.card}.${ending}`, kind, reply[stage]);
+}
+
+document.addEventListener("input", ({ target }) => {
+  if (target.type === "range") slide(target);
+  else if (target.name) follow(target);
+  else return;
+  release(one("input[name]", target.parentElement));
+  change();
+});
+document.addEventListener("change", ({ target }) => {
+  if (target.className === "variant") open(forms.find((other) => other.dataset.card === target.value));
+  if (target.className === "material") choose(target);
+});
+document.addEventListener("submit", (event) => event.preventDefault());
+all(".tab").forEach((tab) => tab.addEventListener("click", () => open(forms.find((other) => other.dataset.group === tab.dataset.group))));
+one("[data-testid=report]").addEventListener("click", () => save("/report", "report", "text/html", "html"));
+one("[data-testid=case-file]").addEventListener("click", () => save("/answer", "case", "application/toml", "toml"));
+one("[data-testid=copy-link]").addEventListener("click", () =>
+  navigator.clipboard.writeText(location.href).then(() => tell(note, "Link copied."), () => tell(note, "The link is in the address bar.")));
+addEventListener("hashchange", restore);
+restore();

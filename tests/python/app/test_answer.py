@@ -1,0 +1,294 @@
+"""Answers of the page: every card at every stage, and every value, an answer or a sentence."""
+
+from __future__ import annotations
+
+import html
+import json
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nacre.app import reading
+from nacre.app.answer import STAGES, Stopped, answer, file_text
+from nacre.app.cards import FieldError, cards, number, own_card
+from nacre.app.fields import CARDS, Field
+from nacre.case import Case, CaseError, templates, toml
+from support import Capture, command, fuzz
+
+pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
+
+QUICK = [name for name in CARDS if name not in ("bearing", "roller")]
+"""Cards whose full answers take less than a second or so."""
+
+
+def solved(name: str, values: dict[str, object], folder: Path, capsys: Capture) -> dict[str, Any]:
+    """Return what ``nacre solve --json`` makes of the case file of a card."""
+    path = folder / f"{name}.toml"
+    path.write_text(file_text(cards()[name].case(values)), encoding="utf-8")
+    assert command("solve", path, "--json") == 0
+    numbers: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return numbers
+
+
+def main_number(parts: dict[str, Any]) -> tuple[float, str]:
+    """Return the main number of an answer, and its unit."""
+    value, unit = parts["peak"][1].split()
+    return float(value), unit
+
+
+@pytest.mark.parametrize("name", CARDS)
+def test_defaults_are_those_of_the_templates(name: str) -> None:
+    data = tomllib.loads(templates.texts()[name])
+    case = Case(cards()[name].base).data
+    for one in CARDS[name][2]:
+        try:
+            in_template = _at(data, one.path)
+        except LookupError:
+            continue  # not in the template
+        if isinstance(in_template, float | int) and one.path != "adhesion.work":
+            assert _at(case, one.path) == pytest.approx(in_template, rel=2e-3), one.path
+
+
+def _at(data: Any, path: str) -> Any:
+    for key in re.findall(r"[^.\[\]]+", path):
+        data = data[int(key) if isinstance(data, list) else key]
+    return data
+
+
+@pytest.mark.parametrize("name", templates.KINDS)
+def test_templates_are_the_same_after_a_round_through_text(name: str) -> None:
+    data = tomllib.loads(templates.texts()[name])
+    assert tomllib.loads(toml.text(data, ("a note\nin two lines",))) == data
+
+
+words = st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
+values = st.recursive(
+    st.booleans() | st.integers(-(2**60), 2**60) | st.floats(allow_nan=False) | words,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
+)
+
+
+@fuzz(100)
+@given(st.dictionaries(words, values, max_size=4))
+def test_any_data_are_read_back(data: dict[str, Any]) -> None:
+    assert tomllib.loads(toml.text(data)) == data
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys: Capture) -> None:
+    load = next(
+        one
+        for one in CARDS[name][2]
+        if one.label in ("load", "largest load") or "load" in one.label
+    )
+    changed: dict[str, object] = {load.path: str(1.3 * (load.default or 0))}
+    numbers = solved(name, changed, tmp_path, capsys)
+    stage = "stress" if name in ("contact", "line") else "full"
+    parts = answer(cards()[name].case(changed), stage)["parts"]
+    value, unit = main_number(parts)
+    if name in ("indentation", "cone"):
+        expected = max(numbers["approach"])
+        value *= {"nm": 1e-3, "µm": 1.0}[unit]
+    else:
+        peaks = numbers.get("peak_pressures") or numbers["peak_pressure"]
+        expected = max(map(max, peaks)) if isinstance(peaks, list) else peaks
+        assert unit == "MPa"
+    assert value == pytest.approx(expected, rel=1e-4)
+    if stage == "stress":
+        steel = numbers["stress"]["layers"][1]
+        assert f"{steel['yield_safety_factor']:.3g} times" in parts["verdict"]["words"]
+
+
+@pytest.mark.parametrize("name", ["contact", "indentation", "ball-bearing"])
+def test_reports_are_those_of_the_command_line(name: str, tmp_path: Path, capsys: Capture) -> None:
+    case = cards()[name].case({})
+    path, saved = tmp_path / f"{name}.toml", tmp_path / f"{name}.html"
+    path.write_text(file_text(case), encoding="utf-8")
+    assert command("solve", path, "--save", saved) == 0
+    capsys.readouterr()
+    on_page, on_disk = answer(case, "report")["report"], saved.read_text(encoding="utf-8")
+    for page in (on_page, on_disk):
+        assert html.escape('units = "') in page  # the case in full
+    rows = re.compile(r"<tr><td>(peak pressure|approach|load)</td><td>(.*?)</td>")
+    assert rows.findall(on_page) == rows.findall(on_disk) != []
+
+
+@pytest.mark.parametrize("name", CARDS)
+def test_drafts_are_within_their_error(name: str) -> None:
+    case = cards()[name].case({})
+    draft = answer(case, "draft")
+    assert draft["next"] == "full"
+    if name not in QUICK:
+        return
+    full = answer(case, "full")["parts"]
+    tolerance = {"ball-bearing": 1e-2}.get(name, 2e-3)  # ISO/TS 16281 is another model
+    assert main_number(draft["parts"])[0] == pytest.approx(main_number(full)[0], rel=tolerance)
+
+
+def test_the_misalignment_is_the_tangent_of_its_angle() -> None:
+    case = cards()["bearing"].case({"bearing.solve.tilt.y": "10"})
+    assert _at(case.data, "bearing.solve.tilt.y") == math.tan(math.radians(10 / 60))
+
+
+def test_the_reading_of_a_film_without_a_substrate_is_its_modulus() -> None:
+    same = {"materials.glass.young": "3", "materials.glass.poisson": "0.4"}
+    parts = answer(cards()["indentation"].case(same), "full")["parts"]
+    assert parts["verdict"]["level"] == "good"
+    assert "gives 3000 MPa for a film of 3000 MPa (1 times)" in parts["verdict"]["words"]
+
+
+def test_the_substrate_shows_below_a_deep_indentation() -> None:
+    verdict = answer(cards()["indentation"].case({}), "full")["parts"]["verdict"]
+    assert verdict["level"] == "bad"
+    assert "(2.4 times)" in verdict["words"]
+    assert "only up to 1.91 nm" in verdict["lines"][0]
+
+
+def test_an_empty_limit_says_what_is_needed() -> None:
+    case = cards()["line"].case({"materials.steel.yield_stress": " "})
+    verdict = answer(case, "stress")["parts"]["verdict"]
+    assert verdict["level"] == "unknown"
+    assert any("needs to bear" in line for line in (verdict["words"], *verdict["lines"]))
+
+
+def test_lines_have_grids_that_hold_them() -> None:
+    for load in ("0.01", "100", "1e5"):
+        reply = answer(cards()["line"].case({"solve.load": load}), "full")
+        assert not any("grid" in text for text in reply["parts"]["warnings"]), load
+
+
+@pytest.mark.parametrize(
+    "typed", ["nan", "inf", "-1e999", "", "two", "1e9", "-3", "0x10", None, []]
+)
+def test_wrong_numbers_name_field_and_unit(typed: object) -> None:
+    with pytest.raises(
+        FieldError, match=r"^load must be between 0\.001 and 1000000 N, got"
+    ) as error:
+        cards()["contact"].case({"solve.load": typed})
+    assert error.value.path == "solve.load"
+
+
+def test_counts_are_whole_and_commas_are_points() -> None:
+    with pytest.raises(FieldError, match="rollers must be a whole number"):
+        cards()["bearing"].case({"bearing.count": "16.5"})
+    case = cards()["contact"].case({"solve.load": "12,5"})
+    assert _at(case.data, "solve.load") == 12.5
+
+
+def test_what_the_solver_refuses_is_a_sentence() -> None:
+    reply = answer(cards()["bearing"].case({"bearing.diameter": "60"}), "draft")
+    assert set(reply) == {"error"}
+    assert "rollers" in reply["error"] or "pitch" in reply["error"]
+
+
+@pytest.mark.parametrize("name", CARDS)
+@pytest.mark.parametrize("stage", [*STAGES, "report"])
+def test_answers_that_nobody_wants_stop(name: str, stage: str) -> None:
+    with pytest.raises(Stopped):
+        answer(cards()[name].case({}), stage, lambda: False)
+
+
+def text_of(one: Field) -> st.SearchStrategy[str]:
+    """Return what may be typed into a field: the ends of its range, and what lies between."""
+    if one.is_count:
+        return st.integers(int(one.low), int(one.high)).map(str)
+    low, high = max(one.low, 1e-6), one.high
+    powers = st.floats(math.log10(low), math.log10(high)).map(lambda p: f"{10**p:.4g}")
+    ends = st.sampled_from([f"{one.low:g}", f"{one.high:g}"])
+    return powers.filter(lambda text: one.low <= float(text) <= one.high) | ends
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CARDS)
+def test_any_values_have_an_answer_or_a_sentence(name: str) -> None:
+    fields = CARDS[name][2]
+
+    @fuzz(8)
+    @given(st.fixed_dictionaries({}, optional={one.path: text_of(one) for one in fields}))
+    def check(typed: dict[str, str]) -> None:
+        reply = answer(cards()[name].case(typed), "draft")
+        assert set(reply) in ({"error"}, {"parts", "next"})
+        assert "Traceback" not in str(reply)
+        assert "nan" not in str(reply.get("parts", {}).get("peak", "")).split()
+        json.dumps(reply, allow_nan=False)
+
+    check()
+
+
+def test_a_file_is_a_card_of_its_own(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(templates.texts()["sweep"], encoding="utf-8")
+    card = own_card(path)
+    assert card.fields[0].path == "solve.load"
+    assert "sweep" not in card.base
+    reply = answer(card.case({"solve.load": "30"}), "full")
+    assert "30 N" in reply["parts"]["rows"]
+
+
+def test_a_measured_surface_is_read_once(tmp_path: Path) -> None:
+    heights = "\n".join(
+        " ".join(str((i - 8) ** 2 + (k - 8) ** 2) for k in range(16)) for i in range(16)
+    )
+    (tmp_path / "map.txt").write_text(heights, encoding="utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        '[shape]\nkind = "height_map"\npath = "map.txt"\nspacing = 1e-6\nunit = "nm"\n'
+        "[body]\nsubstrate = { young = 210e9, poisson = 0.3 }\n[solve]\nload = 1e-4\n",
+        encoding="utf-8",
+    )
+    card = own_card(path)
+    (tmp_path / "map.txt").unlink()
+    assert not any(one.path.startswith("shape") for one in card.by_path.values())
+    reply = answer(card.case({}), "full", fixed=card.fixed)
+    assert "error" not in reply
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("[solve]", "[grid]\nshape = [300, 300]\nsize = [1, 1]\n\n[solve]", "cells"),
+        (
+            "layers = [",
+            "layers = [" + '{ material = "coating", thickness = 1e-3 }, ' * 20,
+            "layers",
+        ),
+    ],
+)
+def test_large_files_are_refused(old: str, new: str, what: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(templates.texts()["contact"].replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(CaseError, match=f"{what} must be at most"):
+        own_card(path)
+
+
+def test_markup_in_names_is_text(tmp_path: Path) -> None:
+    bad = "<img src=x onerror=alert(1)>"
+    text = templates.texts()["contact"].replace("coating =", f'"{bad}" =', 1)
+    text = text.replace('material = "coating"', f'material = "{bad}", name = "{bad}"', 1)
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    card = own_card(path)
+    from nacre.app.page import files
+
+    page = files({"own": card})["/"][1].decode()
+    reply = answer(card.case({}), "stress")
+    report = answer(card.case({}), "report")["report"]
+    shown = [page, report, *(text for name, text in reply["parts"].items() if "picture" in name)]
+    assert bad in str(reply["parts"]["verdict"])  # which the page sets as text
+    assert not any("<img" in text for text in [*shown, reply["parts"]["rows"]])
+
+
+def test_numbers_of_fields_are_typed_in_their_unit() -> None:
+    one = Field("a.b", "thing", "µm", 1, 0, 5)
+    assert number(one, " 2,5 ") == 2.5
+    assert one.in_case(2.5, "N-mm-MPa") == 0.0025
+
+
+def test_readings_without_film_are_unknown() -> None:
+    assert reading.substrate_verdict(None).level == "unknown"

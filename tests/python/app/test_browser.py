@@ -1,0 +1,334 @@
+"""The page in Chromium: typed values, sliders, links, files, lost connections.
+
+Left out where Playwright or Chromium are not installed: pip install playwright, and Chromium of the
+system or of ``playwright install chromium``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nacre.app.cards import cards, own_card
+from nacre.app.server import Server
+from nacre.case import templates
+from support import Capture, command
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium of the system"),
+    pytest.mark.filterwarnings("ignore"),
+]
+
+SECONDS = 60_000
+"""Longest time of an answer on a busy machine [ms]."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Yield Chromium."""
+    with sync_api.sync_playwright() as playwright:
+        one = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield one
+        one.close()
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    """Yield the address of a server in this process."""
+    server = Server(0, cards())
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    yield server.url
+    server.is_open = False
+    server.shutdown()
+    server.server_close()
+
+
+class Opened:
+    """A page, and what it logs and asks for elsewhere."""
+
+    def __init__(self, browser: Any, url: str, link: str = "", **options: Any) -> None:
+        self.context = browser.new_context(accept_downloads=True, **options)
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(SECONDS)
+        self.logged: list[str] = []
+        self.elsewhere: list[str] = []
+        self.stages: list[str] = []
+        self.page.on("console", lambda message: self.logged.append(message.text))
+        self.page.on("pageerror", lambda error: self.logged.append(str(error)))
+        self.page.on("request", self._asked)
+        self.page.route(re.compile(r"^\w+://(?!127\.0\.0\.1:)"), lambda route: route.abort())
+        self.url = url
+        self.page.goto(url + link)
+
+    def _asked(self, request: Any) -> None:
+        if not request.url.startswith((self.url, "blob:", "data:")):
+            self.elsewhere.append(request.url)
+        if request.url.endswith("/answer"):
+            self.stages.append(json.loads(request.post_data)["stage"])
+
+    def at(self, name: str) -> Any:
+        return self.page.locator(f'[data-testid="{name}"]:visible')
+
+    def type(self, path: str, text: str) -> None:
+        self.at(f"field:{path}").fill(text)
+
+    def wait(self, *states: str) -> str:
+        """Wait for a state, and return the main number."""
+        for state in states or ("done",):
+            self.page.wait_for_selector(f'[data-testid="status"][data-state="{state}"]')
+        return str(self.at("peak").text_content())
+
+    def close(self) -> None:
+        """Close the page, which logged nothing and asked for nothing elsewhere."""
+        self.context.close()
+        assert self.logged == []
+        assert self.elsewhere == []
+
+
+@pytest.fixture
+def opened(browser: Any, url: str) -> Iterator[Opened]:
+    """Yield the page with the indentation, which is the fastest."""
+    one = Opened(browser, url, "#card=indentation")
+    one.wait()
+    yield one
+    one.close()
+
+
+def saved(page: Opened, button: str, folder: Path) -> Path:
+    """Return the file that a button saves."""
+    with page.page.expect_download() as download:
+        page.at(button).click()
+    path = folder / download.value.suggested_filename
+    download.value.save_as(path)
+    return path
+
+
+@pytest.mark.parametrize("name", ["bearing", "contact", "indentation"])
+def test_numbers_are_those_of_the_saved_case(
+    browser: Any, url: str, name: str, tmp_path: Path, capsys: Capture
+) -> None:
+    page = Opened(browser, url)
+    page.at(f"card:{name}").click()
+    value, unit = page.wait().split()
+    path = saved(page, "case-file", tmp_path)
+    assert command("solve", path, "--json") == 0
+    numbers = json.loads(capsys.readouterr().out)
+    if name == "indentation":
+        expected, in_case = max(numbers["approach"]), "µm"
+    else:
+        peaks = numbers.get("peak_pressures", [[numbers.get("peak_pressure")]])
+        expected, in_case = max(map(max, peaks)), "MPa"
+    assert unit == in_case
+    assert float(value) == float(f"{expected:.5g}")
+    page.close()
+
+
+def test_a_drag_ends_at_the_last_value_with_one_full_solve(opened: Opened) -> None:
+    opened.stages.clear()
+    slider = opened.at("slider:indent.load")
+    box = slider.bounding_box()
+    middle = box["y"] + box["height"] / 2
+    opened.page.mouse.move(box["x"] + box["width"] / 2, middle)
+    opened.page.mouse.down()
+    for k in range(60):
+        opened.page.mouse.move(box["x"] + box["width"] * (0.5 + k / 150), middle)
+    opened.page.mouse.up()
+    last = opened.at("field:indent.load").input_value()
+    peak = opened.wait()
+    assert opened.stages.count("full") == 1
+    assert float(last) > 5
+    opened.type("indent.load", "1")
+    opened.wait("busy")
+    opened.wait()
+    opened.type("indent.load", last)
+    opened.wait("busy")
+    assert opened.wait() == peak
+
+
+def test_a_value_typed_right_after_solved_counts(browser: Any, url: str, opened: Opened) -> None:
+    other = Opened(browser, url, "#card=indentation")
+    other.wait()
+    for k in range(20):
+        for page, load in ((opened, 1 + k / 10), (other, 3 + k / 10)):
+            page.type("indent.load", f"{load:g}")
+            page.wait("busy")
+        for page, load in ((opened, 1 + k / 10), (other, 3 + k / 10)):
+            page.wait()
+            assert f"<td>{1000 * load:g} µN</td>" in page.at("rows").inner_html()
+    other.close()
+
+
+def test_a_busy_browser_loses_no_value(opened: Opened) -> None:
+    opened.page.evaluate("() => { const end = Date.now() + 9000; while (Date.now() < end); }")
+    opened.type("indent.load", "2")
+    opened.wait("busy")
+    opened.wait()
+    assert "<td>2000 µN</td>" in opened.at("rows").inner_html()
+
+
+def process_at(port: int) -> subprocess.Popen[str]:
+    """Return a program that serves the page."""
+    line = f"import nacre.cli; nacre.cli.main(['app', '--no-browser', '--port', '{port}'])"
+    process = subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    while "Ctrl-C" not in process.stdout.readline():
+        pass
+    return process
+
+
+def ended(process: subprocess.Popen[str]) -> None:
+    """End a program."""
+    process.kill()
+    process.communicate(timeout=20)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
+def test_a_program_that_is_stopped_or_started_again_loses_no_value(browser: Any) -> None:
+    port = 8931
+    process = process_at(port)
+    page = Opened(browser, f"http://127.0.0.1:{port}/", "#card=indentation")
+    try:
+        page.wait()
+        ended(process)
+        page.type("indent.load", "2")
+        time.sleep(1)
+        process = process_at(port)
+        page.wait()
+        assert "<td>2000 µN</td>" in page.at("rows").inner_html()
+        process.send_signal(signal.SIGSTOP)
+        page.type("indent.load", "3")
+        time.sleep(9)
+        process.send_signal(signal.SIGCONT)
+        page.wait()
+        assert "<td>3000 µN</td>" in page.at("rows").inner_html()
+    finally:
+        ended(process)
+        page.context.close()
+
+
+def test_a_wrong_value_is_a_line_and_the_next_one_counts(opened: Opened) -> None:
+    assert opened.at("error").count() == 0
+    opened.type("indent.load", "-3")
+    opened.wait("failed")
+    assert opened.at("error").text_content() == (
+        "largest load must be between 0.0001 and 1000 mN, got -3"
+    )
+    opened.type("indent.load", "1,5")
+    opened.wait()
+    assert opened.at("error").count() == 0
+    assert "<td>1500 µN</td>" in opened.at("rows").inner_html()
+
+
+def test_an_empty_limit_is_unknown(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=line")
+    page.wait()
+    page.type("materials.steel.yield_stress", "")
+    page.type("materials.coating.strength", "")
+    page.wait("busy")
+    page.wait()
+    assert page.at("verdict").get_attribute("data-level") == "unknown"
+    page.close()
+
+
+def test_a_link_has_the_values(browser: Any, url: str, opened: Opened) -> None:
+    opened.type("indent.load", "2.5")
+    opened.type("body.layers[0].thickness", "800")
+    opened.wait("busy")
+    peak = opened.wait()
+    link = opened.page.url
+    assert link.endswith("#card=indentation&load=2.5&thickness=800")
+    page = Opened(browser, url, link.removeprefix(url) + "&bogus=<img src=x>")
+    assert page.wait() == peak
+    assert page.at("field:indent.load").input_value() == "2.5"
+    assert "bogus" in page.page.locator(".note").text_content()
+    assert page.page.locator("img").count() == 0
+    page.close()
+
+
+def test_the_report_has_the_number(opened: Opened, browser: Any, tmp_path: Path) -> None:
+    path = saved(opened, "report", tmp_path)
+    context = browser.new_context()
+    asked: list[str] = []
+    page = context.new_page()
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(path.as_uri())
+    assert [one for one in asked if not one.startswith(("file:", "data:"))] == []
+    assert "The substrate shows" in page.inner_text("body")
+    assert page.locator("svg").count() >= 1
+    context.close()
+
+
+def test_markup_in_names_does_nothing(browser: Any, tmp_path: Path) -> None:
+    bad = "<img src=x onerror=alert(1)>"
+    text = templates.texts()["line"].replace("coating =", f'"{bad}" =', 1)
+    path = tmp_path / "case.toml"
+    text = text.replace('material = "coating"', f'material = "{bad}", name = "{bad}"', 1)
+    path.write_text(text, encoding="utf-8")
+    server = Server(0, {"own": own_card(path)})
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    page = Opened(browser, server.url, "#card=own")
+    page.wait()
+    assert bad in page.at("verdict").text_content()
+    assert page.page.locator("img").count() == 0
+    server.shutdown()
+    server.server_close()
+    page.close()
+
+
+def test_the_keyboard_reaches_everything(opened: Opened) -> None:
+    opened.page.locator("body").press("Tab")
+    names = []
+    for _ in range(30):
+        focused = "document.activeElement"
+        names.append(opened.page.evaluate(f"{focused}.dataset.testid ?? {focused}.className"))
+        opened.page.keyboard.press("Tab")
+    assert {"card:bearing", "report", "copy-link", "case-file", "variant"} <= set(names)
+    assert {"field:indent.load", "slider:indent.load", "field:adhesion.work"} <= set(names)
+    opened.at("slider:indent.load").focus()
+    opened.page.keyboard.press("ArrowRight")
+    opened.wait("busy")
+    opened.wait()
+    assert float(opened.at("field:indent.load").input_value()) > 1
+
+
+@pytest.mark.parametrize("width", [320, 400, 800, 1280])
+def test_nothing_is_wider_than_the_window(browser: Any, url: str, width: int) -> None:
+    for name in ("bearing", "contact", "indentation"):
+        page = Opened(browser, url, f"#card={name}", viewport={"width": width, "height": 800})
+        page.wait("draft")
+        page.at("more").locator("summary").click()
+        assert page.page.evaluate("document.documentElement.scrollWidth") <= width
+        page.close()
+
+
+def test_a_material_fills_its_numbers(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=line")
+    page.wait()
+    page.page.locator("select.material:visible").first.select_option("440C")
+    page.wait("busy")
+    page.wait()
+    assert page.at("field:materials.steel.young").input_value() == "209.6"
+    assert page.at("field:materials.steel.yield_stress").input_value() == "1896"
+    assert "Rolled Alloys" in page.page.locator(".source:visible").text_content()
+    page.type("materials.steel.young", "200")
+    assert page.page.locator(".source:visible").count() == 0
+    page.close()
