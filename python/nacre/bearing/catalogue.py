@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import nacre._core as core
 from nacre.bearing.balls import DeepGrooveBall
-from nacre.bearing.geometry import SMALLEST, above
+from nacre.bearing.geometry import SMALLEST, WIDEST, above
 from nacre.bearing.iso import rating
 from nacre.bearing.static import check_bearing, static_rating
 
@@ -156,7 +156,7 @@ def estimated_balls(
 def _diameter(count: int, static: float, pitch: float, room: float, others: Any) -> float | None:
     """Return the diameter with which balls have a static rating; None where rings hold none."""
     largest = min(room, pitch * math.sin(ROOM * math.pi / count))
-    low, high = max(SMALLEST, 0.01 * largest), largest
+    low, high = max(SMALLEST, 0.01 * largest, 1.01 * pitch / WIDEST), largest
 
     def rated(diameter: float) -> float:
         return static_rating(DeepGrooveBall(count=count, diameter=diameter, **others))
