@@ -117,7 +117,7 @@ def saved(page: Opened, button: str, folder: Path) -> Path:
     """Return the file that a button saves."""
     with page.page.expect_download() as download:
         page.at(button).click()
-    path = folder / download.value.suggested_filename
+    path = folder / str(download.value.suggested_filename)
     download.value.save_as(path)
     return path
 

@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 
 from nacre.app import server as module
+from nacre.app.answer import Stopped, answer
 from nacre.app.cards import cards
 from nacre.app.server import HEADERS, MOST_BYTES, MOST_PAGES, Server, open_server
 from support import Capture, Patch, command
@@ -260,7 +261,7 @@ def test_an_older_question_is_given_up(server: Server, monkeypatch: Patch) -> No
         calls.set()
         while going():
             time.sleep(0.01)
-        raise module.Stopped
+        raise Stopped
 
     monkeypatch.setattr(module, "answer", slow)
     replies = []
@@ -276,12 +277,11 @@ def test_an_older_question_is_given_up(server: Server, monkeypatch: Patch) -> No
 def test_drafts_do_not_wait_for_other_answers(server: Server, monkeypatch: Patch) -> None:
     going = threading.Event()
     going.set()
-    real = module.answer
 
     def slow(case: Any, stage: str, *others: Any) -> dict[str, Any]:
         while stage != "draft" and going.is_set():
             time.sleep(0.01)
-        return real(case, "draft", *others)
+        return answer(case, "draft", *others)
 
     monkeypatch.setattr(module, "answer", slow)
     threads = [
