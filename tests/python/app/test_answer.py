@@ -151,7 +151,8 @@ def test_the_substrate_shows_below_a_deep_indentation() -> None:
 
 
 def test_an_empty_limit_says_what_is_needed() -> None:
-    case = cards()["line"].case({"materials.steel.yield_stress": " "})
+    empty = {"materials.steel.yield_stress": " ", "materials.coating.strength": ""}
+    case = cards()["line"].case(empty)
     verdict = answer(case, "stress")["parts"]["verdict"]
     assert verdict["level"] == "unknown"
     assert any("needs to bear" in line for line in (verdict["words"], *verdict["lines"]))

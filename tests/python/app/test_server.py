@@ -277,12 +277,11 @@ def test_an_older_question_is_given_up(server: Server, monkeypatch: Patch) -> No
 def test_drafts_do_not_wait_for_other_answers(server: Server, monkeypatch: Patch) -> None:
     going = threading.Event()
     going.set()
-    real = answer
 
     def slow(case: Any, stage: str, *others: Any) -> dict[str, Any]:
         while stage != "draft" and going.is_set():
             time.sleep(0.01)
-        return real(case, "draft", *others)
+        return answer(case, "draft", *others)
 
     monkeypatch.setattr(module, "answer", slow)
     threads = [
