@@ -346,6 +346,7 @@ PREFIXES = {"": 1.0, "G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1
 def parsed_numbers(text: str) -> Iterator[tuple[float, float]]:
     """Yield the numbers of a printed row in SI, each with half of its last digit's unit."""
     units = "N m|N/m|Pa|J/m|J|N|m²|m|1/m|rad|%"
+    text = re.sub(r"\(([^,()]+), ([^,()]+)\) (\S+)", r"(\1 \3, \2 \3)", text)  # one unit of both
     for digits, prefix, unit in re.findall(
         rf"(-?[\d.]+(?:e[-+]\d+)?)(?: ([GMkmµnp]?)({units})(?![\w²/]))?", text
     ):

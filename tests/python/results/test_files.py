@@ -261,7 +261,7 @@ def test_a_picture_is_saved_and_closed(ending: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["a.txt", "a", "a.vtu"])
 def test_another_ending_is_refused(name: str, tmp_path: Path) -> None:
-    endings = r"\.nc, \.vtr, \.csv, \.png, \.pdf, \.svg"
+    endings = r"\.nc, \.vtr, \.csv, \.png, \.pdf, \.svg, \.html"
     with pytest.raises(ValueError, match=f"path must end in {endings}, got"):
         solved("line").save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []

@@ -162,7 +162,7 @@ def test_a_notebook_shows_every_result_as_a_table() -> None:
         ).pull_off(),
     ]
     for result in shown:
-        if isinstance(result, Fields):
+        if isinstance(result, Fields) and not isinstance(result, nacre.types.Verdict):
             table = result._repr_html_()
             assert table.count("<tr>") > 1, result
             assert "array(" not in table, result
