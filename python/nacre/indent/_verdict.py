@@ -55,7 +55,7 @@ def _with_error(value: float, error: float, unit: str) -> str:
     """Return a number of three digits or more, as many as its error tells."""
     scale = display.scale_of(value, unit)
     value, error = scale.factor * value, scale.factor * error
-    first = math.floor(math.log10(abs(value))) if value else 0
+    first = math.floor(math.log10(abs(value))) if 0 < abs(value) < math.inf else 0
     decimals = DIGITS - 1 - first
     if math.isfinite(error) and error > 0:
         decimals = max(decimals, -math.floor(math.log10(error)))
