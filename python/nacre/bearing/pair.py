@@ -625,7 +625,7 @@ class PairSolution(Tabular):
         Returns
         -------
         xarray.Dataset
-            Numbers by name, with units; those of a bearing begin with "first_" or "second_".
+            Numbers by name, with units; those of a bearing begin with ``first_`` or ``second_``.
         """
         table, variables = [], {}
         for prefix, solution in (("", self), *zip(NAMES, self.bearings, strict=True)):
