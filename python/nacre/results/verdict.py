@@ -95,8 +95,11 @@ class Demand(NamedTuple):
 
 
 def outcome_of(factor: float, share: float | None) -> int:
-    """Return 0 of a factor below 1, 2 of one above, and 1 where its error, a share, decides."""
-    if abs(factor - 1) < factor * (share or 0.0):
+    """Return 0 of a factor below 1, 2 of one above, and 1 where its error decides.
+
+    The error is a share of the value: with it the value reaches the limit from either side.
+    """
+    if abs(factor - 1) < (share or 0.0):
         return 1
     return 2 if factor >= 1 else 0
 

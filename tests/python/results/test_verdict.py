@@ -137,8 +137,13 @@ def test_limits_on_either_side_of_a_bound(side: float, bound: float, part: Any) 
         (1.0, 1e-6, "fair", "Cannot tell"),
         (1.49, 0.3, "fair", "Holds"),
         (1.6, 0.3, "good", "Holds"),
-        (1.6, 0.4, "fair", "Cannot tell"),
-        (5.0, 1.1, "fair", "Cannot tell"),
+        # With its error the value reaches 1.59 and 1.61 of the limit's 1.6, then 4.9 and 5.1 of 5.
+        (1.6, 0.59, "good", "Holds"),
+        (1.6, 0.61, "fair", "Cannot tell"),
+        (5.0, 3.9, "good", "Holds"),
+        (5.0, 4.1, "fair", "Cannot tell"),
+        (0.5, 0.49, "bad", "Fails"),
+        (0.5, 0.51, "fair", "Cannot tell"),
         (0.1, 0.9, "bad", "Fails"),
         (0.5, 1.2, "fair", "Cannot tell"),
     ],
@@ -170,7 +175,7 @@ def test_the_sentence_has_value_error_place_and_limit() -> None:
         ([(0.9, 0.0), (0.8, 0.0)], 1),
         # What fails decides before what may fail, and that before what holds.
         ([(0.9, 0.5), (0.95, 0.01)], 1),
-        ([(1.6, 0.01), (2.0, 0.6)], 1),
+        ([(1.6, 0.01), (2.0, 1.1)], 1),
         ([(0.5, 0.0), (1.1, 0.5), (4.0, 0.0)], 0),
     ],
 )
