@@ -226,7 +226,7 @@ class Solved:
     """Contacts that nacre solves, with warm starts; one plan for contacts of similar width."""
 
     costly = True
-    """Whether elements do not settle at each place of the ring, for which they are evaluated."""
+    """Whether elements settle no further than the ring has, as contacts take long."""
 
     def __init__(
         self,
@@ -242,7 +242,8 @@ class Solved:
         reach = bearing.length / 2 if bearing.rolls else 0.0
         self.reach = reach
         self.plans: dict[tuple[int, int], Contact] = {}
-        self.last_solutions: dict[tuple[int, int], Solution] = {}
+        self.last: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
+        """Place, solution and stiffness of each contact at the last places."""
         power = 2 if bearing.rolls else 3  # of the width, in the load
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
@@ -266,7 +267,7 @@ class Solved:
                 break
             self._widen()
         for j, r in np.argwhere(most < self.halved):
-            self.last_solutions.pop((int(j), int(r)), None)  # it starts from no other grid
+            self.last.pop((int(j), int(r)), None)  # it starts from no other grid
         self.halved = np.minimum(self.halved, most)
 
     def _plan(self, element: int, ring: int) -> Contact:
@@ -281,7 +282,11 @@ class Solved:
 
     def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
         """Return a contact and its stiffness, of which a warning says nothing yet."""
-        initial = self.last_solutions.get((element, ring))
+        initial = None
+        if (element, ring) in self.last:
+            before, initial, stiffness = self.last[element, ring]
+            if np.array_equal(place, before):
+                return initial, stiffness
         while True:
             plan = self._plan(element, ring)
             solution = plan.solve(
@@ -347,7 +352,7 @@ class Solved:
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
         groups = self._equal(tasks, places)
-        solutions: dict[tuple[int, int], Solution] = {}
+        solved: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
@@ -359,7 +364,7 @@ class Solved:
                     solution, tangent = future.result()
                     for j, r in group:
                         self.halved[j, r] = self.halved[group[0]]
-                        solutions[j, r] = solution
+                        solved[j, r] = places[j, r].copy(), solution, tangent
                         energy[j, r] = solution.elastic_energy
                         force[j, r] = solution.load, solution.moment[0]
                         stiffness[j, r] = tangent[:2, :2]
@@ -368,7 +373,8 @@ class Solved:
         if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
-        self.last_solutions = solutions
+        self.last = solved
+        solutions = {key: solution for key, (_, solution, _) in solved.items()}
         return Reaction(energy, force, stiffness, solutions)
 
     def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:

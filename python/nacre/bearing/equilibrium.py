@@ -353,8 +353,8 @@ class State:
     """Energies of the elements ``(Z,)``, with that of the centrifugal force."""
     balance: float = math.inf
     """Largest mismatch, relative."""
-    unsettled: float = math.inf
-    """Largest mismatch of an element, relative."""
+    unsettled: Array = field(default_factory=lambda: np.zeros(0))
+    """Mismatches of the elements, relative ``(Z,)``."""
 
 
 @dataclass
@@ -375,8 +375,8 @@ class Problem:
         self.outward = np.array(own)
         along = np.zeros((len(self.kinematics.motion), 1)) + ring
         self.thrust = float((along * self.centrifugal).sum())
-        self.settles = not getattr(self.law, "costly", False)
-        """Whether elements settle at each place of the ring: contacts that are solved cost more."""
+        self.costly = getattr(self.law, "costly", False)
+        """Whether contacts are solved, so that elements settle no further than the ring has."""
 
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
@@ -414,10 +414,10 @@ class Problem:
         state.balance, state.unsettled = self.mismatches(state)
         return state
 
-    def mismatches(self, state: State) -> tuple[float, float]:
-        """Return the largest mismatch of forces and moments, relative to those that act.
+    def mismatches(self, state: State) -> tuple[float, Array]:
+        """Return mismatches of forces and moments, relative to those that act.
 
-        The first is that of the ring and of the elements, the second that of the elements.
+        The first is the largest of the ring and of the elements, the second those of the elements.
         """
         force: float = max(
             float(np.abs(state.reaction.force[..., 0]).sum()) / 2,
@@ -426,23 +426,25 @@ class Problem:
         )
         pressed = state.deepest > ROUNDING * self.kinematics.size
         if force == 0.0 or not (pressed or self.loads.any() or np.any(self.centrifugal)):
-            return 0.0, 0.0
+            return 0.0, np.zeros(len(state.own))
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
         ring = np.abs(state.wanting / arm)[self.free]
-        own = float(np.abs(state.slack / self.kinematics.lengths).max(initial=0.0))
-        return max(float(ring.max(initial=0.0)), own) / force, own / force
+        own = np.abs(state.slack / self.kinematics.lengths).max(axis=1) / force
+        return max(float(ring.max(initial=0.0)) / force, float(own.max(initial=0.0))), own
 
-    def settled(self, state: State, tolerance: float) -> State:
-        """Return the state with the elements in equilibrium at this place of the ring.
+    def settled(self, state: State, mismatch: float) -> State:
+        """Return the state with no element above a mismatch, at this place of the ring.
 
         Each element makes Newton's steps of its own, which are made again at a quarter where its
         energy rises.
         """
         share = np.ones(len(state.own))
         for _ in range(SETTLING):
-            if state.unsettled <= ELEMENTS * tolerance:
+            moves = state.unsettled > mismatch
+            if not moves.any():
                 break
-            step = state.back[0] * np.minimum(share, self.limits(state, state.back[0]))[:, None]
+            share = np.minimum(share, self.limits(state, state.back[0]))
+            step = np.where(moves, share, 0.0)[:, None] * state.back[0]
             trial = self.state(state.ring, state.own + step)
             lower = trial.energies <= state.energies + FLAT * trial.reaction.energy.sum(1)
             share = np.where(lower, 1.0, share / 4)
@@ -544,11 +546,11 @@ class Problem:
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
 
-        def reached(ring: Array, own: Array) -> State:
-            state = self.state(ring, own)
-            return self.settled(state, tolerance) if self.settles else state
+        def reached(ring: Array, own: Array, balance: float) -> State:
+            mismatch = balance if self.costly else 0.0
+            return self.settled(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
 
-        state, reach = reached(ring, own), FARTHEST
+        state, reach = reached(ring, own, math.inf), FARTHEST
         # Steps must go below the lowest values so far: steps of rounding alone would never end.
         lowest, closest = state.energy, state.balance
         for done in range(max_iterations + 1):
@@ -561,7 +563,8 @@ class Problem:
             ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
-                trial = reached(state.ring + share * ring_step, state.own + share * own_step)
+                ring, own = state.ring + share * ring_step, state.own + share * own_step
+                trial = reached(ring, own, state.balance)
                 rounding = SLACK * float(np.abs(trial.reaction.energy).sum())
                 if trial.energy < lowest or (
                     trial.energy <= state.energy + rounding and trial.balance < closest
