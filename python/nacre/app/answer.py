@@ -12,6 +12,7 @@ import numpy as np
 import nacre
 import nacre._core as core
 from nacre.app.reading import apparent_modulus, substrate_verdict
+from nacre.bearing import PairSolution
 from nacre.case import Case, CaseError, toml
 from nacre.indent import solve as solve_indentation
 from nacre.results import display, report
@@ -30,6 +31,7 @@ EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
 BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
+BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
 DEPTHS, DEEPEST = 40, 1.25
 """Depths of the picture of stresses, and the largest over the width of the contact."""
@@ -160,18 +162,20 @@ def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
     rows = _selected(solution, BEARING_ROWS)
     rows += [] if life is None else solution.life(**life)._rows()
     is_tilted = any(arguments.get("tilt") or ())
+    is_pair = isinstance(solution, PairSolution)
     aligned = None
-    if is_tilted and stage != "full":
+    if is_tilted and not is_pair and stage != "full":
         aligned = bearing.solve(**keywords | {"tilt": (0.0, 0.0)})
         _check(going)
     parts = {
         "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
         "rows": _rows(rows),
-        "picture-1": _along_roller(solution, aligned),
-        "picture-2": _ring(solution),
+        "picture-1": _ring(solution.first) if is_pair else _along_roller(solution, aligned),
+        "picture-2": _ring(solution.second if is_pair else solution),
         "warnings": list(solution.report.warnings),
     }
-    following = {"draft": "full", "full": "stress" if is_tilted and bearing.rolls else None}
+    is_compared = is_tilted and not is_pair and bearing.rolls
+    following = {"draft": "full", "full": "stress" if is_compared else None}
     return _answer(parts | _judged(solution.verdict), following.get(stage))
 
 

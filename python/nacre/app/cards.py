@@ -142,7 +142,9 @@ def set_value(data: Data, one: Field, value: float | None) -> Data:
 def check_size(data: Data) -> None:
     """Raise an error if a case is too large for the page."""
     bearing, grid, indent = (data.get(name, {}) for name in ("bearing", "grid", "indent"))
-    bodies = [*(data.get(name, {}) for name in ("body", "counterbody")), *_bodies(bearing)]
+    singles = [bearing, *(bearing.get(name, {}) for name in ("first", "second"))]
+    bodies = [data.get(name, {}) for name in ("body", "counterbody")]
+    bodies += [body for one in singles for body in _bodies(one)]
     steps = [indent.get(name, 0) for name in ("load", "approach", "radius")]
     steps.append(data.get("slide", {}).get("steps", 0))
     shapes = [grid.get("shape", [0]), bearing.get("solve", {}).get("cells", [0])]
@@ -151,7 +153,10 @@ def check_size(data: Data) -> None:
     sizes = {
         "cells": (max(map(math.prod, shapes)), MOST_CELLS),
         "layers": (max(len(body.get("layers", ())) for body in bodies), MOST_LAYERS),
-        "elements": (bearing.get("count", 0) * bearing.get("rows", 1), MOST_ELEMENTS),
+        "elements": (
+            max(one.get("count", 0) * one.get("rows", 1) for one in singles),
+            MOST_ELEMENTS,
+        ),
         "steps": (max(len(one) if isinstance(one, list) else 0 for one in steps), MOST_STEPS),
     }
     for name, (size, most) in sizes.items():

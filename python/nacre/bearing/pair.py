@@ -18,7 +18,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.arguments import read_fields
 from nacre._tools.typing import among
-from nacre._tools.units import printable
+from nacre._tools.units import printable, rounded
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import Law, Reaction, Several, law
@@ -47,11 +47,13 @@ from nacre.bearing.solving import (
     solve_bearing,
     solved_contacts,
 )
+from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
 from nacre.results.report import Sections
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
@@ -478,11 +480,11 @@ class PairLife(TableResult):
         def text(life: float) -> str:
             if math.isinf(life):
                 return "infinite: no element is loaded"
-            return f"{life / 1e6:.6g} million revolutions"
+            return f"{rounded(life / 1e6, 4)} million revolutions"
 
         lives = {row.label: text(row.of(self)) for row in PAIR_LIFE if row.name != "hours"}
         if math.isfinite(self.hours):
-            lives["hours"] = f"{self.hours:.6g}"
+            lives["hours"] = rounded(self.hours, 4)
         return [*lives.items(), ("model", self.model)]
 
     def _sections(self) -> Sections:
@@ -537,6 +539,11 @@ class PairSolution(Tabular):
     def bearings(self) -> tuple[BearingSolution, BearingSolution]:
         """Solutions of both bearings."""
         return self.first, self.second
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: those on both bearings, of which the worst decides."""
+        return pair_verdict(dict(zip(NAMES, self.bearings, strict=True)))
 
     @property
     def peak_pressure(self) -> float:
@@ -607,7 +614,7 @@ class PairSolution(Tabular):
         >>> life.second  # it has lost contact
         inf
         """
-        if "spectrum" in modification:
+        if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
         first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
         slope = LINE if self.pair.first.rolls else POINT
@@ -711,11 +718,12 @@ class PairSolution(Tabular):
         return printable(f"<{type(self).__name__}: {rows}>")
 
     def __str__(self) -> str:
-        """Return the main numbers."""
-        return display.text(self._rows(), self.report.warnings)
+        """Return the verdict and the main numbers."""
+        return f"{self.verdict}\n\n" + display.text(self._rows(), self.report.warnings)
 
     def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.report.warnings)
+        verdict = self.verdict.sentences
+        return display.markup(self._rows(), self.report.warnings, verdict=verdict)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""

@@ -19,6 +19,7 @@ from nacre._tools.progress import alive
 from nacre._tools.units import printable, system
 from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
+from nacre.bearing.pair import NAMES
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.case import templates as _templates
@@ -218,20 +219,27 @@ def _files(case_file: Case) -> list[tuple[str, str]]:
 
 
 def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
-    """Return the state of a solved bearing, which is in SI, in the units of its case."""
+    """Return the state of a solved bearing or pair, which is in SI, in the units of its case."""
     sizes = {unit: 1 / size for unit, size in sizes_of(units).items()}
-    record = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}
-    tables = [(record, [(row.name, row.si()) for row in BEARING])]
-    for name, one in added.items():
-        record[name] = dict(state[name])
-        tables.append((record[name], [(row.name, one._si(row)) for row in one._QUANTITIES]))
-    for table, kinds in tables:
-        for name, unit in kinds:
-            if unit in sizes and table.get(name) is not None:
-                table[name] = (np.asarray(table[name]) * sizes[unit]).tolist()
     rows = np.array([sizes["N"]] * 3 + [sizes["N m"]] * 2)
     columns = np.array([sizes["m"]] * 3 + [1.0] * 2)
-    record["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
+
+    def converted(state: dict[str, Any], kinds: Mapping[str, str]) -> dict[str, Any]:
+        record = dict(state)
+        for name, value in state.items():
+            if name in ("bearing", "pair"):
+                record[name] = scaled(value, sizes)
+            elif name in NAMES and isinstance(value, dict):
+                record[name] = converted(value, kinds)
+            elif name == "tangent":
+                record[name] = (np.asarray(value) * rows[:, None] / columns).tolist()
+            elif kinds.get(name) in sizes and value is not None:
+                record[name] = (np.asarray(value) * sizes[kinds[name]]).tolist()
+        return record
+
+    record = {"units": units} | converted(state, {row.name: row.si() for row in BEARING})
+    for name, one in added.items():
+        record[name] = converted(state[name], {row.name: one._si(row) for row in one._QUANTITIES})
     return record
 
 
