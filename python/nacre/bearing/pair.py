@@ -27,7 +27,14 @@ from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
 from nacre.bearing.rollers import TaperedRoller
-from nacre.bearing.solution import VECTORS, BearingReport, BearingSolution, Model
+from nacre.bearing.solution import (
+    STIFFNESS,
+    VECTORS,
+    BearingReport,
+    BearingSolution,
+    Model,
+    stiffness_rows,
+)
 from nacre.bearing.solving import (
     CELLS,
     Along,
@@ -50,7 +57,7 @@ from nacre.bearing.solving import (
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
-from nacre.results.report import Sections
+from nacre.results.report import Sections, input_rows, table
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
@@ -70,6 +77,8 @@ FARTHEST = 100.0
 """Largest distance over the pitch diameter: shafts as long bend more than their bearings."""
 PRELOAD_STEPS = 50
 """Newton steps, at least, for the place of the rings without load: it takes some five."""
+PRELOAD = {"distance": "m", "preload_force": "N", "preload_distance": "m"}
+"""Units of what sets a pair."""
 STANDSTILL = Operation(0.0, 0.0, "inner")
 """Operation in which bearings are preloaded."""
 
@@ -646,30 +655,28 @@ class PairSolution(Tabular):
 
     @display.in_si
     def _sections(self) -> Sections:
-        parts = [one._sections() for one in self.bearings]
-
-        def rows(name: str) -> list[tuple[str, str]]:
-            pairs = zip(NAMES, parts, strict=True)
-            return [
-                (f"{which}: {key}", text)
-                for which, part in pairs
-                for key, text in getattr(part, name)
-            ]
-
-        tables = [
-            one._replace(title=f"{one.title}, {which} bearing")
-            for which, part in zip(NAMES, parts, strict=True)
+        values = {field.name: getattr(self.pair, field.name) for field in fields(self.pair)}
+        names = ("model", "rotation", "speed", "rotating", "cells")
+        values |= {name: getattr(self.first, name) for name in names}
+        parts = {name: getattr(self, name)._sections() for name in NAMES}
+        numbers = [row for row in self._rows() if row[0] not in ("contacts", "ended")]
+        numbers += [
+            (f"{name}: {key}", text) for name, part in parts.items() for key, text in part.numbers
+        ]
+        pictures = [
+            picture._replace(caption=f"{name.capitalize()} bearing. {picture.caption}")
+            for name, part in parts.items()
+            for picture in part.pictures
+        ]
+        tables = [table(STIFFNESS, stiffness_rows(self.tangent))]
+        tables += [
+            one._replace(title=f"{one.title}, {name} bearing")
+            for name, part in parts.items()
             for one in part.tables
         ]
-        return Sections(
-            self._TITLE,
-            rows("inputs"),
-            [*self._rows(), *rows("numbers")],
-            [picture for part in parts for picture in part.pictures],
-            tables,
-            rows("model"),
-            self.report.warnings,
-        )
+        model = parts["first"].model
+        inputs = input_rows(values, PRELOAD)
+        return Sections(self._TITLE, inputs, numbers, pictures, tables, model, self.report.warnings)
 
     @staticmethod
     def _vectors() -> list[Any]:

@@ -71,6 +71,8 @@ ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": (
 """Units in which angles are printed, and how many there are in a radian."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
+STIFFNESS = "Stiffness in N, N m, m and rad"
+"""Title of the table of a stiffness."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
 """What a report says of the model."""
 
@@ -135,6 +137,13 @@ class BearingReport(Result):
             f"<BearingReport: {self.termination} after {self.iterations} steps, "
             f"balance {self.balance:.1e}; {len(self.warnings)} warnings>"
         )
+
+
+def stiffness_rows(tangent: Array) -> list[list[Any]]:
+    """Return the rows of the table of a stiffness ``(5, 5)``, with names."""
+    head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
+    names = [f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]
+    return [head, *([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -594,12 +603,9 @@ class BearingSolution(Tabular):
         rows = self._rows()
         model = [row for row in rows if row[0] in ("contacts", "ended")]
         numbers = [*(row for row in rows if row not in model), *self._geometry()]
-        stiffness = [[f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]]
-        head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
-        matrix = zip(stiffness[0], self.tangent.tolist(), strict=True)
         tables = [
             table("Elements and rings", self._element_rows()),
-            table("Stiffness in N, N m, m and rad", [head, *([n, *row] for n, row in matrix)]),
+            table(STIFFNESS, stiffness_rows(self.tangent)),
         ]
         errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
         limits = [*model, *errors, ("not counted", NOT_COUNTED)]
