@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import datetime
 import html
 from collections.abc import Callable, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import nacre
 import nacre._core as core
-from nacre.app.reading import apparent_modulus, substrate_verdict
 from nacre.bearing import PairSolution
 from nacre.case import Case, CaseError, toml
+from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
 from nacre.indent import solve as solve_indentation
+from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display, report
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
@@ -35,12 +36,24 @@ BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
 DEPTHS, DEEPEST = 40, 1.25
 """Depths of the picture of stresses, and the largest over the width of the contact."""
-SLIDING = ("body", "friction", "direction", "residual")
-"""Keywords of stresses that pictures over depth take, too."""
 DIGITS = 5
 """Digits of the main number."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
 """What calculations raise."""
+
+
+class Measured(NamedTuple):
+    """What a case reads from files, which happens once, at the start."""
+
+    arguments: Answer
+    """Arguments in place of those of the case on the page."""
+    tables: Answer
+    """Tables of the case file, which have other ones in their place on the page."""
+    files: report.Rows
+    """Files, with their SHA-256."""
+
+
+NONE = Measured({}, {}, ())
 
 
 class Stopped(Exception):
@@ -48,7 +61,7 @@ class Stopped(Exception):
 
 
 def answer(
-    case: Case, stage: str, going: Going = lambda: True, fixed: Answer | None = None
+    case: Case, stage: str, going: Going = lambda: True, measured: Measured = NONE
 ) -> Answer:
     """Return what the page shows of a case at a stage.
 
@@ -60,8 +73,8 @@ def answer(
         One of `STAGES`; or "case" for its file, or "report".
     going
         Function that says whether the answer is still wanted.
-    fixed
-        Arguments in place of those of the case.
+    measured
+        What was read from files at the start.
 
     Returns
     -------
@@ -77,11 +90,11 @@ def answer(
         # Bearings are in SI, and shown in the units of the case.
         units = display.shown_in if case.kind == "bearing" else nacre.display_units
         with units(case.units):
-            arguments = case.arguments() | (fixed or {})
+            arguments = case.arguments() | measured.arguments
             if stage == "case":
-                return {"case": file_text(case)}
+                return {"case": file_text(case, measured)}
             if stage == "report":
-                return {"report": _report(case, arguments, going)}
+                return {"report": _report(case, arguments, going, measured)}
             return SOLVERS[case.kind](case, arguments, stage, going)
     except ERRORS as error:
         if not going():
@@ -89,10 +102,10 @@ def answer(
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
 
 
-def file_text(case: Case) -> str:
+def file_text(case: Case, measured: Measured = NONE) -> str:
     """Return the case file of what the page shows."""
     notes = f"{case.name}: nacre solve FILE", f"written by nacre {core.__version__}"
-    return toml.text(case.data, notes)
+    return toml.text(case.data | measured.tables, notes)
 
 
 def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
@@ -128,7 +141,7 @@ def _solved_contact(case: Case, arguments: Answer, going: Going) -> Any:
         **arguments, progress=lambda *_: going(), check=False
     )
     _check(going)
-    solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
+    solution = last_of(outcome)
     if not solution.report.converged:
         raise CaseError("no solution was found: the solve did not converge")
     return solution
@@ -217,31 +230,12 @@ SOLVERS = {"contact": _contact, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
-def _report(case: Case, arguments: Answer, going: Going) -> str:
+def _report(case: Case, arguments: Answer, going: Going, measured: Measured) -> str:
     """Return the report of a case, as a page of HTML."""
-    results: list[Any]
-    inputs, sliding = [("units of the case", case.units)], {}
-    if case.kind == "contact":
-        results, keywords = [_solved_contact(case, arguments, going)], case.stress()
-        sliding = {name: value for name, value in (keywords or {}).items() if name in SLIDING}
-        inputs += report.input_rows({"stress": keywords})
-        if keywords is not None:
-            results.append(results[0].stress_summary(**keywords, progress=lambda _: going()))
-    elif case.kind == "bearing":
-        bearing, life = arguments.pop("bearing"), case.life()
-        results = [bearing.solve(**arguments, progress=lambda *_: going())]
-        results += [] if life is None else [results[0].life(**life)]
-    else:
-        results = [solve_indentation(**arguments)]
+    results = results_of(case, arguments, {"progress": lambda *_: going()})
     _check(going)
-    judgements = list(report.verdicts(results))
-    if case.kind == "indent":
-        judgements.append(substrate_verdict(apparent_modulus(results[0])))
-    first, *others = results
-    sections = [first._sections(**sliding), *(one._sections() for one in others)]
-    sections.append(report.Sections("", inputs))
-    today = datetime.date.today().isoformat()
-    return report.page(case.name, today, sections, judgements, file_text(case))
+    text = file_text(case, measured)
+    return report_of(case, results, text, Path(case.name).stem, measured.files)
 
 
 def _check(going: Going) -> None:
@@ -310,7 +304,7 @@ def _stresses(solution: Any, bare: Any, keywords: Answer) -> str:
     widths = [high - low for low, high in solution.contact_extent if high > low]
     bottom = DEEPEST * min(widths, default=min(solution.grid.size))
     inset = (0.0, 3 * interfaces[0]) if interfaces and interfaces[0] < bottom / 10 else None
-    sliding = {name: keywords[name] for name in SLIDING if name in keywords}
+    sliding = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
     curves = [Curve(*_over_depth(solution, bottom, interfaces, sliding), "coated" if bare else "")]
     if bare is not None:
         sliding.pop("residual", None)

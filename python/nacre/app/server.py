@@ -107,7 +107,7 @@ class Server(ThreadingHTTPServer):
         try:
             case = card.case(values)
             with self.lane(stage == "draft", going):
-                return answer(case, stage, going, card.fixed)
+                return answer(case, stage, going, card.measured)
         except FieldError as error:
             return {"error": str(error), "field": error.path}
         except (LookupError, ValueError) as error:

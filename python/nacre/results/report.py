@@ -115,7 +115,18 @@ def write(
     inputs: Rows = (),
     stress: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write the report of results of one case, whose file is `case`; its name is that of `path`.
+    """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
+    path.write_text(text(path.stem, results, case, inputs, stress), encoding="utf-8")
+
+
+def text(
+    name: str,
+    results: Sequence[Reported],
+    case: str | None = None,
+    inputs: Rows = (),
+    stress: Mapping[str, Any] | None = None,
+) -> str:
+    """Return the report of results of one case, whose file is `case`.
 
     The first result takes keywords of stresses for its picture over depth.
     """
@@ -125,7 +136,7 @@ def write(
         parts = [results[0]._sections(**(stress or {})), *(one._sections() for one in results[1:])]
     notes = [Sections("", inputs, warnings=[str(one.message) for one in caught])]
     today = datetime.date.today().isoformat()
-    path.write_text(page(path.stem, today, [*parts, *notes], judgements, case), encoding="utf-8")
+    return page(name, today, [*parts, *notes], judgements, case)
 
 
 def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
