@@ -332,6 +332,19 @@ def test_a_port_that_is_taken_is_passed_over(server: Server) -> None:
     other.server_close()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a port would be shared there")
+def test_a_port_with_connections_of_an_ended_program_is_free() -> None:
+    ended = open_server(0, cards())
+    with socket.create_connection(("127.0.0.1", ended.server_port)):
+        request, _ = ended.get_request()
+        request.shutdown(socket.SHUT_RDWR)
+        request.close()
+        ended.server_close()
+        again = open_server(ended.server_port, cards())
+        assert again.server_port == ended.server_port
+        again.server_close()
+
+
 def test_without_a_free_port_there_is_a_line(
     server: Server, monkeypatch: Patch, capsys: Capture
 ) -> None:
