@@ -169,8 +169,9 @@ fn over(part: f64, whole: f64) -> f64 {
 ///
 /// with c = √(ab), the half-widths a and b of the contact, and the largest displacement u. One number may have the same value
 /// on two grids by chance, so that the largest change counts for all. Where the pressure has a larger relative error, that
-/// counts. `freedoms` say which motions and forces are given. The border of the stick zone is known to half a cell at best;
-/// by its square, over the width of the slip zone, the energy that sliding dissipates.
+/// counts. `freedoms` say which motions and forces are given; what is kept has the error that it had in the solution `before`.
+/// Where that is a copy, which knows no cells of twice the length, its errors are added. The border of the stick zone is
+/// known to half a cell at best; by its square, over the width of the slip zone, the energy that sliding dissipates.
 ///
 /// # Errors
 /// Why there is no estimate.
@@ -178,6 +179,7 @@ pub(super) fn discretisation(
     solution: &FrictionSolution,
     half: &FrictionSolution,
     freedoms: &[Freedom; 3],
+    before: Option<&FrictionSolution>,
 ) -> Result<FrictionDiscretisation, Unestimated> {
     if !half.report.converged() {
         return Err(Unestimated::Unsolved);
@@ -219,51 +221,52 @@ pub(super) fn discretisation(
     let relative = changes.into_iter().fold(pressure, |most, change| most.max(BEYOND * change));
     let border = border(solution);
     let stick_share = (BEYOND * (fine.stick_share - coarse.stick_share).abs()).max(border);
-    let loaded = freedoms.map(|freedom| matches!(freedom, Freedom::Loaded(_)));
+    let is = |freedoms: &[Freedom], kind: fn(&Freedom) -> bool| freedoms.iter().any(kind);
+    let loaded = |freedom: &Freedom| matches!(freedom, Freedom::Loaded(_));
+    let free = |freedom: &Freedom| !matches!(freedom, Freedom::Loaded(_));
+    let (in_plane, about) = freedoms.split_at(2);
     let unless = |given: bool, error: f64| if given { 0.0 } else { error };
-    let force = unless(loaded[0] && loaded[1], relative * capacity);
-    let moved = unless(!loaded[0] && !loaded[1], relative * motion);
-    Ok(match solution.motion {
-        TangentialMotion::Roll { .. } => FrictionDiscretisation {
+    let force = unless(!is(in_plane, free), relative * capacity);
+    let torque = unless(is_line || !is(about, free), relative * capacity * c);
+    let motion_error = unless(!is(in_plane, loaded), relative * motion);
+    if let TangentialMotion::Roll { .. } = solution.motion {
+        return Ok(FrictionDiscretisation {
             force,
-            torque: unless(is_line, relative * capacity * c),
+            torque,
             dissipated: relative * fine.dissipated.abs(),
-            creepage: Some(moved),
+            creepage: Some(motion_error),
             shift: None,
             twist: None,
             stick_share,
-        },
-        TangentialMotion::Slide { .. } => {
-            let slips = over(border, 1.0 - fine.stick_share).powi(2);
-            FrictionDiscretisation {
-                force,
-                torque: unless(is_line || loaded[2], relative * capacity * c),
-                dissipated: (BEYOND * dissipated).max(relative.max(slips) * fine.dissipated),
-                creepage: None,
-                shift: Some(moved),
-                twist: Some(unless(!loaded[2], over(relative * motion, c))),
-                stick_share,
-            }
-        }
-    })
-}
-
-/// Errors of a step after `before`, whose state is that of another grid: those of both.
-pub(super) fn accumulated(
-    step: FrictionDiscretisation,
-    before: &FrictionDiscretisation,
-    freedoms: &[Freedom; 3],
-) -> FrictionDiscretisation {
-    let loaded = freedoms.map(|freedom| matches!(freedom, Freedom::Loaded(_)));
-    let unless = |given: bool, error: f64| if given { 0.0 } else { error };
-    let sum = |own: Option<f64>, earlier: Option<f64>| own.map(|own| own + earlier.unwrap_or(0.0));
-    FrictionDiscretisation {
-        force: step.force + unless(loaded[0] && loaded[1], before.force),
-        torque: step.torque + unless(loaded[2], before.torque),
-        shift: sum(step.shift, before.shift.filter(|_| loaded[0] || loaded[1])),
-        twist: sum(step.twist, before.twist.filter(|_| loaded[2])),
-        ..step
+        });
     }
+    let is_copy = before.is_some_and(|before| before.half.is_none());
+    let stated = before.and_then(|before| before.report.discretisation);
+    if is_copy && stated.is_none() {
+        return Err(Unestimated::Before);
+    }
+    let stated = stated.unwrap_or_default();
+    let added =
+        |error: f64, earlier: f64| if is_copy && error > 0.0 { error + earlier } else { error };
+    // What is kept differs between the grids by what it did before.
+    let moved = |freedoms: &[Freedom], error: f64, change: f64, earlier: Option<f64>| {
+        let earlier = earlier.unwrap_or(0.0);
+        match is(freedoms, |freedom| *freedom == Freedom::Kept) {
+            true => added(error, earlier).max(earlier).max(BEYOND * change),
+            false => added(error, earlier),
+        }
+    };
+    let slips = over(border, 1.0 - fine.stick_share).powi(2);
+    let [turn, turned] = [over(relative * motion, c), (fine.twist - coarse.twist).abs()];
+    Ok(FrictionDiscretisation {
+        force: added(force, stated.force),
+        torque: added(torque, stated.torque),
+        dissipated: (BEYOND * dissipated).max(relative.max(slips) * fine.dissipated),
+        creepage: None,
+        shift: Some(moved(in_plane, motion_error, apart(fine.motion, coarse.motion), stated.shift)),
+        twist: Some(moved(about, unless(!is(about, loaded), turn), turned, stated.twist)),
+        stick_share,
+    })
 }
 
 /// Share of the contact in the halves of the sticking cells that lie beside slipping ones.

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use ndarray::{Array2, Zip};
 
-use super::halved::{LEAST, accumulated, coarse_friction, coarse_state, discretisation, refined};
+use super::halved::{LEAST, coarse_friction, coarse_state, discretisation, refined};
 use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
@@ -155,13 +155,10 @@ impl<'a> Session<'a> {
         let mut solution = self.finish(&problem, friction, (normal, solved), course)?;
         if let Some(half) = half.filter(|_| solution.report.converged()) {
             let errors = half.and_then(|half| {
-                let errors = discretisation(&solution, &half, &problem.increments)?;
+                let freedoms = &problem.increments;
+                let errors = discretisation(&solution, &half, freedoms, last.map(|l| l.solution))?;
                 solution.half = Some(half);
-                let Some(last) = last.filter(|last| last.solution.half.is_none()) else {
-                    return Ok(errors);
-                };
-                let before = last.solution.report.discretisation.as_ref();
-                Ok(accumulated(errors, before.ok_or(Unestimated::Before)?, &problem.increments))
+                Ok(errors)
             });
             match errors {
                 Ok(errors) => solution.report.discretisation = Some(errors),
@@ -201,9 +198,8 @@ impl<'a> Session<'a> {
             is_steady: false,
             is_second_order: false,
             increments: [0, 1, 2].map(|k| match freedoms[k] {
-                Freedom::Kept => Freedom::Prescribed(0.0),
                 Freedom::Prescribed(value) => Freedom::Prescribed(value - starts[k]),
-                loaded => loaded,
+                other => other,
             }),
             before,
         };
