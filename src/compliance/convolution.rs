@@ -171,11 +171,6 @@ impl Convolution {
         Self { additions, ..self }
     }
 
-    /// What is added to the convolution.
-    pub(crate) fn additions(&self) -> &[Addition] {
-        &self.additions
-    }
-
     /// What the additions contribute to the displacement of a cell in one row under unit pressure on a cell in another,
     /// at a `distance` of so many cells along y.
     pub(crate) fn added(&self, rows: [usize; 2], distance: usize) -> f64 {

@@ -348,7 +348,7 @@ impl<'a> Steps<'a> {
             indentation,
             coefficients: plan.setup.coefficients.clone(),
             report,
-            ends: Some(plan.convolution().additions().to_vec()),
+            operator: Some(Arc::clone(&plan.operator)),
             gap: Gap::Computed {
                 undeformed,
                 freedoms: Box::new(self.freedoms.clone()),
