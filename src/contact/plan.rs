@@ -176,6 +176,11 @@ impl Contact {
             };
             levels.push(level.with(convolution));
         }
+        self.with_levels(levels)
+    }
+
+    /// This plan with other levels of the same grids.
+    pub(super) fn with_levels(&self, levels: Vec<Level>) -> Self {
         Self {
             body: self.body.clone(),
             grid: self.grid,
