@@ -2,8 +2,6 @@
 
 use ndarray::Array2;
 
-use crate::contact::cascade::{coarse_means, halved};
-use crate::contact::plan::Contact;
 use crate::error::{Error, Result, none_negative, not_negative, same_shape};
 use crate::model::grid::Grid;
 
@@ -45,21 +43,5 @@ impl Compliance {
                 "compliance of each cell needs a grid: give grid, or one number for all cells",
             )),
         }
-    }
-}
-
-impl Contact {
-    /// This plan on springs of these compliances (nx, ny); all large arrays, threads and memory are shared.
-    pub(crate) fn on_springs(&self, springs: &Array2<f64>) -> Self {
-        let finest = self.convolution();
-        let mut springs = springs.clone();
-        let mut levels = Vec::new();
-        for (number, level) in self.levels.iter().enumerate() {
-            if number > 0 {
-                springs = coarse_means(&springs, halved(self.levels[number - 1].grid()));
-            }
-            levels.push(level.on_springs(&springs, finest));
-        }
-        self.with_levels(levels)
     }
 }
