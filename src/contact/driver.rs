@@ -119,6 +119,16 @@ impl Contact {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
         self.check_memory_of_solve(options.hardness.is_some())?;
+        if let Some(compliance) = &options.compliance {
+            let springs = compliance.on(&self.grid)?;
+            let without = Options { compliance: None, ..options.clone() };
+            // Without any give, nothing is changed.
+            let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(&springs));
+            let plan = soft.as_ref().unwrap_or(self);
+            let mut solution = plan.solve_sampled(shape, sampled, motion, &without, progress)?;
+            solution.take_springs(compliance.clone(), springs);
+            return Ok(solution);
+        }
         let Some(before) = &options.indentation else {
             return self.press(shape, sampled, motion, options, progress);
         };
@@ -346,6 +356,7 @@ impl<'a> Steps<'a> {
             tilt,
             hardness: self.options.hardness.clone(),
             indentation,
+            compliance: None,
             coefficients: plan.setup.coefficients.clone(),
             report,
             operator: Some(Arc::clone(&plan.operator)),
@@ -353,6 +364,7 @@ impl<'a> Steps<'a> {
                 undeformed,
                 freedoms: Box::new(self.freedoms.clone()),
                 multipliers: fields.multipliers,
+                deflection: None,
             },
         })
     }

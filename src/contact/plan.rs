@@ -11,7 +11,7 @@ use crate::compliance::influence::{Method, coefficients_on};
 use crate::compliance::response::{Body, refuse_free};
 use crate::compliance::traction::Tangential;
 use crate::contact::cascade::discretisation::Unresolved;
-use crate::contact::cascade::{Level, coarser};
+use crate::contact::cascade::{Level, coarse_means, coarser, halved};
 use crate::contact::options::Setup;
 use crate::error::{Error, Result, all_finite, refuse_if, same_shape};
 use crate::model::grid::Grid;
@@ -185,17 +185,37 @@ impl Contact {
             };
             levels.push(level.with(convolution));
         }
+        let operator = Arc::new(PlannedOperator {
+            coefficients: Arc::clone(&self.operator.coefficients),
+            additions: self.operator.additions.clone(),
+            threads: Arc::clone(threads),
+            ..*self.operator
+        });
+        Self { operator, ..self.with_levels(levels) }
+    }
+
+    /// This plan on springs of these compliances (nx, ny); all large arrays, threads and memory are shared.
+    pub(crate) fn on_springs(&self, springs: &Array2<f64>) -> Self {
+        let finest = self.convolution();
+        let mut springs = springs.clone();
+        let mut levels = Vec::new();
+        for (number, level) in self.levels.iter().enumerate() {
+            if number > 0 {
+                springs = coarse_means(&springs, halved(self.levels[number - 1].grid()));
+            }
+            levels.push(level.on_springs(&springs, finest));
+        }
+        self.with_levels(levels)
+    }
+
+    /// This plan with other levels of the same grids.
+    pub(super) fn with_levels(&self, levels: Vec<Level>) -> Self {
         Self {
             body: self.body.clone(),
             grid: self.grid,
             setup: self.setup.clone(),
             levels,
-            operator: Arc::new(PlannedOperator {
-                coefficients: Arc::clone(&self.operator.coefficients),
-                additions: self.operator.additions.clone(),
-                threads: Arc::clone(threads),
-                ..*self.operator
-            }),
+            operator: Arc::clone(&self.operator),
             unresolved: self.unresolved,
             datum: self.datum,
             ends: self.ends.clone(),

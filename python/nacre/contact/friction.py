@@ -209,7 +209,7 @@ class FrictionSolution(Result, Stressed):
     contact_area, contact_share = _of_normal("contact_area"), _of_normal("contact_share")
     contact_extent = _of_normal("contact_extent")
     hardness, indentation = _of_normal("hardness"), _of_normal("indentation")
-    plastic_work = _of_normal("plastic_work")
+    compliance, plastic_work = _of_normal("compliance"), _of_normal("plastic_work")
 
     @property
     def elastic_energy(self) -> float:

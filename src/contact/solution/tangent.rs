@@ -11,7 +11,7 @@ use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::PlannedOperator;
-use crate::contact::problem::patch::block;
+use crate::contact::problem::patch::{block, copied};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
 use crate::numerics::linear_cg::{self, Watch};
@@ -72,7 +72,11 @@ impl Tangent {
         let repeats = repeating(grid, &window);
         let convolution =
             Convolution::plan_repeated(&corner, repeats, Arc::clone(&planned.threads))?;
-        let convolution = convolution.plus(within.collect());
+        let mut convolution = convolution.plus(within.collect());
+        let springs = solution.compliance.as_ref().map(|c| c.on(grid)).transpose()?;
+        if let Some(springs) = &springs {
+            convolution = convolution.on_springs(copied(springs, &window));
+        }
         let inverse = convolution.approximation(&corner, repeats).inverse;
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
