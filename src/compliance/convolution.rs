@@ -6,12 +6,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Window;
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
@@ -61,7 +61,7 @@ struct Clock(AtomicU64);
 
 impl Clock {
     fn during<R>(&self, work: impl FnOnce() -> R) -> R {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let result = work();
         self.0.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         result

@@ -7,7 +7,6 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ndarray::{Array2, Zip};
 
@@ -24,6 +23,7 @@ use crate::contact::{
 };
 use crate::error::{Error, Result, fraction, require};
 use crate::model::surface::{OffsetShape, Surface};
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::parallel::dot;
 
 /// Callback that gets the report so far, and breaks to stop.
@@ -58,7 +58,7 @@ pub struct Last<'a> {
 
 /// The course of a move, of which its caller is told.
 struct FrictionCourse<'a, 'b> {
-    start: Instant,
+    start: Stopwatch,
     report: FrictionReport,
     stopped: bool,
     progress: &'a mut FrictionProgress<'b>,
@@ -136,7 +136,7 @@ impl<'a> Session<'a> {
                 && normal.report.motion == motion
         });
         let mut course = FrictionCourse {
-            start: Instant::now(),
+            start: Stopwatch::start(),
             report: FrictionReport {
                 coupled: self.coupled,
                 order: if problem.is_steady { self.options.order } else { 0 },

@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -330,6 +331,13 @@ def test_a_port_that_is_taken_is_passed_over(server: Server) -> None:
     other = open_server(server.server_port, cards())
     assert server.server_port < other.server_port < server.server_port + 10
     other.server_close()
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node")
+def test_the_script_is_javascript(server: Server, tmp_path: Path) -> None:
+    path = tmp_path / "page.js"
+    path.write_bytes(server.files["/page.js"][1])
+    subprocess.run(["node", "--check", path], check=True, capture_output=True)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a port would be shared there")
