@@ -7,9 +7,11 @@ kinematics are those of the single bearings; each ring is set along the axis by 
 from __future__ import annotations
 
 import math
+import os
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
@@ -57,13 +59,14 @@ from nacre.bearing.solving import (
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
-from nacre.results.report import Sections, input_rows, table
+from nacre.results.report import Sections, input_rows, table, writer
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
 Arrangement = Literal["O", "X", "tandem"]
@@ -587,6 +590,30 @@ class PairSolution(Tabular):
         """
         return self.tangent.copy()
 
+    def plot(self) -> dict[str, Axes]:
+        """Draw loads over the angle and pressures of both bearings.
+
+        Needs ``nacre-contact[plot]``.
+
+        Returns
+        -------
+        dict of matplotlib.axes.Axes
+            The axes, by name, as those of `nacre.plot.bearing_pair`.
+
+        Examples
+        --------
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> len(pair.solve(model="iso16281").plot())
+        4
+        """
+        from nacre import plot
+
+        return plot.bearing_pair(self)
+
     def life(
         self, edge: Edge = "standard", *, rotating: Ring | None = None, **modification: Any
     ) -> PairLife:
@@ -684,7 +711,43 @@ class PairSolution(Tabular):
         kinds = {row.name: row for row in BEARING}
         return [kinds[name] for name in VECTORS]
 
-    save = display.in_si(Tabular.save)
+    @display.in_si
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, ``.csv`` for the table of elements, a picture, or ``.html``
+            for a report.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> solution = pair.solve(model="iso16281")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(solution.save(f"{folder}/pair.nc")) == solution
+        True
+        """
+        writers = files.tabular(self, self._file_rows(), **self._comments()) | writer(self)
+        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        return files.save(path, writers)
 
     def _comments(self) -> dict[str, Any]:
         vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
