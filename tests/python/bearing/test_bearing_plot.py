@@ -81,5 +81,6 @@ def test_both_bearings_of_a_pair_are_drawn(tmp_path: Path) -> None:
     for name, one in zip(("first", "second"), solution.bearings, strict=True):
         bars: list[Any] = list(panels[f"{name} loads"].patches)
         np.testing.assert_allclose([bar.get_height() for bar in bars], one.loads[:, 0])  # at rest
-        assert panels[f"{name} pressure"].get_title(loc="left") == f"{name} bearing, element 0"
+        title = panels[f"{name} pressure"].get_title(loc="left")
+        assert title == f"{name} bearing, peak pressures, Hertz"
     assert solution.save(tmp_path / "pair.png").stat().st_size > 10_000
