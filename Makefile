@@ -55,6 +55,10 @@ check-rust: $(BUILD)
 	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
 	cargo clippy --all-targets -- -D warnings
 	cargo clippy --all-targets --features python,serde -- -D warnings
+	@for target in wasm32-unknown-unknown wasm32-unknown-emscripten; do \
+		if [ -d "$$(rustc --print sysroot)/lib/rustlib/$$target" ]; then cargo check --target $$target; \
+		else echo "$$target is not installed: not checked"; fi; \
+	done
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 
 check-python: $(WHEEL) $(DEV)

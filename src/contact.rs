@@ -22,6 +22,7 @@ pub use options::{Algorithm, Motion, Options, Setup};
 pub use plan::Contact;
 pub use problem::bounds::Hardness;
 pub(crate) use problem::patch::{block, bounds};
+pub use problem::springs::Compliance;
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::{Unestimated, Warning};
 pub use solution::{Balance, Progress, Report, Solution};

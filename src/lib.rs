@@ -75,8 +75,8 @@ pub use model::{body, grid, hertz, material, surface};
 pub use body::{BodyParameter, HalfSpace, Interface, Layer, Spring, Substrate};
 pub use compliance::graded::graded_layers;
 pub use contact::{
-    Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,
-    Solver, Termination, Unestimated, Warning, solve,
+    Algorithm, Case, Compliance, Contact, Discretisation, Hardness, Motion, Options, Report, Setup,
+    Solution, Solver, Termination, Unestimated, Warning, solve,
 };
 pub use convolution::Convolution;
 pub use error::{Error, Result};

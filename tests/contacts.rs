@@ -24,6 +24,7 @@ mod contact {
     mod line;
     mod matrix;
     mod periodic;
+    mod springs;
     mod stiffness;
     mod thin_layers;
     mod two_bodies;

@@ -6,11 +6,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
+use crate::model::grid::Window;
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
@@ -44,6 +45,10 @@ pub struct Convolution {
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
     additions: Vec<Addition>,
+    /// c of each cell in C order, where c p is added to the displacement.
+    springs: Option<Arc<[f64]>>,
+    /// s of each cell, by which input and output are multiplied.
+    scale: Option<Arc<[f64]>>,
     /// Memory that is not in use, shared with companions of this convolution.
     idle: Pool<ConvolutionMemory>,
     /// Time spent by this convolution and its companions.
@@ -56,7 +61,7 @@ struct Clock(AtomicU64);
 
 impl Clock {
     fn during<R>(&self, work: impl FnOnce() -> R) -> R {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let result = work();
         self.0.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         result
@@ -73,6 +78,7 @@ pub struct Workspace(Lease<ConvolutionMemory>);
 struct ConvolutionMemory {
     fft: TransformMemory,
     added: Vec<AdditionMemory>,
+    scaled: Vec<f64>,
 }
 
 impl Convolution {
@@ -125,6 +131,8 @@ impl Convolution {
             spectrum: Arc::new(spectrum),
             threads: Arc::clone(threads),
             additions: Vec::new(),
+            springs: None,
+            scale: None,
             idle,
             clock,
         }
@@ -137,6 +145,8 @@ impl Convolution {
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
             additions: self.additions.clone(),
+            springs: self.springs.clone(),
+            scale: self.scale.clone(),
             idle: Pool::default(),
             clock: Arc::default(),
             ..*self
@@ -171,24 +181,34 @@ impl Convolution {
         Self { additions, ..self }
     }
 
-    /// What is added to the convolution.
-    pub(crate) fn additions(&self) -> &[Addition] {
-        &self.additions
+    /// This convolution with springs, whose compliances (nx, ny) \[m/Pa\] are those of the cells in C order.
+    pub(crate) fn on_springs(self, springs: Vec<f64>) -> Self {
+        Self { springs: Some(springs.into()), ..self }
     }
 
-    /// What the additions contribute to the displacement of a cell in one row under unit pressure on a cell in another,
-    /// at a `distance` of so many cells along y.
-    pub(crate) fn added(&self, rows: [usize; 2], distance: usize) -> f64 {
-        let additions = self.additions.iter();
-        additions.map(|added| added.entry(rows, distance)).sum()
+    /// The mean compliance of the springs \[m/Pa\].
+    pub(crate) fn mean_spring(&self) -> f64 {
+        let springs = self.springs.as_ref();
+        springs.map_or(0.0, |springs| springs.iter().sum::<f64>() / springs.len() as f64)
     }
 
-    /// [`Convolution::companion`] for a window whose first row is `first`, with the part of the additions there.
-    pub(crate) fn on_window(&self, coefficients: &ArrayRef2<f64>, first: usize) -> Self {
-        let rows = first..first + coefficients.nrows();
+    /// What the additions and the springs contribute to the displacement of `one` cell under unit pressure on an `other`.
+    pub(crate) fn added(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
+        let distance = one[1].abs_diff(other[1]);
         let additions = self.additions.iter();
-        let additions = additions.map(|a| a.on_rows(rows.clone())).collect();
-        self.companion(coefficients, [false; 2]).plus(additions)
+        let added: f64 = additions.map(|added| added.entry([one[0], other[0]], distance)).sum();
+        let own = self.springs.as_ref().filter(|_| one == other);
+        added + own.map_or(0.0, |springs| springs[one[0] * self.shape[1] + one[1]])
+    }
+
+    /// [`Convolution::companion`] for a `window`, with the part of the additions and the springs there.
+    pub(crate) fn on_window(&self, coefficients: &ArrayRef2<f64>, window: &Window) -> Self {
+        let additions = self.additions.iter();
+        let additions = additions.map(|a| a.on_rows(window[0].clone())).collect();
+        let springs =
+            self.springs.as_deref().map(|springs| copied_slice(springs, self.shape[1], window));
+        let within = self.companion(coefficients, [false; 2]).plus(additions);
+        Self { springs: springs.map(Into::into), ..within }
     }
 
     /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.
@@ -209,7 +229,7 @@ impl Convolution {
 
     /// Displacement of a loaded cell per unit of its own pressure.
     pub(crate) fn self_influence(&self) -> f64 {
-        self.self_influence
+        self.self_influence + self.mean_spring()
     }
 
     pub(crate) fn own_threads(&self) -> &Threads {
@@ -294,9 +314,21 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        let memory = &mut workspace.0;
+        let memory = &mut *workspace.0;
         self.transform.reserve(&mut memory.fft);
         self.clock.during(|| {
+            let cells = occupied.start * self.shape[1]..occupied.end * self.shape[1];
+            let input = match &self.scale {
+                Some(scale) => {
+                    memory.scaled.clear();
+                    memory.scaled.resize(input.len(), 0.0);
+                    let scaled = memory.scaled[cells.clone()].iter_mut();
+                    let products = input[cells.clone()].iter().zip(&scale[cells.clone()]);
+                    scaled.zip(products).for_each(|(out, (p, s))| *out = p * s);
+                    &memory.scaled
+                }
+                None => input,
+            };
             let (transform, input_rows) = (&self.transform, (input, occupied.clone()));
             transform.convolve_into(
                 &self.spectrum,
@@ -305,20 +337,30 @@ impl Convolution {
                 &mut memory.fft,
                 &self.threads,
             );
-            self.respond(input, occupied, &mut memory.added);
+            memory
+                .added
+                .resize_with(self.additions.len().max(memory.added.len()), Default::default);
+            for (addition, memory) in self.additions.iter().zip(&mut memory.added) {
+                addition.respond(input, occupied.clone(), memory, &self.threads);
+            }
             for (addition, memory) in self.additions.iter().zip(&memory.added) {
                 addition.add_rows(0, self.shape[1], output, memory);
             }
+            if let Some(springs) = &self.springs {
+                let products = input[cells.clone()].iter().zip(&springs[cells.clone()]);
+                output[cells].iter_mut().zip(products).for_each(|(u, (p, c))| *u += p * c);
+            }
+            if let Some(scale) = &self.scale {
+                output.iter_mut().zip(scale.iter()).for_each(|(u, s)| *u *= s);
+            }
         });
     }
+}
 
-    /// Computes what the additions respond to an `input` that is zero outside the rows `occupied`.
-    fn respond(&self, input: &[f64], occupied: Range<usize>, memory: &mut Vec<AdditionMemory>) {
-        memory.resize_with(self.additions.len().max(memory.len()), Default::default);
-        for (addition, memory) in self.additions.iter().zip(memory) {
-            addition.respond(input, occupied.clone(), memory, &self.threads);
-        }
-    }
+/// The values in a window of rows of so many `columns`.
+fn copied_slice(values: &[f64], columns: usize, window: &Window) -> Vec<f64> {
+    let rows = window[0].clone().map(|i| i * columns);
+    rows.flat_map(|at| &values[at + window[1].start..at + window[1].end]).copied().collect()
 }
 
 #[cfg(test)]

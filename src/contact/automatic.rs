@@ -70,6 +70,9 @@ pub fn solve_with<'a>(
     check_carried(setup.counterbody.as_ref(), shape)?;
     let mut watched_options = options.into();
     let options = watched_options.options;
+    if let (Some(compliance), None) = (&options.compliance, shape.grid()) {
+        compliance.check_without_grid()?;
+    }
     let ends = Ends::of(&bodies(body, setup));
     let limited = ends.limit(shape);
     let trial = Trial {

@@ -167,7 +167,7 @@ const COARSEST_CELLS: usize = 32;
 
 /// Directions of a grid that are halved for the next coarser one; none at the coarsest. A period of an odd number of
 /// cells is not halved.
-fn halved(grid: &Grid) -> [bool; 2] {
+pub(super) fn halved(grid: &Grid) -> [bool; 2] {
     let (shape, periodic) = (grid.shape(), grid.is_periodic());
     [0, 1].map(|k| shape[k] >= 2 * COARSEST_CELLS && !(periodic[k] && shape[k] % 2 == 1))
 }
@@ -195,12 +195,25 @@ impl Level {
     /// A grid with the `coefficients` of `bodies`, and their convolution.
     pub(super) fn new(
         grid: Grid,
-        coefficients: Array2<f64>,
+        coefficients: &Arc<Array2<f64>>,
         convolution: Convolution,
         bodies: &[&Body],
     ) -> Self {
         let local = LocalDisplacement::new(bodies, &grid);
-        Self { grid, coefficients: Arc::new(coefficients), convolution, local }
+        Self { grid, coefficients: Arc::clone(coefficients), convolution, local }
+    }
+
+    /// The grid.
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// This level on springs of these compliances (nx, ny) \[m/Pa\], with the threads and memory of `finest`.
+    pub(super) fn on_springs(&self, springs: &Array2<f64>, finest: &Convolution) -> Self {
+        let convolution = self.convolution.sharing_with(finest);
+        let level = self.with(convolution.on_springs(slice(springs).to_vec()));
+        let local = level.local.with_springs(level.convolution.mean_spring());
+        Self { local, ..level }
     }
 
     /// This level with another convolution; the coefficients are shared.
@@ -210,8 +223,8 @@ impl Level {
     }
 }
 
-/// Mean gap over each coarse cell, from its fine cells that can touch.
-fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
+/// Mean over each coarse cell of the values of its fine cells, of those that are finite.
+pub(super) fn coarse_means(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     let (nx, ny) = fine.dim();
     let span = |i: usize, n: usize, halved: bool| -> Range<usize> {
         if halved { 2 * i..(2 * i + 2).min(n) } else { i..i + 1 }
@@ -254,7 +267,7 @@ impl<'a> LevelProblem<'a> {
                 freedoms.prescribe(&mut gap);
                 gap
             }
-            Err(_) => coarse_gap(&self.gap, self.halved()),
+            Err(_) => coarse_means(&self.gap, self.halved()),
         };
         let bounds = Bounds::none(level.grid.shape()[1]);
         LevelProblem { level, freedoms, gap: Cow::Owned(gap), bounds }
@@ -325,12 +338,12 @@ impl<'a> LevelProblem<'a> {
             let repeats = repeating(&self.level.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
             let bounds = self.bounds.in_window(window);
-            let first = window[0].start;
-            let windowed = (!whole).then(|| self.level.convolution.on_window(&corner, first));
-            let approximation = self.level.convolution.approximation(&corner, repeats);
+            let windowed = (!whole).then(|| self.level.convolution.on_window(&corner, window));
+            let operator = windowed.as_ref().unwrap_or(&self.level.convolution);
+            let approximation = operator.approximation(&corner, repeats);
             let gap = copied(&self.gap, window);
             let problem = Problem {
-                convolution: windowed.as_ref().unwrap_or(&self.level.convolution),
+                convolution: operator,
                 freedoms: &freedoms,
                 gap: &gap,
                 local: &self.level.local,

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ndarray::Array2;
 
@@ -23,6 +22,7 @@ use crate::contact::start::{
 };
 use crate::error::{Error, Result};
 use crate::model::surface::{OffsetShape, Surface};
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::Rows;
 
@@ -119,6 +119,16 @@ impl Contact {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
         self.check_memory_of_solve(options.hardness.is_some())?;
+        if let Some(compliance) = &options.compliance {
+            let springs = compliance.on(&self.grid)?;
+            let without = Options { compliance: None, ..options.clone() };
+            // Without any give, nothing is changed.
+            let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(&springs));
+            let plan = soft.as_ref().unwrap_or(self);
+            let mut solution = plan.solve_sampled(shape, sampled, motion, &without, progress)?;
+            solution.take_springs(compliance.clone(), springs);
+            return Ok(solution);
+        }
         let Some(before) = &options.indentation else {
             return self.press(shape, sampled, motion, options, progress);
         };
@@ -142,7 +152,7 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let columns = self.grid.shape()[1];
         let limits = (options.hardness.as_ref())
@@ -346,13 +356,15 @@ impl<'a> Steps<'a> {
             tilt,
             hardness: self.options.hardness.clone(),
             indentation,
+            compliance: None,
             coefficients: plan.setup.coefficients.clone(),
             report,
-            ends: Some(plan.convolution().additions().to_vec()),
+            operator: Some(Arc::clone(&plan.operator)),
             gap: Gap::Computed {
                 undeformed,
                 freedoms: Box::new(self.freedoms.clone()),
                 multipliers: fields.multipliers,
+                deflection: None,
             },
         })
     }

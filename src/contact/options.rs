@@ -3,6 +3,7 @@
 use ndarray::{ArcArray2, Array2};
 
 use super::problem::bounds::Hardness;
+use super::problem::springs::Compliance;
 use crate::compliance::response::Body;
 use crate::error::{Result, fraction, require};
 
@@ -46,6 +47,8 @@ pub struct Options {
     pub initial: Option<Array2<f64>>,
     /// Largest pressure that the surfaces carry. Default: they do not yield.
     pub hardness: Option<Hardness>,
+    /// Compliance of springs between the surfaces, one in each cell: a bed, soft asperities. Default: none.
+    pub compliance: Option<Compliance>,
     /// Permanent indentation (nx, ny) \[m\] that the surfaces have already: that of the solution before, in a
     /// history of loads. Default: none.
     pub indentation: Option<Array2<f64>>,
@@ -62,6 +65,7 @@ impl Default for Options {
             algorithm: Algorithm::default(),
             initial: None,
             hardness: None,
+            compliance: None,
             indentation: None,
             cells: None,
         }

@@ -13,6 +13,7 @@ pub(super) mod balance;
 pub(super) mod bounds;
 pub(super) mod freedoms;
 pub(super) mod patch;
+pub(super) mod springs;
 
 use std::f64::consts::PI;
 
@@ -451,6 +452,12 @@ impl LocalDisplacement {
             softest
         });
         Self { per_pressure: per_pressure.collect() }
+    }
+
+    /// These displacements and those of springs of this mean compliance \[m/Pa\].
+    pub(crate) fn with_springs(mut self, compliance: f64) -> Self {
+        self.per_pressure.iter_mut().for_each(|c| *c += MULTIPLE * compliance);
+        self
     }
 
     /// Local displacement \[m\] under a pressure with this `sum` over `cells` cells; 0 without cells.

@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 use ndarray::{ArcArray2, Array1, Array2};
 
-use crate::compliance::convolution::Addition;
 use crate::compliance::ends::{Ends, FreeEnds};
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::options::Motion;
-use crate::contact::plan::{Contact, check_coefficients};
+use crate::contact::plan::{Contact, PlannedOperator, check_coefficients};
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{bounds, rows};
+use crate::contact::problem::springs::Compliance;
 use crate::contact::problem::{Multipliers, Quality};
 use crate::contact::solution::warnings::Warning;
 use crate::contact::solver::{Solver, Termination};
@@ -42,13 +42,15 @@ pub struct Solution {
     /// Permanent indentation \[m\], ≥ 0, with that of the solves before; `None` where no cell has one. The gap
     /// contains it.
     pub indentation: Option<Array2<f64>>,
+    /// Compliance of springs between the surfaces; `None` where there are none. The gap contains what they give.
+    pub compliance: Option<Compliance>,
     /// Influence coefficients that were given ([`Setup`](super::Setup)); `None` where they are those of the bodies.
     pub coefficients: Option<ArcArray2<f64>>,
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
-    /// What the free ends of the bodies add to the coefficients, from the plan that solved it; `None` where no plan did.
-    pub(super) ends: Option<Vec<Addition>>,
+    /// What it was solved with; `None` where no plan did.
+    pub(super) operator: Option<Arc<PlannedOperator>>,
 }
 
 impl PartialEq for Solution {
@@ -60,6 +62,7 @@ impl PartialEq for Solution {
             && self.displacement == other.displacement
             && self.hardness == other.hardness
             && self.indentation == other.indentation
+            && self.compliance == other.compliance
             && self.coefficients == other.coefficients
             && self.gap() == other.gap()
     }
@@ -114,10 +117,11 @@ impl Solution {
             tilt,
             hardness: None,
             indentation: None,
+            compliance: None,
             coefficients: None,
             report,
             gap: Gap::Known(gap),
-            ends: None,
+            operator: None,
         })
     }
 
@@ -138,6 +142,38 @@ impl Solution {
             check_indentation(indentation, self.grid())?;
         }
         Ok(Self { hardness, indentation, ..self })
+    }
+
+    /// The solution with the compliance of springs that it has in a file.
+    ///
+    /// # Errors
+    /// An array of another shape than the grid, a compliance that is negative or not finite.
+    pub fn with_compliance(self, compliance: Compliance) -> Result<Self> {
+        compliance.on(self.grid())?;
+        Ok(Self { compliance: Some(compliance), ..self })
+    }
+
+    /// Takes what `springs` give from the displacement, which then is that of the bodies alone.
+    pub(in crate::contact) fn take_springs(
+        &mut self,
+        compliance: Compliance,
+        springs: Array2<f64>,
+    ) {
+        let given = springs * &self.pressure;
+        self.displacement -= &given;
+        self.compliance = Some(compliance);
+        if let Gap::Computed { deflection, .. } = &mut self.gap {
+            *deflection = Some(given);
+        }
+    }
+
+    /// Displacement of the bodies and deflection of the springs together \[m\].
+    pub(crate) fn total_displacement(&self) -> Array2<f64> {
+        let springs = self.compliance.as_ref().and_then(|c| c.on(self.grid()).ok());
+        match springs {
+            Some(springs) => springs * &self.pressure + &self.displacement,
+            None => self.displacement.clone(),
+        }
     }
 
     /// The solution with the influence coefficients that were given.
@@ -366,6 +402,8 @@ pub(crate) enum Gap {
         freedoms: Box<Freedoms>,
         /// λ
         multipliers: Multipliers,
+        /// What springs give, c p.
+        deflection: Option<Array2<f64>>,
     },
     /// g
     Known(Array2<f64>),
@@ -374,12 +412,14 @@ pub(crate) enum Gap {
 impl Gap {
     /// The gap of the solution, for its `displacement`.
     pub(crate) fn field(&self, displacement: &Array2<f64>) -> Array2<f64> {
-        let (undeformed, freedoms, multipliers) = match self {
-            Self::Computed { undeformed, freedoms, multipliers } => {
-                (undeformed, freedoms, multipliers)
+        let (undeformed, freedoms, multipliers, deflection) = match self {
+            Self::Computed { undeformed, freedoms, multipliers, deflection } => {
+                (undeformed, freedoms, multipliers, deflection)
             }
             Self::Known(gap) => return gap.clone(),
         };
+        let total = deflection.as_ref().map(|given| displacement + given);
+        let displacement = total.as_ref().unwrap_or(displacement);
         let mut gap = Array2::zeros(undeformed.dim());
         let (columns, [x, y]) = (undeformed.ncols(), &freedoms.columns);
         let [u, h] = [slice(displacement), slice(undeformed)];

@@ -228,13 +228,17 @@ impl Seed {
         let [x0, y0] = [0, 1].map(|axis| state.tangent.window[axis].start);
         let ny = state.tangent.window[1].len();
         let mut seed = Self::new(state, 0.0);
+        let springs = solution.compliance.as_ref().filter(|_| is_gap);
+        let springs = springs.map(|c| c.on(solution.grid())).transpose()?;
+        let total = solution.total_displacement();
         state.tangent.reach(offsets(&state.tangent.window, &cells))?;
         for &(cell, weight) in &cells {
             let mut displaced = 0.0;
             for (k, slope) in seed.pressure.iter_mut().enumerate() {
                 if state.tangent.contact[k] {
-                    let entry =
-                        state.tangent.entry(cell, [x0 + k / ny, y0 + k % ny]) - state.tangent.raise;
+                    let other = [x0 + k / ny, y0 + k % ny];
+                    let own = springs.as_ref().filter(|_| cell == other).map_or(0.0, |c| c[cell]);
+                    let entry = state.tangent.entry(cell, other) - state.tangent.raise + own;
                     *slope += weight * entry;
                     displaced += entry * state.pressure[k];
                 }
@@ -245,7 +249,7 @@ impl Seed {
                 let moved = |[delta, sx, sy]: [f64; 3]| delta + sx * at[0] + sy * at[1];
                 // The undeformed gap, from the fields of the solution.
                 let motion = [solution.approach, solution.tilt[0], solution.tilt[1]];
-                let undeformed = solution.gap()[cell] - solution.displacement[cell] + moved(motion);
+                let undeformed = solution.gap()[cell] - total[cell] + moved(motion);
                 if !undeformed.is_finite() {
                     return Err(Error::no_derivative(
                         "the gap",

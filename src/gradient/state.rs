@@ -93,7 +93,7 @@ impl Linearised {
         let flat = |field: &ndarray::Array2<f64>| -> Vec<f64> {
             block(field, &tangent.window).iter().copied().collect()
         };
-        let (gap, displacement) = (flat(&gap), flat(&solution.displacement));
+        let (gap, displacement) = (flat(&gap), flat(&solution.total_displacement()));
         let pressure = flat(&solution.pressure);
         let mut state =
             Self { pressure, gap, motion, loaded, target, columns: Vec::new(), outside, tangent };

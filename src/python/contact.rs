@@ -11,7 +11,7 @@ use super::background::{self, Caller};
 use super::bodies::{PyBody, body};
 use super::grid::PyGrid;
 use super::shapes::{Shape, shape};
-use super::solved::{PySolved, ReportParts, hardness, report_parts};
+use super::solved::{PySolved, ReportParts, compliance, hardness, report_parts};
 use crate::compliance::response::Body;
 use crate::contact::{
     Case, Contact, Motion, Options, Report, SMALLEST_GRID, Setup, Solution, solve_with,
@@ -190,6 +190,7 @@ impl PyMotion<'_> {
 #[derive(FromPyObject)]
 pub(super) struct PySolveOptions<'py> {
     hardness: Argument<'py>,
+    compliance: Argument<'py>,
     tolerance: Argument<'py>,
     max_iterations: Argument<'py>,
     algorithm: Argument<'py>,
@@ -206,6 +207,7 @@ impl PySolveOptions<'_> {
             max_iterations: self.max_iterations.count("max_iterations", 0)?,
             algorithm: self.algorithm.word("algorithm")?,
             hardness: self.hardness.map(hardness)?,
+            compliance: self.compliance.map(compliance)?,
             ..Options::default()
         };
         self.check.flag("check")?;

@@ -14,7 +14,8 @@ use super::data::{Plain, read};
 use super::grid::PyGrid;
 use crate::compliance::response::Body;
 use crate::contact::{
-    Balance, Discretisation, Hardness, Motion, Report, Solution, Solver, Termination, Warning,
+    Balance, Compliance, Discretisation, Hardness, Motion, Report, Solution, Solver, Termination,
+    Warning,
 };
 
 /// A report as data, but for its grid and its bodies.
@@ -179,12 +180,22 @@ pub(super) fn hardness(value: &Bound<'_, PyAny>) -> PyResult<Hardness> {
     })
 }
 
+/// Compliance of springs: a number, or one for each cell.
+pub(super) fn compliance(value: &Bound<'_, PyAny>) -> PyResult<Compliance> {
+    let values = real_array("compliance", value)?;
+    Ok(match values.ndim() {
+        0 => Compliance::Uniform(values.sum()),
+        _ => Compliance::Cells(real_matrix("compliance", value)?),
+    })
+}
+
 #[pymethods]
 impl PySolved {
     /// Solution with JSON text of its position, the state of its report, and its fields.
     #[new]
     #[pyo3(signature = (
-        position, report, *, pressure, gap, displacement, hardness=None, indentation=None, coefficients=None
+        position, report, *, pressure, gap, displacement, hardness=None, indentation=None, coefficients=None,
+        compliance=None
     ))]
     #[expect(clippy::too_many_arguments, reason = "one for each field of a state")]
     fn new(
@@ -196,6 +207,7 @@ impl PySolved {
         hardness: Option<Bound<'_, PyAny>>,
         indentation: Option<Bound<'_, PyAny>>,
         coefficients: Option<Bound<'_, PyAny>>,
+        compliance: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let field = |name: &str, value: Option<Bound<'_, PyAny>>| -> PyResult<_> {
             value.map(|value| real_matrix(name, &value)).transpose()
@@ -213,6 +225,9 @@ impl PySolved {
         let mut solution = Solution::from_fields(arrays, approach, tilt, report_of(report)?)?;
         if let Some(coefficients) = field("coefficients", coefficients)? {
             solution = solution.with_coefficients(coefficients)?;
+        }
+        if let Some(compliance) = compliance {
+            solution = solution.with_compliance(self::compliance(&compliance)?)?;
         }
         let hardness = hardness.map(|value| self::hardness(&value)).transpose()?;
         Ok(solution.yielding(hardness, field("indentation", indentation)?)?.into())
@@ -245,6 +260,13 @@ impl PySolved {
             "displacement" => Some(of.displacement.clone()),
             "indentation" => of.indentation.clone(),
             "coefficients" => of.coefficients.as_ref().map(|matrix| matrix.to_owned()),
+            "compliance" => match &of.compliance {
+                Some(Compliance::Uniform(value)) => {
+                    return Ok(Some(value.into_pyobject(py)?.into_any()));
+                }
+                Some(Compliance::Cells(values)) => Some(values.clone()),
+                None => None,
+            },
             "line_load" => return Ok(Some(read_only(py, of.line_load())?.into_any())),
             _ => match &of.hardness {
                 Some(Hardness::Uniform(value)) => {

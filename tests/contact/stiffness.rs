@@ -14,9 +14,14 @@ const SYMMETRY: f64 = 1e-10;
 const DIFFERENCES: f64 = 1e-6;
 
 /// The solution of a tilted contact at a given approach.
-fn moved(contact: &Contact, shape: &dyn Surface, at: [f64; 3]) -> Result<Solution> {
+fn moved(
+    contact: &Contact,
+    shape: &dyn Surface,
+    at: [f64; 3],
+    options: &Options,
+) -> Result<Solution> {
     let motion = Motion::approach(at[0]).with_tilt([Some(at[1]), Some(at[2])]);
-    converged(contact, shape, &motion, &tolerance(1e-13))
+    converged(contact, shape, &motion, options)
 }
 
 /// Force and moments (Σ p dA, Σ p x dA, Σ p y dA).
@@ -34,7 +39,19 @@ pub(crate) fn assert_stiffness(
     step: f64,
     bar: f64,
 ) -> Result<()> {
-    let stiffness = moved(contact, shape, at)?.stiffness(None)?;
+    assert_stiffness_with(contact, shape, at, step, bar, &tolerance(1e-13))
+}
+
+/// [`assert_stiffness`] with other options.
+pub(crate) fn assert_stiffness_with(
+    contact: &Contact,
+    shape: &dyn Surface,
+    at: [f64; 3],
+    step: f64,
+    bar: f64,
+    options: &Options,
+) -> Result<()> {
+    let stiffness = moved(contact, shape, at, options)?.stiffness(None)?;
     // All steps cause equal displacements at the rim.
     let half = 0.5 * contact.grid().size()[0];
     for freedom in 0..3 {
@@ -42,7 +59,7 @@ pub(crate) fn assert_stiffness(
         let loads = |sign: f64| {
             let mut to = at;
             to[freedom] += sign * step;
-            Ok::<_, nacre::Error>(loads(&moved(contact, shape, to)?))
+            Ok::<_, nacre::Error>(loads(&moved(contact, shape, to, options)?))
         };
         let (more, less) = (loads(1.0)?, loads(-1.0)?);
         for row in 0..3 {
@@ -131,7 +148,8 @@ fn motion_found_under_load_gives_the_load_back() -> Result<()> {
     let options = tolerance(1e-12);
     let solution = contact.solve(&sphere, &loaded, &options)?;
     let [sx, sy] = solution.tilt;
-    let [load, mx, my] = loads(&moved(&contact, &sphere, [solution.approach, sx, sy])?);
+    let [load, mx, my] =
+        loads(&moved(&contact, &sphere, [solution.approach, sx, sy], &tolerance(1e-13))?);
     near!(load, 0.02, GIVEN_BACK);
     let half = [1.2, 1.0];
     assert!((mx - 0.2 * 0.02).abs() < GIVEN_BACK * 0.02 * half[0]);

@@ -52,6 +52,13 @@ NORMAL: dict[str, Callable[[], nacre.Solution]] = {
     "yielded": lambda: nacre.solve(
         BALL, STEEL, grid=nacre.Grid((20, 20), (2e-4, 2e-4)), load=10.0, hardness=1e9
     ),
+    "springs": lambda: nacre.solve(
+        BALL,
+        LAYERED,
+        grid=GRID,
+        load=10.0,
+        compliance=np.linspace(0.0, 1e-15, 40 * 31).reshape(40, 31),
+    ),
     "infinite gaps": lambda: nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
     "nothing touches": lambda: nacre.solve(BALL, STEEL, grid=GRID, approach=-1e-6),
     "line": lambda: nacre.solve(ROD, LAYERED, grid=nacre.Grid.line(64, 2e-4, 1e-6), load=1e4),

@@ -19,6 +19,7 @@ from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display, report
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
+from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
 Going = Callable[[], bool]
@@ -34,6 +35,8 @@ CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
 BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
 BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
+EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
+"""Extremes of stresses that the page shows."""
 DEPTHS, DEEPEST = 40, 1.25
 """Depths of the picture of stresses, and the largest over the width of the contact."""
 DIGITS = 5
@@ -115,9 +118,10 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
     solution = _solved_contact(case, arguments, going)
     bare = _bare(case, arguments, going)
+    rows, beside = (one and _selected(one, CONTACT_ROWS) for one in (solution, bare))
     parts: Answer = {
         "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
-        "rows": _rows(_selected(solution, CONTACT_ROWS), bare and _selected(bare, CONTACT_ROWS)),
+        "rows": _rows(rows, beside),
         "picture-1": _pressures(solution, bare),
         "warnings": list(solution._warnings),
     }
@@ -130,6 +134,11 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         verdict = Verdict("unknown", f"Cannot tell: {error}.", (), None, None, None)
         return _answer(parts | _judged(verdict))
     _check(going)
+    if bare is not None:
+        of_bare = {k: v for k, v in keywords.items() if k in ("body", "friction", "direction")}
+        beside += _extremes(bare.stress_summary(**of_bare, progress=lambda _: going()))
+        _check(going)
+    parts["rows"] = _rows(rows + _extremes(summary), beside)
     parts["picture-2"] = _stresses(solution, bare, keywords)
     parts["warnings"] = list(dict.fromkeys([*parts["warnings"], *summary.warnings]))
     return _answer(parts | _judged(summary.verdict))
@@ -254,6 +263,16 @@ def _judged(verdict: Verdict) -> Answer:
 
 def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
     return [row for row in result._rows() if row[0] in names]
+
+
+def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
+    """Return the largest stresses of all layers and the substrate."""
+    rows = []
+    for name, label in EXTREMES.items():
+        worst = max(summary.layers, key=lambda part: getattr(part, name)[0])
+        text = with_error(getattr(worst, name)[0], worst.uncertainty.get(name))
+        rows.append((label, text))
+    return rows
 
 
 def _rows(rows: Sequence[tuple[str, str]], bare: Sequence[tuple[str, str]] | None = None) -> str:

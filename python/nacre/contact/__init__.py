@@ -50,6 +50,7 @@ def solve(
     moment: Along | None = None,
     tilt: Along | None = None,
     hardness: float | Matrix | None = None,
+    compliance: float | Matrix | None = None,
     tolerance: float = 1e-8,
     max_iterations: int | None = None,
     algorithm: Algorithm = "cascade",
@@ -107,6 +108,11 @@ def solve(
         Largest pressure H that the surfaces can carry [Pa], above 0, of all cells or of each,
         ``(nx, ny)``: cells that would carry more yield, and keep a permanent indentation
         (`Solution.indentation`). By default they do not yield.
+    compliance : float or array_like, optional
+        Compliance c of springs between the surfaces [m/Pa], at least 0, of all cells or of each,
+        ``(nx, ny)``: the gap has c p in it, ``g = h + u + c p - δ - s_x x - s_y y``. It is that of
+        an elastic bed or of a layer of soft asperities. Values of cells need a grid. By default
+        there are none.
     tolerance : float, optional
         Largest `Report.residual` and `Report.overlap` of a converged solution, both relative,
         above 0 and below 1.
@@ -158,7 +164,9 @@ def solve(
     setup.check_end(shape, load, initial)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     state, callback = _initial_state(initial), _report_callback(progress)
-    options = SolveOptions(hardness, tolerance, max_iterations, algorithm, state, callback, check)
+    options = SolveOptions(
+        hardness, compliance, tolerance, max_iterations, algorithm, state, callback, check
+    )
     solved = core.solve(shape, motion, options, setup)
     return _checked_solution(solved, shape, check)
 
@@ -532,6 +540,7 @@ class Contact:
         moment: Along | None = None,
         tilt: Along | None = None,
         hardness: float | Matrix | None = None,
+        compliance: float | Matrix | None = None,
         tolerance: float = 1e-8,
         max_iterations: int | None = None,
         algorithm: Algorithm = "cascade",
@@ -551,7 +560,7 @@ class Contact:
             Shape that is pressed in.
         load, approach, eccentricity, moment, tilt : optional
             Rigid motion, as `nacre.solve` explains.
-        hardness, tolerance, max_iterations, algorithm : optional
+        hardness, compliance, tolerance, max_iterations, algorithm : optional
             How the solution is found, as `nacre.solve` explains.
         initial, progress, check : optional
             Where it starts, who is told, and whether it must converge, as `nacre.solve` explains.
@@ -578,7 +587,7 @@ class Contact:
         motion = Motion(load, approach, eccentricity, moment, tilt)
         state, callback = _initial_state(initial), _report_callback(progress)
         options = SolveOptions(
-            hardness, tolerance, max_iterations, algorithm, state, callback, check
+            hardness, compliance, tolerance, max_iterations, algorithm, state, callback, check
         )
         solved = core.solve(shape, motion, options, self._plan)
         return _checked_solution(solved, shape, check)
@@ -588,6 +597,7 @@ class Contact:
         cases: Iterable[Mapping[str, Any]],
         *,
         hardness: float | Matrix | None = None,
+        compliance: float | Matrix | None = None,
         tolerance: float = 1e-8,
         max_iterations: int | None = None,
         algorithm: Algorithm = "cascade",
@@ -601,7 +611,7 @@ class Contact:
         cases : iterable of mapping
             Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
             `approach`, `eccentricity`, `moment`, `tilt`.
-        hardness, tolerance, max_iterations, algorithm : optional
+        hardness, compliance, tolerance, max_iterations, algorithm : optional
             How the solutions are found, as `nacre.solve` explains.
         progress : callable, optional
             Function that is called with the number of finished cases and of all cases, at most 50
@@ -645,7 +655,7 @@ class Contact:
         mappings = _mappings(words, cases, ("shape", *MOTION))
         shape_motions = [(case["shape"], Motion.of(case)) for case in mappings]
         options = SolveOptions(
-            hardness, tolerance, max_iterations, algorithm, None, progress, check
+            hardness, compliance, tolerance, max_iterations, algorithm, None, progress, check
         )
         outcomes, failure = self._plan.solve_many(shape_motions, options)
         solutions: list[Any] = []

@@ -92,6 +92,7 @@ class SolveOptions:
     """How a solution is found."""
 
     hardness: float | Matrix | None
+    compliance: float | Matrix | None
     tolerance: float
     max_iterations: int | None
     algorithm: Algorithm

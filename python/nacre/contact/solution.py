@@ -59,7 +59,7 @@ NESTED = {
     "motion": ("load", "approach", "eccentricity", "moment", "tilt"),
 }
 """Tables in the state of a report, each with its keys."""
-OPTIONAL = ("hardness", "indentation", "coefficients")
+OPTIONAL = ("hardness", "indentation", "compliance", "coefficients")
 """Fields in the state of a solution that has them."""
 THEORY = (
     "linear elasticity of half-spaces, bare or layered, with small slopes: influence coefficients "
@@ -326,6 +326,14 @@ class Solution(Result, Stressed):
             field = np.zeros(self.grid.shape)
             field.setflags(write=False)
         return field
+
+    @cached_property
+    def compliance(self) -> float | Field | None:
+        """Compliance of springs between the surfaces [m/Pa], of all cells or of each.
+
+        `None` where there are none. The gap contains what they give, the displacement does not.
+        """
+        return self._solved.field("compliance")
 
     @cached_property
     def coefficients(self) -> Field | None:
@@ -945,7 +953,8 @@ def _inputs(solution: Solution) -> Rows:
     report, hardness = solution.report, solution.hardness
     units = {row.name: solution._si(row) for row in CONTACT}
     inputs = {"body": report.body, "counterbody": report.counterbody or "rigid", **report.motion}
-    inputs |= {"hardness": hardness, "tolerance": report.tolerance}
+    inputs |= {"hardness": hardness, "compliance": solution.compliance}
+    inputs |= {"tolerance": report.tolerance}
     shape = solution._shape or "not kept in the solution"
     return input_rows({"shape": shape, **inputs, "grid": report.grid}, units)
 
@@ -1032,10 +1041,10 @@ def _has_spots(solution: Solution) -> bool:
     return max(int(one.sum(axis).max()) for axis, one in enumerate(begins)) > 2
 
 
-def _hardness(solution: Solution) -> str | None:
-    if (hardness := solution.hardness) is None:
+def _range(values: float | Field | None, unit: str) -> str | None:
+    if values is None:
         return None
-    words = [written(float(end), "Pa") for end in (np.min(hardness), np.max(hardness))]
+    words = [written(float(end), unit) for end in (np.min(values), np.max(values))]
     return " to ".join(dict.fromkeys(words))
 
 
@@ -1090,7 +1099,8 @@ TEXTS: dict[str, Callable[[Solution], str | None]] = {
     "peak_position": _peak_place,
     "contact_extent": _extent,
     "contact_share": _contact_share,
-    "hardness": _hardness,
+    "hardness": lambda s: _range(s.hardness, "Pa"),
+    "compliance": lambda s: _range(s.compliance, "m/Pa"),
     "indentation": _indentation,
 }
 """Values of a normal contact that are more than a number with its unit."""

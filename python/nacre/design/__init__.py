@@ -115,7 +115,7 @@ def _refinable(contact_options: Mapping[str, Any]) -> bool:
     grid = contact_options.get("grid")
     has_cell_fields = any(
         contact_options.get(name) is not None
-        for name in ("hardness", "indentation", "coefficients")
+        for name in ("hardness", "indentation", "coefficients", "compliance")
     )
     return not has_cell_fields and (grid is None or not any(grid.periodic))
 

@@ -97,6 +97,14 @@ CONTACT = (
         "hardness", "largest pressure that the surfaces can carry", "Pa", None, CELLS, "hardness"
     ),
     Quantity("indentation", "permanent indentation", "m", None, CELLS, "indentation"),
+    Quantity(
+        "compliance",
+        "compliance of springs between the surfaces",
+        "m/Pa",
+        None,
+        CELLS,
+        "springs",
+    ),
     Quantity("in_contact", "whether a cell is in contact", dims=CELLS),
     Quantity("line_load", "force per length along x", "N/m", dims=("x",), follows=True),
     Quantity(

@@ -176,7 +176,7 @@ def save_report(
     >>> import tempfile
     >>> from nacre.studies.report import save_report
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> case = {"shape": nacre.Sphere(5e-3), "body": steel, "max_cells": 1024}
+    >>> case = {"shape": nacre.Sphere(5e-3), "body": steel, "max_cells": 4096}
     >>> study = nacre.sweep(case, {"load": [5.0, 10.0]})
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     save_report(study, f"{folder}/study.html").name

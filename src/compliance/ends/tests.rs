@@ -263,7 +263,7 @@ fn far_entries_are_those_of_points() -> Result<()> {
             let y = l as f64 * dy;
             let expected = point.displacement([here, y])? - half_space.at([here - there, y]);
             // The end is at the last row.
-            let influence = convolution.added([599 - a, 599 - b], l);
+            let influence = convolution.added([599 - a, 0], [599 - b, l]);
             let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
             assert!(
                 (influence / expected - 1.0).abs() < tolerance,

@@ -235,8 +235,7 @@ impl System<'_> {
             (self.contact.iter()).map(|k| [k / columns, k % columns]).collect();
         let lower = cholesky(places.len(), 0.0, |a, b| {
             let offset = [0, 1].map(|k| places[a][k].abs_diff(places[b][k]));
-            let [i, k] = [places[a][0], places[b][0]];
-            self.coefficients[offset] + self.problem.convolution.added([i, k], offset[1])
+            self.coefficients[offset] + self.problem.convolution.added(places[a], places[b])
         })?;
         let b = places.iter().map(|&[i, j]| [1.0, freedoms.columns[0][i], freedoms.columns[1][j]]);
         let b: Vec<[f64; 3]> = b.collect();

@@ -305,3 +305,20 @@ def test_numbers_of_fields_are_typed_in_their_unit() -> None:
 
 def test_readings_without_film_are_unknown() -> None:
     assert reading.substrate_verdict(None).level == "unknown"
+
+
+def test_the_extremes_of_the_bare_body_stand_beside() -> None:
+    case = cards()["contact"].case({})
+    rows = answer(case, "stress")["parts"]["rows"]
+    bare = nacre.HalfSpace(case.arguments()["body"].substrate)
+    with nacre.display_units(case.units), warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        arguments = case.arguments()
+        keywords = case.stress() or {}
+        coated = nacre.solve(**arguments).stress_summary(**keywords)
+        sliding = {name: keywords[name] for name in ("friction", "direction")}
+        other = nacre.solve(**arguments | {"body": bare}).stress_summary(**sliding)
+    largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]
+    texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
+    assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)
+    assert largest[0] > 1.2 * largest[1]  # the coat is stiffer

@@ -1,7 +1,6 @@
 """The page in Chromium: typed values, sliders, links, files, lost connections.
 
-Left out where Playwright or Chromium are not installed: pip install playwright, and Chromium of the
-system or of ``playwright install chromium``.
+Left out where the system has no Chromium.
 """
 
 from __future__ import annotations
@@ -19,13 +18,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright import sync_api
 
 from nacre.app.cards import cards, own_card
 from nacre.app.server import Server
 from nacre.case import templates
 from support import Capture, command
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )

@@ -155,6 +155,8 @@ MAPS: dict[str, Argument] = {
         MAP, nacre.Convolution(nacre.influence_coefficients(STEEL, GRID)).apply
     ),
     "solve(hardness)": Argument(MAP * 2.0**31, lambda a: pressed(hardness=a)),
+    "solve(compliance)": Argument(MAP * 2.0**-53, lambda a: pressed(compliance=a)),
+    "Contact.solve(compliance)": Argument(MAP * 2.0**-53, lambda a: solved(CONTACT, compliance=a)),
     "solve(initial)": Argument(MAP, lambda a: pressed(initial=a)),
     "Contact.solve(hardness)": Argument(MAP * 2.0**31, lambda a: solved(CONTACT, hardness=a)),
     "Contact.solve(initial)": Argument(MAP, lambda a: solved(CONTACT, initial=a)),
@@ -526,6 +528,7 @@ WRONG: dict[str, tuple[str, str, Callable[[Array], Any]]] = {
         "above 0",
         lambda a: solved(CONTACT, hardness=a),
     ),
+    "compliance": ("compliance", "at least 0|negative", lambda a: pressed(compliance=a)),
     "initial": ("initial", "at least 0|negative|below 0", lambda a: pressed(initial=a)),
     "friction": ("friction", "at least 0", lambda a: slid(friction=a)),
     "coefficients": (
