@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import nacre._core as core
 from nacre.bearing.balls import DeepGrooveBall
-from nacre.bearing.geometry import SMALLEST, WIDEST, above
+from nacre.bearing.geometry import SMALLEST, WIDEST, Bearing, above
 from nacre.bearing.iso import rating
-from nacre.bearing.static import check_bearing, static_rating
+from nacre.bearing.kinds import checked_bearing
+from nacre.bearing.static import static_rating
 
 TOLERANCE = 0.05
 """Difference of ratings that a catalogue may have: fifteen of ball bearings are within 0.8 %."""
@@ -42,7 +43,7 @@ class CatalogueCheck(NamedTuple):
 
 
 def check(
-    bearing: Any, *, capacity: float | None = None, static_capacity: float | None = None
+    bearing: Bearing, *, capacity: float | None = None, static_capacity: float | None = None
 ) -> CatalogueCheck:
     """Compare the ratings of a bearing by its geometry with those of a catalogue.
 
@@ -76,7 +77,7 @@ def check(
     >>> print(check(bearing, capacity=14e3))
     C of the catalogue: -0.11 % from that of ISO 281 for this geometry
     """
-    check_bearing(bearing)
+    bearing = checked_bearing(bearing)
     if capacity is None and static_capacity is None:
         raise ValueError("capacity or static_capacity must be given, got neither")
     return CatalogueCheck(

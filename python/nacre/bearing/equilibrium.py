@@ -11,14 +11,18 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
 from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, slices_of
-from nacre.bearing.geometry import RINGS, Bearing, laminae_of
+from nacre.bearing.geometry import RINGS, laminae_of
+
+if TYPE_CHECKING:
+    from nacre.bearing.balls import _Balls
+    from nacre.bearing.rollers import SphericalRoller, _Rollers
 
 Array = npt.NDArray[np.float64]
 
@@ -68,7 +72,7 @@ class Elements(ABC):
     """Length that makes moments forces [m]."""
     size: float
     """Pitch diameter [m]."""
-    outward: tuple[Any, Any]
+    outward: tuple[Array | tuple[float, float], Array | float]
     """Parts of the centrifugal force on the elements' coordinates, and on the ring along z."""
 
     def ring_motion(self, ring: Array) -> Array:
@@ -99,7 +103,7 @@ class Rollers(Elements):
     They are approaches and slopes of both contacts together, and of the outer one.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: _Rollers, angles: Array) -> None:
         """Take the motion of the inner ring at each roller."""
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
@@ -160,7 +164,7 @@ class Balls(Elements):
     Both are (radial, axial), and z counts from the centre of the outer groove.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: _Balls, angles: Array) -> None:
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
         groove = [(f - 0.5) * bearing.diameter for f in bearing.osculation]
@@ -234,7 +238,7 @@ class Barrels(Balls):
     circle is a sphere. Ribs hold the barrels along their axes at speed.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: SphericalRoller, angles: Array) -> None:
         """Take the centres of both circles, and on which side of the middle a row is."""
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
@@ -283,10 +287,12 @@ class Shaft(Elements):
         own = self._stacked([part.outward[0] for part in parts], 2)
         self.outward = own, self._stacked(along, 1)
 
-    def _stacked(self, numbers: Sequence[Any], width: int) -> Array:
+    def _stacked(self, numbers: Sequence[Array | float | tuple[float, ...]], width: int) -> Array:
         """Return numbers of all parts for each element ``(Z, width)``."""
         rows = [np.zeros((len(one.motion), width)) for one in self.parts]
-        return np.concatenate([row + number for row, number in zip(rows, numbers, strict=True)])
+        return np.concatenate(
+            [row + np.asarray(number) for row, number in zip(rows, numbers, strict=True)]
+        )
 
     def ring_motion(self, ring: Array) -> Array:
         """Return ``t`` of all elements ``(Z, 2)`` at displacements of the shaft."""
@@ -320,12 +326,6 @@ class Shaft(Elements):
         parts = zip(self.parts, self.slices, strict=True)
         angles = [part.angles(ring_motion[rows], own[rows]) for part, rows in parts]
         return np.concatenate(angles)
-
-
-def kinematics_of(bearing: Bearing, angles: Array) -> Elements:
-    """Return the motion of the elements of a bearing at their angles."""
-    kind = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
-    return kind(bearing, angles)
 
 
 @dataclass

@@ -23,8 +23,8 @@ from nacre._tools.typing import among
 from nacre._tools.units import printable, rounded
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
-from nacre.bearing.contact_laws import Law, Reaction, Several, law
-from nacre.bearing.equilibrium import Problem, Shaft, State, kinematics_of
+from nacre.bearing.contact_laws import Law, Reaction, Several
+from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
@@ -50,7 +50,6 @@ from nacre.bearing.solving import (
     find_equilibrium,
     issue,
     largest_of,
-    pressed_by,
     read_conditions,
     solution_of,
     solve_bearing,
@@ -350,11 +349,11 @@ def _equilibrium(
     """Return the equilibrium of the shaft with rings that are set so far along their axes."""
     loads, moved, free = _read(pair, conditions)
     bearings = pair.bearings
-    parts = [kinematics_of(one, element_angles(one, operation.rotation)) for one in bearings]
+    parts = [one.motion(element_angles(one, operation.rotation)) for one in bearings]
     shaft, counts = Shaft(parts, _ways(pair), settings), [one.elements for one in bearings]
-    laws = [law(one, options.model) for one in bearings]
+    laws = [one.law(options.model) for one in bearings]
     forces = [centrifugal_force(one, operation) for one in bearings]
-    pressed = [pressed_by(one, force) for one, force in zip(laws, forces, strict=True)]
+    pressed = [one.approach(force) for one, force in zip(laws, forces, strict=True)]
     problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
     check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
 

@@ -13,9 +13,10 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import printable, rounded, symbol
-from nacre.bearing.contact_laws import LAMINAE, bodies_of
+from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
+from nacre.bearing.kinds import RollerBearing
 from nacre.bearing.modified import Lubrication
 from nacre.bearing.rating_life import BearingLife, Duty, life_of
 from nacre.bearing.static import StaticLoad, static_load_of
@@ -325,7 +326,7 @@ class BearingSolution(Tabular):
             return None
         key = element, number
         if key not in self._contacts:
-            body, counterbody = bodies_of(self.bearing, ring)
+            body, counterbody = self.bearing.bodies(ring)
             size = tuple(self.grid_sizes[key].tolist())
             plan = Contact(body, core.Grid(self.cells, size), counterbody)
             self._contacts[key] = plan.solve(
@@ -369,6 +370,7 @@ class BearingSolution(Tabular):
                 'edge must be "standard" or None for contacts of the standard, whose '
                 'pressure is not known, got "pressure"'
             )
+        assert isinstance(self.bearing, RollerBearing)
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
     def life(
