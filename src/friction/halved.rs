@@ -163,7 +163,7 @@ fn over(part: f64, whole: f64) -> f64 {
 /// Errors of sliding and of rolling steadily, from the solution on cells of twice the length.
 ///
 /// ```text
-/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔD|/μW v, |Δv|/v )      c = √(ab)
+/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔD|/max(μW v, D), |Δv|/v )      c = √(ab)
 /// ```
 ///
 /// with the half-widths a and b of the contact, what is dissipated D, and the motion v: in rolling |creepage| + |spin| c; in
@@ -210,7 +210,7 @@ pub(super) fn discretisation(
     let changes = [
         over(apart(fine.force, coarse.force), capacity),
         over((fine.torque - coarse.torque).abs(), capacity * c),
-        over(dissipated, capacity * motion),
+        over(dissipated, (capacity * motion).max(fine.dissipated.abs())),
         over(apart(fine.motion, coarse.motion) + (fine.twist - coarse.twist).abs() * c, motion),
     ];
     let pressure = solution.normal.report.discretisation.map_or(0.0, |of| {
