@@ -12,7 +12,8 @@ import pytest
 
 from nacre.results.values import decode
 
-STATES = json.loads((Path(__file__).parents[2] / "data" / "states_0_1_0.json").read_text())
+DATA = Path(__file__).parents[2] / "data" / "states_0_1_0.json"
+STATES = json.loads(DATA.read_text(encoding="utf-8"))["states"]
 
 NUMBERS: dict[str, tuple[Callable[[Any], object], object]] = {
     "creep_coefficients": (lambda one: one.c11, STATES["creep_coefficients"]["c11"]),
