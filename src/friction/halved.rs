@@ -163,15 +163,17 @@ fn over(part: f64, whole: f64) -> f64 {
 /// Errors of sliding and of rolling steadily, from the solution on cells of twice the length.
 ///
 /// ```text
-/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔP|/P, |Δ creepage|/(|creepage| + |spin| c) )      rolling
-/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔD|/μW u, (|Δ shift| + |Δ twist| c)/u )            sliding
+/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔD|/max(μW v, D), |Δv|/v )      c = √(ab)
 /// ```
 ///
-/// with c = √(ab), the half-widths a and b of the contact, and the largest displacement u. One number may have the same value
-/// on two grids by chance, so that the largest change counts for all. Where the pressure has a larger relative error, that
-/// counts. `freedoms` say which motions and forces are given; what is kept has the error that it had in the solution `before`.
-/// Where that is a copy, which knows no cells of twice the length, its errors are added. The border of the stick zone is
-/// known to half a cell at best; by its square, over the width of the slip zone, the energy that sliding dissipates.
+/// with the half-widths a and b of the contact, what is dissipated D, and the motion v: in rolling |creepage| + |spin| c; in
+/// sliding the change of |shift| + |twist| c, over the largest displacement. One number may have the same value on two
+/// grids by chance, so that the largest change counts for all. Where the pressure has a larger relative error, that counts.
+/// D, quadratic in tractions, has twice the relative error, or its own change. The border of the stick zone is known to half
+/// a cell at best; the square of that, over the width of the slip zone, is an error of D.
+///
+/// `freedoms` say which motions and forces are given; what is kept has the error that it had in the solution `before`.
+/// Where that is a copy, which knows no cells of twice the length, its errors are added.
 ///
 /// # Errors
 /// Why there is no estimate.
@@ -196,22 +198,19 @@ pub(super) fn discretisation(
     let c = 0.5 * ((x1 - x0) * (y1 - y0)).sqrt();
     let capacity = solution.bound().sum() * solution.grid().cell_area();
     let dissipated = (fine.dissipated - coarse.dissipated).abs();
-    // The sizes of motions, and of energies.
-    let (motion, energy) = match solution.motion {
+    let motion = match solution.motion {
         TangentialMotion::Roll { spin, .. } => {
-            let creep = fine.motion[0].hypot(fine.motion[1]) + spin.abs() * c;
-            (creep, fine.dissipated.abs())
+            fine.motion[0].hypot(fine.motion[1]) + spin.abs() * c
         }
         TangentialMotion::Slide { .. } => {
             let [x, y] = &solution.displacement;
-            let largest = x.iter().zip(y).fold(0.0_f64, |most, (x, y)| most.max(x.hypot(*y)));
-            (largest, capacity * largest)
+            x.iter().zip(y).fold(0.0_f64, |most, (x, y)| most.max(x.hypot(*y)))
         }
     };
     let changes = [
         over(apart(fine.force, coarse.force), capacity),
         over((fine.torque - coarse.torque).abs(), capacity * c),
-        over(dissipated, energy),
+        over(dissipated, (capacity * motion).max(fine.dissipated.abs())),
         over(apart(fine.motion, coarse.motion) + (fine.twist - coarse.twist).abs() * c, motion),
     ];
     let pressure = solution.normal.report.discretisation.map_or(0.0, |of| {
@@ -221,19 +220,34 @@ pub(super) fn discretisation(
     let relative = changes.into_iter().fold(pressure, |most, change| most.max(BEYOND * change));
     let border = border(solution);
     let stick_share = (BEYOND * (fine.stick_share - coarse.stick_share).abs()).max(border);
+    let slips = over(border, 1.0 - fine.stick_share).powi(2).min(1.0);
+    let dissipated = (BEYOND * dissipated).max((2.0 * relative).max(slips) * fine.dissipated.abs());
+    let slides = matches!(solution.motion, TangentialMotion::Slide { .. });
     let is = |freedoms: &[Freedom], kind: fn(&Freedom) -> bool| freedoms.iter().any(kind);
     let loaded = |freedom: &Freedom| matches!(freedom, Freedom::Loaded(_));
     let free = |freedom: &Freedom| !matches!(freedom, Freedom::Loaded(_));
     let (in_plane, about) = freedoms.split_at(2);
     let unless = |given: bool, error: f64| if given { 0.0 } else { error };
-    let force = unless(!is(in_plane, free), relative * capacity);
+    // What one given component leaves to the other may vanish by symmetry.
+    let rest = match [loaded(&freedoms[0]), loaded(&freedoms[1])] {
+        [true, false] if slides => Some(1),
+        [false, true] if slides => Some(0),
+        _ => None,
+    };
+    let force = match rest {
+        Some(axis) => {
+            let [own, other] = [fine.force[axis], coarse.force[axis]];
+            (BEYOND * (own - other).abs()).max(relative * own.abs())
+        }
+        None => unless(!is(in_plane, free), relative * capacity),
+    };
     let torque = unless(is_line || !is(about, free), relative * capacity * c);
     let motion_error = unless(!is(in_plane, loaded), relative * motion);
-    if let TangentialMotion::Roll { .. } = solution.motion {
+    if !slides {
         return Ok(FrictionDiscretisation {
             force,
             torque,
-            dissipated: relative * fine.dissipated.abs(),
+            dissipated,
             creepage: Some(motion_error),
             shift: None,
             twist: None,
@@ -256,12 +270,11 @@ pub(super) fn discretisation(
             false => added(error, earlier),
         }
     };
-    let slips = over(border, 1.0 - fine.stick_share).powi(2);
     let [turn, turned] = [over(relative * motion, c), (fine.twist - coarse.twist).abs()];
     Ok(FrictionDiscretisation {
         force: added(force, stated.force),
         torque: added(torque, stated.torque),
-        dissipated: (BEYOND * dissipated).max(relative.max(slips) * fine.dissipated),
+        dissipated,
         creepage: None,
         shift: Some(moved(in_plane, motion_error, apart(fine.motion, coarse.motion), stated.shift)),
         twist: Some(moved(about, unless(!is(about, loaded), turn), turned, stated.twist)),
@@ -269,7 +282,7 @@ pub(super) fn discretisation(
     })
 }
 
-/// Share of the contact in the halves of the sticking cells that lie beside slipping ones.
+/// Share of the contact in the halves of the sticking cells that lie beside slipping ones, or in half a cell.
 fn border(solution: &FrictionSolution) -> f64 {
     let (stick, pressure) = (solution.stick(), &solution.normal.pressure);
     let [rows, columns] = solution.grid().shape();
@@ -283,5 +296,5 @@ fn border(solution: &FrictionSolution) -> f64 {
     };
     let touching = pressure.iter().filter(|p| **p > 0.0).count().max(1);
     let border = stick.indexed_iter().filter(|(cell, stick)| **stick && beside(*cell)).count();
-    0.5 * border as f64 / touching as f64
+    0.5 * border.max(1) as f64 / touching as f64
 }

@@ -291,7 +291,9 @@ def slide(
 
     Notes
     -----
-    Coulomb's law holds in each cell. The bodies are half-spaces, and all is quasi-static. Once a
+    Coulomb's law holds in each cell. The bodies are half-spaces, and all is quasi-static. The
+    history is also found on cells of twice the length: `FrictionReport.discretisation` follows from
+    it, and a first step starts there. Once a
     history has begun, every exception that ends it, `KeyboardInterrupt` included, carries the
     finished steps as `solutions`. With the last of them as `initial`, the history goes on to the
     bit.

@@ -780,7 +780,8 @@ def _dissipated(solution: FrictionSolution) -> str:
 def _part(solution: FrictionSolution, name: Literal["force", "shift"], part: float) -> str:
     """Return a component of a force or a shift, with the error of the vector."""
     unit = "m" if name == "shift" else ("N/m" if solution.grid.is_line else "N")
-    return _with_error(solution, name, written(part, unit), abs(part), unit)
+    text = written(part, unit)
+    return _with_error(solution, name, text, abs(part), unit) if part else text
 
 
 TEXTS: dict[str, Callable[[FrictionSolution], str | None]] = {

@@ -304,3 +304,36 @@ impl Tangent {
         columns.map(|a| columns.map(|b| form(a, b)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::contact::{Contact, Motion, Options, Setup, Solution};
+    use crate::error::Result;
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
+    use crate::model::surface::Paraboloid;
+
+    use super::Tangent;
+
+    /// The tangent has the coefficients and the threads of the plan that solved the contact. A solution from a file is planned
+    /// anew; of a bare body, whose coefficients do not depend on the grid, its stiffness is the same to the bit.
+    #[test]
+    fn the_tangent_has_the_plan_of_the_solution() -> Result<()> {
+        let grid = Grid::new([32, 24], [4.0, 3.0])?;
+        let setup = Setup { threads: Some(1), ..Setup::default() };
+        let contact = Contact::plan(Elastic::new(1.0, 0.3)?, grid, setup)?;
+        let shape = Paraboloid::new(1e3, 1e3)?;
+        let solution = contact.solve(&shape, &Motion::load(1e-3), &Options::default())?;
+        let window = solution.cells_in_contact().expect("a contact");
+        let tangent = Tangent::plan(&solution, window)?;
+        assert_eq!(tangent.convolution.threads(), 1);
+        assert!(Arc::ptr_eq(&tangent.planned, &contact.operator));
+        let fields = [solution.pressure.clone(), solution.gap(), solution.displacement.clone()];
+        let (approach, tilt) = (solution.approach, solution.tilt);
+        let copy = Solution::from_fields(fields, approach, tilt, solution.report.clone())?;
+        assert_eq!(copy.stiffness(None)?, solution.stiffness(None)?);
+        Ok(())
+    }
+}

@@ -81,7 +81,7 @@ pub enum Warning {
         /// Largest creepage in the contact, or twist \[rad\].
         size: f64,
     },
-    /// Rolling has no estimate of its discretisation error.
+    /// Sliding or rolling has no estimate of its discretisation error.
     Unestimated {
         /// Why.
         reason: Unestimated,
