@@ -178,7 +178,7 @@ class Handler(BaseHTTPRequestHandler):
         reply = self.server.reply(self._question(), stages)
         return "application/json", json.dumps(reply, allow_nan=False).encode()
 
-    def _question(self) -> dict[str, Any]:
+    def _question(self) -> dict[str, object]:
         """Return the question in the body of a request."""
         if self.headers.get_content_type() != "application/json":
             raise Refused(400, "Content-Type must be application/json")

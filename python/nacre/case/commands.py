@@ -211,7 +211,7 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
     return record
 
 
-def _verdicts(results: Mapping[str, Any]) -> dict[str, Any]:
+def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     """Return the verdicts on results, by the names of these; some have none."""
     judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
     verdicts = {name: one._state() for name, one in judged.items()}
@@ -219,7 +219,7 @@ def _verdicts(results: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _solve(
-    case: Path, case_file: Case, arguments: dict[str, Any], save: list[Path], as_json: bool
+    case: Path, case_file: Case, arguments: dict[str, object], save: list[Path], as_json: bool
 ) -> None:
     """Solve, save and print in the units that are set."""
     with warnings.catch_warnings(), alive():

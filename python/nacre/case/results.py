@@ -92,7 +92,7 @@ SOLVERS: dict[str, Callable[[Case, Options, Options], Results]] = {
 """Functions of the kinds of cases."""
 
 
-def last_of(outcome: Any) -> Any:
+def last_of(outcome: object) -> Any:
     """Return a solution, the last one of a history."""
     return outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
 

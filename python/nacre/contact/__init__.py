@@ -188,7 +188,7 @@ def slide(
     body: Layers,
     counterbody: Layers | None = None,
     *,
-    steps: Iterable[Mapping[str, Any]],
+    steps: Iterable[Mapping[str, object]],
     **keywords: Unpack[PlannedSlideKeywords],
 ) -> History: ...
 
@@ -201,7 +201,7 @@ def slide(
     grid: core.Grid | None = None,
     max_cells: int | None = None,
     threads: int | None = None,
-    steps: Iterable[Mapping[str, Any]] | None = None,
+    steps: Iterable[Mapping[str, object]] | None = None,
     load: float | None = None,
     approach: float | None = None,
     eccentricity: Along | None = None,
@@ -685,14 +685,14 @@ class Contact:
     def slide(
         self,
         shape: core.Shape,
-        steps: Iterable[Mapping[str, Any]],
+        steps: Iterable[Mapping[str, object]],
         **keywords: Unpack[SlideKeywords],
     ) -> History: ...
 
     def slide(
         self,
         shape: core.Shape,
-        steps: Iterable[Mapping[str, Any]] | None = None,
+        steps: Iterable[Mapping[str, object]] | None = None,
         *,
         load: float | None = None,
         approach: float | None = None,
@@ -841,7 +841,7 @@ class Contact:
             f"coefficients={coefficients!r}, threads={self._plan.asked_threads()!r})"
         )
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         keywords = {"coefficients": self.coefficients, "threads": self._plan.asked_threads()}
         call = (type(self), (self.body, self.grid, self.counterbody), keywords)
@@ -917,7 +917,7 @@ def _mappings(
     return [dict(item) for item in mappings]
 
 
-def _history_steps(steps: Iterable[Mapping[str, Any]] | None) -> list[FrictionStep] | None:
+def _history_steps(steps: Iterable[Mapping[str, object]] | None) -> list[FrictionStep] | None:
     """Return the steps of a history, where there is one."""
     if steps is None:
         return None

@@ -206,7 +206,7 @@ class IndentSolution(Tabular, Warned):
     @cached_property
     def _states(self) -> core.IndentStates:
         """Contacts of the compiled module, solved again."""
-        arguments: dict[str, Any] = {self.given: getattr(self, self.given)}
+        arguments: dict[str, object] = {self.given: getattr(self, self.given)}
         return self.indentation._planned.at(self.branch, **arguments)
 
     @property
@@ -608,7 +608,7 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        arguments: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+        arguments: dict[object, object] = {"load": load, "approach": approach, "radius": radius}
         return self._at(arguments, branch, "load")
 
     def _at(self, arguments: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
