@@ -9,7 +9,7 @@ from typing import Any
 
 sys.path.insert(
     0, str(Path(__file__).parent / "extensions")
-)  # claims, drawings, names
+)  # claims, drawings, names, provenance
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
@@ -26,6 +26,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "claims",
     "names",
+    "provenance",
 ]
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
