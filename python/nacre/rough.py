@@ -299,7 +299,7 @@ def markup(surface: core.HeightMap) -> str:
     repeats = [name for name, is_so in zip("xy", surface.periodic, strict=True) if is_so]
     rows = [("points", points), ("size", size), ("periodic", " and ".join(repeats) or "no")]
     table = [*rows, *roughness(surface)._rows()]
-    return display.markup(table, picture=display.drawn(draw), widest=display.WIDE)
+    return display.markup(table, picture=display.drawn(draw))
 
 
 def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:

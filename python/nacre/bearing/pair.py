@@ -58,7 +58,7 @@ from nacre.bearing.solving import (
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
-from nacre.results.report import Sections, input_rows, table, writer
+from nacre.results.report import Sections, input_rows, notebook_picture, table, writer
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
@@ -792,7 +792,9 @@ class PairSolution(Tabular):
 
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences
-        return display.markup(self._rows(), self.report.warnings, verdict=verdict)
+        heavier = max(self.bearings, key=lambda one: one.largest_load)
+        picture = notebook_picture(heavier._pictures()[:1])
+        return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""

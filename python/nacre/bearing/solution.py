@@ -32,6 +32,7 @@ from nacre.results.report import (
     Sections,
     contact_pictures,
     input_rows,
+    notebook_picture,
     table,
     writer,
 )
@@ -730,7 +731,8 @@ class BearingSolution(Tabular):
 
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences
-        return display.markup(self._rows(), self.report.warnings, verdict=verdict)
+        picture = notebook_picture(self._pictures()[:1])
+        return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""

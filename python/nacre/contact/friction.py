@@ -25,6 +25,8 @@ from nacre.results.report import (
     Sections,
     contact_pictures,
     input_rows,
+    map_picture,
+    notebook_picture,
     other_numbers,
     table,
     writer,
@@ -369,8 +371,19 @@ class FrictionSolution(Result, Stressed):
         return display.text(self._rows(), self._warnings)
 
     def _repr_html_(self) -> str:
-        picture = display.thumbnail(self.pressure)
+        picture = notebook_picture(self._pictures())
         return display.markup(self._rows(), self._warnings, picture)
+
+    def _pictures(self) -> list[Picture]:
+        """Return the pictures of a report: pressure, and where the contact sticks and slips."""
+        pictures = contact_pictures(self)
+        if self.grid.is_line or not pictures:
+            return pictures
+        bound = np.where(self.bound > 0, self.bound, np.inf)
+        share = np.hypot(*self.traction) / bound
+        caption = "Traction over friction times pressure: it slips where that is 1."
+        axis = Axis("traction over its bound", "", (0.0, 1.0))
+        return [*pictures, map_picture(self, share, axis, caption)]
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return the numbers of the normal contact, and those of friction."""
@@ -381,7 +394,7 @@ class FrictionSolution(Result, Stressed):
         """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
         normal = self.normal._sections()
         friction = {"friction": self.friction, "direction": self.direction}
-        pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
+        pictures = [*self._pictures(), *depth_pictures(self, **stress)]
         model = [
             *(row for row in normal.model if row[0] != "not counted"),
             ("friction", LAW),
@@ -698,7 +711,7 @@ class History(list[FrictionSolution], Warned):
             return display.markup([["a history of 0 steps"]])
         head, *rows = _step_rows(self)
         picture = display.drawn(self.plot)
-        return display.markup(rows, picture=picture, head=head, widest=display.WIDE)
+        return display.markup(rows, picture=picture, head=head)
 
 
 values.RESULTS["History"] = History

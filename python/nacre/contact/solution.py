@@ -35,6 +35,7 @@ from nacre.results.report import (
     Sections,
     contact_pictures,
     input_rows,
+    notebook_picture,
     other_numbers,
     writer,
 )
@@ -863,7 +864,7 @@ class Solution(Result, Stressed):
         return display.text(self._rows(), self._warnings)
 
     def _repr_html_(self) -> str:
-        picture = display.thumbnail(self.pressure)
+        picture = notebook_picture(contact_pictures(self))
         return display.markup(self._rows(), self._warnings, picture)
 
     def _rows(self) -> list[tuple[str, str]]:

@@ -98,7 +98,7 @@ class Optimum(Fields):
     def _repr_html_(self) -> str:
         (head, *rows), lines = self._table()
         picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, lines, widest=display.WIDE)
+        return display.markup(rows, (), picture, head, lines)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a file, whole or not at all.

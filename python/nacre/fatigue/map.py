@@ -210,7 +210,7 @@ class ShakedownMap(Tabular, Warned):
     def _repr_html_(self) -> str:
         (head, *rows), notes = self._printed()
         picture = display.drawn(self.plot)
-        return display.markup(rows, self.warnings, picture, head, notes, widest=display.WIDE)
+        return display.markup(rows, self.warnings, picture, head, notes)
 
     def __repr__(self) -> str:
         """Return how much the map holds."""

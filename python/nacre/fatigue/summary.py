@@ -421,7 +421,6 @@ class FatigueSummary(Tabular, Warned):
         picture = display.drawn(self.plot)
         return display.markup(
             *(rows, self.warnings, picture, head, notes),
-            widest=display.WIDE,
             verdict=self.verdict.sentences,
         )
 

@@ -225,9 +225,7 @@ class Fit(Tabular):
         head, rows, notes = self._table()
         picture = display.drawn(self.plot)
         sentences = self.verdict.sentences
-        return display.markup(
-            rows, (), picture, head, notes, widest=display.WIDE, verdict=sentences
-        )
+        return display.markup(rows, (), picture, head, notes, verdict=sentences)
 
     def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
         rows = []

@@ -432,7 +432,7 @@ class IndentSolution(Tabular, Warned):
     def _repr_html_(self) -> str:
         head, rows, notes = self._table()
         picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, notes, widest=display.WIDE)
+        return display.markup(rows, (), picture, head, notes)
 
     def _range(self, name: str) -> str:
         values = np.ravel(getattr(self, name))

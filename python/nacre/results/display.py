@@ -37,9 +37,9 @@ P = ParamSpec("P")
 T = TypeVar("T")
 R = TypeVar("R")
 
-ALT = "the contact, x to the right"
-WIDEST, WIDE = 240, 480
-"""Pixels along the longer side of the small map, and of a drawn picture."""
+ALT = "picture of the result, x to the right"
+WIDE = 480
+"""Pixels along the longer side of a picture."""
 NOISE = 1e-9
 """Share of its largest possible value below which a position or a moment is printed as 0."""
 SLIGHT = 1e-8
@@ -251,7 +251,6 @@ def markup(
     picture: bytes | None = None,
     head: Sequence[str] = (),
     notes: Sequence[str] = (),
-    widest: int = WIDEST,
     verdict: Sequence[str] = (),
 ) -> str:
     """Return what a notebook shows of any result: a table, a picture beside it, and notes below.
@@ -261,9 +260,10 @@ def markup(
     lines = [*notes, *(f"warning: {text}" for text in warnings)]
     cells = [*([_cells("th", head)] if head else []), *(_cells("td", row) for row in rows)]
     encoded = "" if picture is None else base64.b64encode(picture).decode()
+    kind = "svg+xml" if picture is not None and picture.startswith(b"<svg") else "png"
     image = picture and (
-        f"<img alt='{ALT}' style='border:1px solid #bbb; max-width:{widest}px' "
-        f"src='data:image/png;base64,{encoded}'>"
+        f"<img alt='{ALT}' style='border:1px solid #bbb; max-width:{WIDE}px' "
+        f"src='data:image/{kind};base64,{encoded}'>"
     )
     return (
         "".join(f"<p>{html.escape(sentence)}</p>" for sentence in verdict)
@@ -297,31 +297,6 @@ def loaded_parts(pressure: npt.NDArray[np.float64]) -> list[tuple[int, int]]:
         margin = 1 + (high - low) // 10
         parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
     return parts
-
-
-def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
-    """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches.
-
-    Without Matplotlib there is none.
-    """
-    try:
-        from matplotlib import colormaps
-        from matplotlib.image import imsave
-    except ImportError:
-        return None
-    parts = loaded_parts(pressure)
-    spans = [high - low + 1 for low, high in parts]
-    # A narrow contact stays legible: its map is at least a quarter as high as wide.
-    size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]
-    x, y = (
-        np.linspace(low, high, count).round().astype(int)
-        for (low, high), count in zip(parts, size, strict=True)
-    )
-    field = np.ma.masked_equal(pressure[np.ix_(x, y)].T, 0.0)
-    file = io.BytesIO()
-    white = colormaps["viridis"].with_extremes(bad="white")
-    imsave(file, field, vmin=0.0, cmap=white, format="png", origin="lower")
-    return file.getvalue()
 
 
 def figure_of(axes: Axes) -> Figure:

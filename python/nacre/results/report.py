@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import rounded, symbol
@@ -313,19 +314,29 @@ def contact_pictures(result: Any) -> list[Picture]:
         drawing = svg.lines([curve], (svg.Axis("xy"[axis], "m"), y_axis))
         pictures.append(Picture(f"Pressure along {'xy'[axis]}, through the largest.", drawing))
     if not grid.is_line:
-        ends = [
-            (float(side[part][0] - step / 2), float(side[part][-1] + step / 2))
-            for side, part, step in zip(places, cells, grid.spacing, strict=True)
-        ]
-        sides = [svg.Axis(name, "m", end) for name, end in zip("xy", ends, strict=True)]
-        loaded = np.where(pressure > 0, pressure, np.nan)[cells[0], cells[1]]
-        drawing = svg.image(loaded, (sides[0], sides[1], y_axis))
-        pictures.append(
-            Picture(
-                "Pressure over the contact, x and y each to its scale; white: no contact.", drawing
-            )
-        )
+        caption = "Pressure over the contact, x and y each to its scale; white: no contact."
+        pictures.append(map_picture(result, pressure, y_axis, caption))
     return pictures
+
+
+def map_picture(
+    result: Any, values: npt.NDArray[np.float64], axis: svg.Axis, caption: str
+) -> Picture:
+    """Return the picture of values ``(nx, ny)`` in the contact, white where nothing touches."""
+    pressure, places = result.pressure, (result.x, result.y)
+    cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
+    ends = [
+        (float(side[part][0] - step / 2), float(side[part][-1] + step / 2))
+        for side, part, step in zip(places, cells, result.grid.spacing, strict=True)
+    ]
+    x, y = (svg.Axis(name, "m", end) for name, end in zip("xy", ends, strict=True))
+    loaded = np.where(pressure > 0, values, np.nan)[cells[0], cells[1]]
+    return Picture(caption, svg.image(loaded, (x, y, axis)))
+
+
+def notebook_picture(pictures: Sequence[Picture]) -> bytes | None:
+    """Return the last picture, if there is one, as a file for a notebook."""
+    return svg.alone(pictures[-1].drawing) if pictures else None
 
 
 def _pairs(rows: Rows) -> str:

@@ -298,5 +298,11 @@ def _text(words: str, x: float, y: float, side: str = "start") -> str:
     return f"<text class='{side}' x='{x:.1f}' y='{y:.1f}'>{html.escape(words)}</text>"
 
 
+def alone(drawing: str) -> bytes:
+    """Return a picture as a file of its own, with its style sheet."""
+    head = f"<svg xmlns='http://www.w3.org/2000/svg' width='{WIDTH}'"
+    return drawing.replace("<svg", head, 1).replace(">", f"><style>{STYLE}</style>", 1).encode()
+
+
 def _picture(parts: Sequence[str], size: tuple[float, float]) -> str:
     return f"<svg viewBox='0 0 {size[0]:.0f} {size[1]:.0f}'>{''.join(parts)}</svg>"

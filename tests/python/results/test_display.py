@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import re
-import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from matplotlib.image import imread
 import nacre
 from nacre import design
 from nacre._tools.units import Scale, rounded, size_of, written
+from nacre.bearing import DeepGrooveBall
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.2)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-6)])
@@ -70,19 +70,22 @@ def test_free_ends_are_a_row() -> None:
     assert "ends=(-0.001, 0.002)" in repr(solution)
 
 
-def pixels(png: bytes) -> Any:
-    """Return the red, green and blue of each pixel, from 0 to 255."""
-    return (imread(io.BytesIO(png))[..., :3] * 255).round().astype(int)
-
-
-def map_of(solution: nacre.Solution) -> Any:
-    """Return the pixels of the map that a notebook shows."""
-    encoded = re.search(r"base64,([^']+)'", solution._repr_html_())
+def picture_of(result: Any) -> str:
+    """Return the picture that a notebook shows, as SVG."""
+    encoded = re.search(r"image/svg\+xml;base64,([^']+)'", result._repr_html_())
     assert encoded
-    return pixels(base64.b64decode(encoded[1]))
+    return base64.b64decode(encoded[1]).decode()
 
 
-def test_the_small_map_has_x_to_the_right_and_y_upwards() -> None:
+def map_of(result: Any) -> Any:
+    """Return the red, green and blue of each pixel of its map, from 0 to 255."""
+    encoded = re.search(r"image/png;base64,([^']+)'", picture_of(result))
+    assert encoded
+    image = imread(io.BytesIO(base64.b64decode(encoded[1])))
+    return (image[..., :3] * 255).round().astype(int)
+
+
+def test_the_map_has_x_to_the_right_and_y_upwards() -> None:
     grid = nacre.Grid((40, 20), (4e-4, 2e-4))
     pressure = np.zeros((40, 20))
     pressure[5:36, 4:17] = 1.0
@@ -90,26 +93,35 @@ def test_the_small_map_has_x_to_the_right_and_y_upwards() -> None:
     state = nacre.solve(nacre.Sphere(5e-3), STEEL, grid=grid, load=10.0).to_dict()
     image = map_of(nacre.Solution.from_dict(state | {"pressure": pressure}))
     height, width, _ = image.shape
-    rows, columns = np.nonzero((image == (253, 231, 36)).all(axis=-1))  # the top of viridis
+    rows, columns = np.nonzero((image == (253, 231, 37)).all(axis=-1))  # the top of viridis
     assert columns.min() > 0.6 * width
     assert rows.max() < 0.5 * height
     assert (image[0] == 255).all()  # white where nothing touches
 
 
-def test_a_notebook_shows_table_and_map() -> None:
+def test_a_notebook_shows_a_table_and_a_map_with_axes_and_scale() -> None:
     solution = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0)
     html = solution._repr_html_()
     assert "<td" in html
     assert "E 420 GPa" in html
-    assert max(map_of(solution).shape) <= 240
-    assert len(html) < 40_000
+    drawing = picture_of(solution)
+    for label in ("x [µm]", "y [µm]", "pressure [GPa]"):
+        assert f">{label}</text>" in drawing
+    assert len(html) < 60_000
 
 
-def test_without_matplotlib_a_notebook_shows_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    html = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0)._repr_html_()
-    assert "E 420 GPa" in html
-    assert "<img" not in html
+def test_a_notebook_shows_stick_and_slip_and_the_loads_of_bearings() -> None:
+    grid = nacre.Grid((48, 48), (2.4e-4, 2.4e-4))
+    creep: dict[str, Any] = {"friction": 0.2, "creepage": (1e-4, 0.0), "direction": "+x"}
+    rolled = nacre.roll(nacre.Sphere(5e-3), STEEL, grid=grid, load=20.0, **creep)
+    drawing = picture_of(rolled)
+    assert ">traction over its bound</text>" in drawing
+    top = (map_of(rolled) == (253, 231, 37)).all(axis=-1).sum()
+    slipping = (rolled.pressure > 0).sum() - rolled.stick.sum()
+    assert top == pytest.approx(slipping, abs=0.03 * rolled.pressure.size)
+    bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+    solution = bearing.solve(force=(1000.0, 0.0, None), model="iso16281")
+    assert ">load of each element [N]</text>" in picture_of(solution)
 
 
 def test_warnings_are_part_of_what_is_printed() -> None:
