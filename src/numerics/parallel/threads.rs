@@ -332,7 +332,8 @@ mod tests {
     use std::time::Duration;
 
     use super::{
-        DIVIDED_CELLS, LEAF, Threads, default_count, each_chunk, each_row, join, number, stay_here,
+        DIVIDED_CELLS, LEAF, THREAD_LIMIT, Threads, default_count, each_chunk, each_row, join,
+        number, startable, stay_here,
     };
     use crate::error::Result;
 
