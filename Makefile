@@ -60,6 +60,10 @@ check-rust: $(BUILD)
 		else echo "$$target is not installed: not checked"; fi; \
 	done
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+	@if [ -d "$$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-emscripten/lib" ]; \
+	then set -x; cargo check --target wasm32-unknown-emscripten --features serde; \
+	PYO3_CROSS_PYTHON_VERSION=3.14 PYO3_NO_PYTHON=1 cargo check --target wasm32-unknown-emscripten --features python,serde; \
+	else echo "wasm32-unknown-emscripten is not checked: rustup target add wasm32-unknown-emscripten"; fi
 
 check-python: $(WHEEL) $(DEV)
 	$(BIN)/ruff format --check

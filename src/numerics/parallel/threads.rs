@@ -38,6 +38,9 @@ pub(crate) fn worth_dividing(cells: usize) -> bool {
     }
 }
 
+/// Whether the system can start threads: not in a browser.
+const CAN_START_THREADS: bool = !cfg!(target_arch = "wasm32");
+
 /// Environment variable that limits the number of threads of plans.
 const OWN_VARIABLE: &str = "NACRE_NUM_THREADS";
 
@@ -46,13 +49,19 @@ const OWN_VARIABLE: &str = "NACRE_NUM_THREADS";
 /// ignored, since they are meant for others.
 const SHARED_VARIABLES: [&str; 2] = ["RAYON_NUM_THREADS", "OMP_NUM_THREADS"];
 
+/// Number of threads that can be had of those that are wanted: one where none can be started.
+fn startable(wanted: usize, can_start: bool) -> usize {
+    if can_start { wanted.min(THREAD_LIMIT) } else { 1 }
+}
+
 /// Number of threads where none is given: as many as the machine offers this process, and not more than the
 /// first of the environment variables says. `variable` returns the value of one.
 ///
 /// # Errors
 /// Where the value of [`OWN_VARIABLE`] is no number of threads.
 fn default_count(variable: impl Fn(&str) -> Option<String>) -> Result<usize> {
-    let offered = thread::available_parallelism().map_or(1, usize::from).min(THREAD_LIMIT);
+    let offered =
+        startable(thread::available_parallelism().map_or(1, usize::from), CAN_START_THREADS);
     let set = |name: &str| variable(name).filter(|value| !value.trim().is_empty());
     let number = |value: &str| value.trim().parse().ok().filter(|&count: &usize| count > 0);
     if let Some(value) = set(OWN_VARIABLE) {
@@ -104,7 +113,9 @@ impl Threads {
                 requirement: "at most 256",
                 value: count as f64,
             }),
-            count => Ok(Self { count, pool: Mutex::new(None) }),
+            count => {
+                Ok(Self { count: startable(count, CAN_START_THREADS), pool: Mutex::new(None) })
+            }
         }
     }
 
@@ -322,12 +333,27 @@ mod tests {
     use std::time::Duration;
 
     use super::{
-        DIVIDED_CELLS, LEAF, Threads, default_count, each_chunk, each_row, join, number, stay_here,
+        DIVIDED_CELLS, LEAF, THREAD_LIMIT, Threads, default_count, each_chunk, each_row, join,
+        number, startable, stay_here,
     };
     use crate::error::Result;
 
     /// Time after which a call counts as hanging, on a busy machine too.
     const HANG: Duration = Duration::from_secs(600);
+
+    #[test]
+    fn one_thread_does_all_where_none_can_be_started() -> Result<()> {
+        for wanted in [1, 2, 8, THREAD_LIMIT, 4000] {
+            assert_eq!(startable(wanted, false), 1);
+            assert_eq!(startable(wanted, true), wanted.min(THREAD_LIMIT));
+        }
+        // As in a browser, where no pool can be had: the caller does all, nothing is divided.
+        let alone = Threads::new(Some(startable(8, false)))?;
+        assert_eq!(alone.count(), 1);
+        assert!(!alone.divide(DIVIDED_CELLS));
+        assert_eq!(alone.run(rayon::current_num_threads), 1);
+        Ok(())
+    }
 
     /// Whether the caller is a thread of a pool.
     fn in_pool() -> bool {
