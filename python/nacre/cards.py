@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import html
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -119,6 +120,14 @@ class Card:
         width = max(len(WORDS[name]) for name in self.numbers)
         rows = (f"{WORDS[name]:<{width}}  {number}" for name, number in self.numbers.items())
         return printable("\n".join([f"{self.name}: {self.title}", *rows]))
+
+    def _repr_html_(self) -> str:
+        cells = (
+            f"<tr><td>{html.escape(WORDS[name])}</td><td>{html.escape(str(number))}</td></tr>"
+            for name, number in self.numbers.items()
+        )
+        title = html.escape(f"{self.name}: {self.title}")
+        return f"<p>{title}</p><table>{''.join(cells)}</table>"
 
 
 def _card(name: str, entry: Mapping[str, Any]) -> Card:

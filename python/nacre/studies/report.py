@@ -128,7 +128,11 @@ class Study:
             one = flat.isel(others=k)
             places = ", ".join(f"{dim} {self._number(str(dim), one[dim].item())}" for dim in rest)
             curves.append(svg.Curve(output[x].values, one.values, places))
-        axes = (self._axis(x), self._axis(name))
+        low, high = float(output.min()), float(output.max())
+        margin = (high - low) / 10
+        # Of values that hardly change, 0 is not shown.
+        ends = (low - margin, high + margin) if 0 < margin < low / 20 else None
+        axes = (self._axis(x), self._axis(name)._replace(ends=ends))
         return [Picture(f"{name} over {x}.".replace("_", " "), svg.lines(curves, axes))]
 
     def _axis(self, name: str) -> svg.Axis:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import html
 import pickle
 import re
 import tomllib
@@ -274,3 +275,10 @@ def test_an_unknown_card_in_a_case_is_named(
 ) -> None:
     with pytest.raises(ValueError, match=re.escape(message)):
         body_of(case(tmp_path, **changes))
+
+
+def test_a_notebook_shows_the_numbers_of_a_card() -> None:
+    card = nacre.materials["100Cr6"]
+    table = card._repr_html_()
+    for number in card.numbers.values():
+        assert html.escape(str(number)) in table
