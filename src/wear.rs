@@ -81,7 +81,7 @@ pub enum Slip {
     /// As in one cycle of friction, whose steps are made twice; the slips of the second time count. The distance is in cycles.
     Cycle(Vec<Step>, FrictionOptions),
     /// As in a pass of steady rolling, which takes κ ∫ p |slip| off a whole track. The distance is in passes, and steps are explicit.
-    Pass(Rolling, FrictionOptions),
+    Pass(Box<Rolling>, FrictionOptions),
 }
 
 /// The steps of a history.

@@ -46,7 +46,7 @@ impl PyWear<'_> {
                 let steps = steps.iter().map(PyFrictionStep::read).collect::<PyResult<_>>()?;
                 Slip::Cycle(steps, friction)
             }
-            (_, Some(rolling), _) => Slip::Pass(rolling.read(shape)?, friction),
+            (_, Some(rolling), _) => Slip::Pass(Box::new(rolling.read(shape)?), friction),
             (.., Some(slip)) => Slip::Cells(real_matrix("slip", slip)?),
             _ => Slip::Everywhere,
         };

@@ -414,11 +414,11 @@ impl<S: Surface> WearSession<S> {
     /// Largest part of what was left of the next layer that a step has taken off a cell; 1 where it is just through.
     fn part_of_layer(&self, last: &WearState, depth: &[Array2<f64>; 2]) -> f64 {
         let mut most = 0.0_f64;
-        for k in 0..2 {
+        for (k, depth) in depth.iter().enumerate() {
             let Some(bottom) = self.rates[k].bottoms.get(self.through[k]) else {
                 continue;
             };
-            Zip::from(&last.depth[k]).and(&depth[k]).for_each(|before, after| {
+            Zip::from(&last.depth[k]).and(depth).for_each(|before, after| {
                 most = most.max((after - before) / (bottom - before));
             });
         }
@@ -506,15 +506,13 @@ impl<S: Surface> WearSession<S> {
             let work = &per_pressure * &solution.pressure + &first;
             let mut changed = 0.0_f64;
             let mut next = rates.clone();
-            for k in 0..2 {
-                Zip::from(&mut next[k]).and(&last.depth[k]).and(&work).for_each(
-                    |rate, depth, work| {
-                        let mean = self.rates[k].mean(*depth, *work);
-                        changed = changed
-                            .max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
-                        *rate = mean;
-                    },
-                );
+            for (k, next) in next.iter_mut().enumerate() {
+                Zip::from(next).and(&last.depth[k]).and(&work).for_each(|rate, depth, work| {
+                    let mean = self.rates[k].mean(*depth, *work);
+                    changed =
+                        changed.max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
+                    *rate = mean;
+                });
             }
             if changed <= SETTLED || round == ROUNDS {
                 let depth = [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work));
@@ -542,7 +540,7 @@ impl<S: Surface> WearSession<S> {
             let half = 0.5 * grid.size()[k] * (1.0 + 1e-9);
             let goes_on = low < grid.center()[k] - half || high > grid.center()[k] + half;
             let reached = window[k].start == 0 || window[k].end == grid.shape()[k];
-            let is_free = !grid.is_periodic()[k] && !(grid.is_line() && k == 0);
+            let is_free = !(grid.is_periodic()[k] || grid.is_line() && k == 0);
             is_free && goes_on && reached
         })
     }
