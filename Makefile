@@ -55,6 +55,10 @@ check-rust: $(BUILD)
 	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
 	cargo clippy --all-targets -- -D warnings
 	cargo clippy --all-targets --features python,serde -- -D warnings
+	@for target in wasm32-unknown-unknown wasm32-unknown-emscripten; do \
+		if [ -d "$$(rustc --print sysroot)/lib/rustlib/$$target" ]; then cargo check --target $$target; \
+		else echo "$$target is not installed: not checked"; fi; \
+	done
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 
 check-python: $(WHEEL) $(DEV)
@@ -63,6 +67,7 @@ check-python: $(WHEEL) $(DEV)
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest nacre._core
 	$(BIN)/python tests/house.py
+	$(BIN)/python tests/metadata.py
 	$(BIN)/lint-imports
 
 bench: ## time the Rust benchmarks, print the change since the last run, append to benches/history.csv
@@ -104,7 +109,11 @@ stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 # Nothing is uploaded: cargo and twine say whether the crate, the wheel and the source distribution would be accepted.
 publishable: $(WHEEL) $(DEV) ## dry run of both publications: the crate and the distribution
 	cargo publish --dry-run --target-dir $(TARGET)/publish
-	$(BIN)/maturin sdist --out $(TARGET)/wheels
+	rm -rf $(TARGET)/publish-source
+	mkdir -p $(TARGET)/publish-source
+	git ls-files -z | xargs -0 cp --parents -t $(TARGET)/publish-source
+	$(BIN)/python tests/metadata.py --links $(TARGET)/publish-source/README.md
+	$(BIN)/maturin sdist --manifest-path $(TARGET)/publish-source/Cargo.toml --out $(TARGET)/wheels
 	$(BIN)/twine check --strict $(TARGET)/wheels/*.whl $(TARGET)/wheels/*.tar.gz
 
 # The pictures of the gallery are computed; a warning is an error. The Rust documentation goes to rust/.

@@ -50,7 +50,7 @@ def kappas(young: float, thickness: float, seeds: range) -> list[list[float]]:
             rms_slope=SLOPE,
             shortest=SHORTEST,
             longest=LONGEST,
-            seed=seed,
+            rng=seed,
         )
         last, row = None, []
         for pressure in PRESSURES:

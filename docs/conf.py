@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import sys
+import tomllib
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
 sys.path.insert(
     0, str(Path(__file__).parent / "extensions")
-)  # claims, drawings, names
+)  # claims, drawings, names, provenance
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
 author = copyright = "The nacre developers"
 version = release = version_of("nacre-contact")
+CARGO = tomllib.loads(
+    (Path(__file__).parents[1] / "Cargo.toml").read_text(encoding="utf-8")
+)
+PROJECT_URL = CARGO["package"]["repository"]
 
 extensions = [
     "myst_parser",
@@ -26,6 +31,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "claims",
     "names",
+    "provenance",
 ]
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
@@ -55,6 +61,9 @@ html_static_path = ["_static"]
 html_css_files = ["nacre.css"]
 html_show_sphinx = False
 html_theme_options = {
+    "source_repository": PROJECT_URL,
+    "source_branch": "main",
+    "source_directory": "docs/",
     "light_css_variables": {
         "color-brand-primary": "#0072B2",
         "color-brand-content": "#0072B2",

@@ -44,7 +44,7 @@ for name, solution in rollers.items():
 # The rough surface.
 side = 256e-6
 surface = rough.random_surface(
-    (256, 256), (side, side), hurst=0.8, rms_slope=0.02, shortest=16e-6, longest=64e-6, seed=2
+    (256, 256), (side, side), hurst=0.8, rms_slope=0.02, shortest=16e-6, longest=64e-6, rng=2
 )
 coated = nacre.HalfSpace(steel, [nacre.Layer(hard, 5e-6)])
 pressed = nacre.solve(surface, coated, load=400e6 * side**2)

@@ -294,9 +294,9 @@ struct WarningData {
     figure: f64,
 }
 
-/// Reasons why rolling has no estimate, by their numbers in a file.
-const REASONS: [Unestimated; 3] =
-    [Unestimated::Coarse, Unestimated::Unsolved, Unestimated::Coefficients];
+/// Reasons why sliding or rolling has no estimate, by their numbers in a file.
+const REASONS: [Unestimated; 4] =
+    [Unestimated::Coarse, Unestimated::Unsolved, Unestimated::Coefficients, Unestimated::Before];
 
 impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {

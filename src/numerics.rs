@@ -1,5 +1,6 @@
 //! Numerical methods that know nothing of contact.
 
+pub(crate) mod clock;
 pub(crate) mod dense;
 pub(crate) mod enclosing_ball;
 pub(crate) mod fft;

@@ -13,4 +13,5 @@ mod friction {
     mod random;
     mod rolling;
     mod second_order;
+    mod stated_errors;
 }

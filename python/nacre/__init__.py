@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from nacre import plot as plot
     from nacre import rough as rough
     from nacre import torch as torch
+    from nacre import verify as verify
 
 __all__ = [
     "FREE",
@@ -123,7 +124,7 @@ SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
 _LAZY = (
     *("bearing", "case", "design", "fatigue", "friction", "hertz"),
-    *("indent", "jax", "plot", "rough", "torch"),
+    *("indent", "jax", "plot", "rough", "torch", "verify"),
 )
 """Modules that are imported when they are first used, as `nacre.plot`."""
 

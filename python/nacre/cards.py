@@ -105,7 +105,7 @@ class Card:
         """Make the numbers read-only."""
         object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return what makes the card again."""
         arguments = self.name, self.title, self.kind, self.elastic, dict(self.numbers), self.source
         return Card, arguments

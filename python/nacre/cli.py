@@ -39,7 +39,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        from nacre.app.command import commands
+        from nacre.verify.command import commands
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 

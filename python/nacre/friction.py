@@ -235,7 +235,8 @@ def creep_curve(
     }
     units = {"force": unit, "torque": columns["torque"][1], "power": columns["power_over_speed"][1]}
     for name, size in units.items():
-        errors = [(s.report.discretisation or {}).get(name, np.nan) for s in solutions]
+        quantity = "dissipated" if name == "power" else name
+        errors = [(s.report.discretisation or {}).get(quantity, np.nan) for s in solutions]
         columns[name + "_discretisation"] = (errors, size)
     dataset = xarray.Dataset(
         {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Never
 
 import numpy as np
 import numpy.typing as npt
@@ -59,7 +59,8 @@ def random_surface(
     longest: float,
     rms_slope: float | None = None,
     rms_height: float | None = None,
-    seed: int,
+    rng: int | np.random.SeedSequence | np.random.Generator | None = None,
+    **unknown: Never,
 ) -> core.HeightMap:
     """Self-affine random surface that repeats, by `SurfaceTopography.Generation.fourier_synthesis`.
 
@@ -79,8 +80,11 @@ def random_surface(
     rms_slope, rms_height : float, optional
         Root of the mean square of the slope, or of the height [m]: one of them. The surface has it
         exactly, slopes as `spectral_slope` finds them.
-    seed : int
-        Number that chooses the surface: the same one makes the same surface.
+    rng : int, numpy.random.SeedSequence or numpy.random.Generator, optional
+        What chooses the surface, as in `numpy.random.default_rng`: the same number makes the same
+        surface, a generator another one at each call, and None one that cannot be repeated.
+    unknown
+        No other keyword is accepted.
 
     Returns
     -------
@@ -91,13 +95,18 @@ def random_surface(
     ------
     ValueError
         If a number is out of range, or not exactly one of slope and height is given.
+    TypeError
+        If ``rng`` is of another type, or a keyword is not known, as ``seed``.
     """
+    for name in unknown:
+        instead = "; rng has the seed" if name == "seed" else ""
+        raise TypeError(f"random_surface has no argument {name}{instead}")
     with surfaces():
         from SurfaceTopography.Generation import fourier_synthesis
 
     nx, ny = (core.integer("shape", count) for count in core.vector("shape", 2, shape))
     lx, ly = (core.real("size", side) for side in core.vector("size", 2, size))
-    shape, size, seed = (nx, ny), (lx, ly), core.integer("seed", seed)
+    shape, size = (nx, ny), (lx, ly)
     if not 0 < hurst <= 1:
         raise ValueError(f"hurst must be above 0 and at most 1, got {hurst}")
     finest = 2 * max(side / n for side, n in zip(size, shape, strict=True))
@@ -121,7 +130,7 @@ def random_surface(
         short_cutoff=shortest,
         long_cutoff=longest,
         rolloff=0.0,
-        rng=seed,
+        rng=_generator(rng),
     )
     heights = np.asarray(topography.heights(), dtype=np.float64)
     heights -= heights.mean()
@@ -131,6 +140,21 @@ def random_surface(
     if actual == 0:
         raise ValueError(f"no wave lies between shortest {shortest} and longest {longest}")
     return core.HeightMap(heights * (target / actual), spacing, periodic=(True, True))
+
+
+def _generator(rng: object) -> np.random.Generator:
+    """Return the generator of an argument ``rng`` (Scientific Python's SPEC 7)."""
+    if isinstance(rng, np.random.Generator):
+        return rng
+    if rng is None or isinstance(rng, np.random.SeedSequence):
+        return np.random.default_rng(rng)
+    try:
+        seed = core.integer("rng", rng)
+    except TypeError as error:
+        raise TypeError(
+            f"rng must be an integer, a SeedSequence, a Generator or None, got {rng!r}"
+        ) from error
+    return np.random.default_rng(seed)
 
 
 def spectral_slope(surface: core.HeightMap) -> float:

@@ -6,12 +6,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Window;
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
@@ -61,7 +61,7 @@ struct Clock(AtomicU64);
 
 impl Clock {
     fn during<R>(&self, work: impl FnOnce() -> R) -> R {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let result = work();
         self.0.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         result
@@ -190,11 +190,6 @@ impl Convolution {
     pub(crate) fn mean_spring(&self) -> f64 {
         let springs = self.springs.as_ref();
         springs.map_or(0.0, |springs| springs.iter().sum::<f64>() / springs.len() as f64)
-    }
-
-    /// What is added to the convolution.
-    pub(crate) fn additions(&self) -> &[Addition] {
-        &self.additions
     }
 
     /// What the additions and the springs contribute to the displacement of `one` cell under unit pressure on an `other`.

@@ -100,7 +100,9 @@ pub fn solve_with<'a>(
     Ok(solution)
 }
 
-/// A solution on a grid that is chosen, with these options.
+/// A solution on a grid that is chosen for the contact. What is given for the cells of one grid alone (pressures to start
+/// from, hardness by cell, dents) plays no part in the choice, nor does the algorithm: with such options the contact is solved
+/// once more, on the grid that was chosen.
 fn solve_on_own_grid(trial: Trial, options: &Options, watched: &mut Progress) -> Result<Solution> {
     let plain = Options {
         algorithm: Algorithm::default(),

@@ -195,12 +195,12 @@ impl Level {
     /// A grid with the `coefficients` of `bodies`, and their convolution.
     pub(super) fn new(
         grid: Grid,
-        coefficients: Array2<f64>,
+        coefficients: &Arc<Array2<f64>>,
         convolution: Convolution,
         bodies: &[&Body],
     ) -> Self {
         let local = LocalDisplacement::new(bodies, &grid);
-        Self { grid, coefficients: Arc::new(coefficients), convolution, local }
+        Self { grid, coefficients: Arc::clone(coefficients), convolution, local }
     }
 
     /// The grid.

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ndarray::Array2;
 
@@ -23,6 +22,7 @@ use crate::contact::start::{
 };
 use crate::error::{Error, Result};
 use crate::model::surface::{OffsetShape, Surface};
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::Rows;
 
@@ -152,7 +152,7 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let columns = self.grid.shape()[1];
         let limits = (options.hardness.as_ref())
@@ -359,7 +359,7 @@ impl<'a> Steps<'a> {
             compliance: None,
             coefficients: plan.setup.coefficients.clone(),
             report,
-            ends: Some(plan.convolution().additions().to_vec()),
+            operator: Some(Arc::clone(&plan.operator)),
             gap: Gap::Computed {
                 undeformed,
                 freedoms: Box::new(self.freedoms.clone()),

@@ -52,6 +52,7 @@ pub struct Contact {
     pub(super) setup: Setup,
     /// The grid and all coarser ones, from the finest on.
     pub(super) levels: Vec<Level>,
+    pub(super) operator: Arc<PlannedOperator>,
     pub(super) datum: Datum,
     pub(super) unresolved: Unresolved,
     pub(super) ends: Ends,
@@ -86,14 +87,21 @@ impl Contact {
         let convolution =
             Convolution::plan_repeated(&coefficients, grid.is_periodic(), Arc::clone(&threads))?;
         let both = bodies(&body, &setup);
-        let mut levels = vec![Level::new(grid, coefficients, convolution.plus(additions), &both)];
+        let operator = PlannedOperator {
+            coefficients: Arc::new(coefficients),
+            datum,
+            additions,
+            threads: Arc::clone(&threads),
+        };
+        let convolution = convolution.plus(operator.additions.clone());
+        let mut levels = vec![Level::new(grid, &operator.coefficients, convolution, &both)];
         let mut finer = grid;
         while let Some(coarse) = coarser(&finer)? {
             let coefficients = total_coefficients(&body, &setup, &coarse, &threads)?;
             let coefficients = datum.moved(coefficients, &coarse);
             let convolution = levels[0].convolution.companion(&coefficients, coarse.is_periodic());
             let convolution = convolution.plus(ends.additions(&coarse, &grid, &threads)?);
-            levels.push(Level::new(coarse, coefficients, convolution, &both));
+            levels.push(Level::new(coarse, &Arc::new(coefficients), convolution, &both));
             finer = coarse;
         }
         let unresolved = Unresolved::new(&both, &grid);
@@ -102,6 +110,7 @@ impl Contact {
             grid,
             setup,
             levels,
+            operator: Arc::new(operator),
             datum,
             unresolved,
             ends,
@@ -176,7 +185,13 @@ impl Contact {
             };
             levels.push(level.with(convolution));
         }
-        self.with_levels(levels)
+        let operator = Arc::new(PlannedOperator {
+            coefficients: Arc::clone(&self.operator.coefficients),
+            additions: self.operator.additions.clone(),
+            threads: Arc::clone(threads),
+            ..*self.operator
+        });
+        Self { operator, ..self.with_levels(levels) }
     }
 
     /// This plan on springs of these compliances (nx, ny); all large arrays, threads and memory are shared.
@@ -200,6 +215,7 @@ impl Contact {
             grid: self.grid,
             setup: self.setup.clone(),
             levels,
+            operator: Arc::clone(&self.operator),
             unresolved: self.unresolved,
             datum: self.datum,
             ends: self.ends.clone(),
@@ -236,6 +252,31 @@ impl Contact {
     }
 }
 
+/// What a contact was solved with: its solutions share it, and files do not have it.
+#[derive(Debug)]
+pub(super) struct PlannedOperator {
+    /// Coefficients of both bodies together, with the datum.
+    pub(super) coefficients: Arc<Array2<f64>>,
+    pub(super) datum: Datum,
+    /// What free ends of bodies add.
+    pub(super) additions: Vec<Addition>,
+    pub(super) threads: Arc<Threads>,
+}
+
+impl PlannedOperator {
+    /// The operator of a solution from a file, with coefficients at least at the offsets of `near` cells of its `grid`.
+    ///
+    /// # Errors
+    /// As [`Contact::plan`].
+    pub(super) fn anew(body: &Body, setup: &Setup, grid: &Grid, near: [usize; 2]) -> Result<Self> {
+        let threads = Arc::new(Threads::new(setup.threads)?);
+        let additions = Ends::of(&bodies(body, setup)).additions(grid, grid, &threads)?;
+        let near = if setup.coefficients.is_some() { *grid } else { grid.of_offsets(near) };
+        let (coefficients, datum) = operator(body, setup, &near, &additions, &threads)?;
+        Ok(Self { coefficients: Arc::new(coefficients), datum, additions, threads })
+    }
+}
+
 /// Bytes of an array of the cells of `grid`.
 fn array(grid: &Grid) -> u64 {
     let [nx, ny] = grid.shape();
@@ -252,7 +293,7 @@ pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
 ///
 /// # Errors
 /// [`Error::Indefinite`] where the coefficients show that they are not positive definite.
-pub(super) fn operator(
+fn operator(
     body: &Body,
     setup: &Setup,
     grid: &Grid,

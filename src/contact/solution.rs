@@ -8,12 +8,11 @@ use std::sync::Arc;
 
 use ndarray::{ArcArray2, Array1, Array2};
 
-use crate::compliance::convolution::Addition;
 use crate::compliance::ends::{Ends, FreeEnds};
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::options::Motion;
-use crate::contact::plan::{Contact, check_coefficients};
+use crate::contact::plan::{Contact, PlannedOperator, check_coefficients};
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{bounds, rows};
@@ -50,8 +49,8 @@ pub struct Solution {
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
-    /// What the free ends of the bodies add to the coefficients, from the plan that solved it; `None` where no plan did.
-    pub(super) ends: Option<Vec<Addition>>,
+    /// What it was solved with; `None` where no plan did.
+    pub(super) operator: Option<Arc<PlannedOperator>>,
 }
 
 impl PartialEq for Solution {
@@ -122,7 +121,7 @@ impl Solution {
             coefficients: None,
             report,
             gap: Gap::Known(gap),
-            ends: None,
+            operator: None,
         })
     }
 

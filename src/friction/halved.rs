@@ -1,10 +1,11 @@
-//! From a solution on cells of twice the length: tractions to start from, and the discretisation error of rolling.
+//! From a solution on cells of twice the length: tractions to start from, and the discretisation error.
 
 use ndarray::Array2;
 
 use super::solution::{FrictionDiscretisation, FrictionSolution, TangentialMotion};
-use super::step::Friction;
-use crate::contact::Unestimated;
+use super::step::{Freedom, Friction};
+use crate::contact::{Report, Solution, Unestimated};
+use crate::error;
 use crate::model::grid::{Grid, Window, each_cell, full_window};
 
 /// Cells across the contact, of twice the length, from which on their solution tells the error.
@@ -16,16 +17,45 @@ pub(super) const LEAST: usize = 8;
 const BEYOND: f64 = 1.5;
 
 /// Mean over each cell of twice the length, from the cells within that are on the grid.
-pub(super) fn coarse_friction(friction: &Friction, fine: &Grid, coarse: &Grid) -> Friction {
-    let Friction::Cells(cells) = friction else {
-        return friction.clone();
-    };
+fn means(field: &Array2<f64>, fine: &Grid, coarse: &Grid) -> Array2<f64> {
     let ratio = ratio(fine, coarse);
-    Friction::Cells(Array2::from_shape_fn(coarse.shape(), |(i, j)| {
+    Array2::from_shape_fn(coarse.shape(), |(i, j)| {
         let window = within([i, j], ratio, fine.shape());
         let count = window[0].len() * window[1].len();
-        each_cell(&window).map(|cell| cells[cell]).sum::<f64>() / count as f64
-    }))
+        each_cell(&window).map(|cell| field[cell]).sum::<f64>() / count as f64
+    })
+}
+
+/// Friction on cells of twice the length.
+pub(super) fn coarse_friction(friction: &Friction, fine: &Grid, coarse: &Grid) -> Friction {
+    match friction {
+        Friction::Uniform(coefficient) => Friction::Uniform(*coefficient),
+        Friction::Cells(cells) => Friction::Cells(means(cells, fine, coarse)),
+    }
+}
+
+/// The state of `solution` on cells of twice the length, from which a history goes on where none was solved on them.
+///
+/// # Errors
+/// Fields that are not finite.
+pub(super) fn coarse_state(
+    solution: &FrictionSolution,
+    coarse: &Grid,
+) -> error::Result<FrictionSolution> {
+    let (normal, fine) = (&solution.normal, solution.grid());
+    let mean = |field: &Array2<f64>| means(field, fine, coarse);
+    let fields = [mean(&normal.pressure), mean(&normal.gap()), mean(&normal.displacement)];
+    let report = Report { grid: *coarse, ..normal.report.clone() };
+    Ok(FrictionSolution {
+        normal: Solution::from_fields(fields, normal.approach, normal.tilt, report)?,
+        friction: coarse_friction(&solution.friction, fine, coarse),
+        traction: solution.traction.each_ref().map(mean),
+        displacement: solution.displacement.each_ref().map(mean),
+        slip: solution.slip.each_ref().map(mean),
+        motion: solution.motion,
+        report: solution.report.clone(),
+        half: None,
+    })
 }
 
 /// The lengths of coarse cells in fine ones along both axes.
@@ -96,43 +126,62 @@ pub(super) fn refined(
 struct Numbers {
     force: [f64; 2],
     torque: f64,
-    power: f64,
-    creepage: [f64; 2],
+    dissipated: f64,
+    /// Shift, or creepage in rolling.
+    motion: [f64; 2],
+    twist: f64,
     stick_share: f64,
 }
 
 impl Numbers {
     fn of(solution: &FrictionSolution) -> Self {
-        let creepage = match solution.motion {
-            TangentialMotion::Roll { creepage, .. } => creepage,
-            TangentialMotion::Slide { .. } => [0.0; 2],
+        let (motion, twist) = match solution.motion {
+            TangentialMotion::Roll { creepage, .. } => (creepage, 0.0),
+            TangentialMotion::Slide { shift, twist } => (shift, twist),
         };
         Self {
             force: solution.force(),
             torque: solution.torque(),
-            power: solution.dissipated(),
-            creepage,
+            dissipated: solution.dissipated(),
+            motion,
+            twist,
             stick_share: solution.stick_share(),
         }
     }
 }
 
-/// Errors of rolling steadily, from the solution on cells of twice the length.
+/// Length of the difference of two vectors.
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// A part of a whole, or 0 where there is none.
+fn over(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+/// Errors of sliding and of rolling steadily, from the solution on cells of twice the length.
 ///
 /// ```text
-/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔP|/P, |Δ creepage|/(|creepage| + |spin| c) )      c = √(ab)
+/// Δ = max( |ΔF|/μW, |ΔM|/μW c, |ΔD|/max(μW v, D), |Δv|/v )      c = √(ab)
 /// ```
 ///
-/// with the half-widths a and b of the contact. One number may have the same value on two grids by chance, so that the
-/// largest change counts for all. Where the pressure has a larger relative error, that counts. `loaded` says which
-/// creepages are not given. The border of the stick zone is known to half a cell at best.
+/// with the half-widths a and b of the contact, what is dissipated D, and the motion v: in rolling |creepage| + |spin| c; in
+/// sliding the change of |shift| + |twist| c, over the largest displacement. One number may have the same value on two
+/// grids by chance, so that the largest change counts for all. Where the pressure has a larger relative error, that counts.
+/// D, quadratic in tractions, has twice the relative error, or its own change. The border of the stick zone is known to half
+/// a cell at best; the square of that, over the width of the slip zone, is an error of D.
+///
+/// `freedoms` say which motions and forces are given; what is kept has the error that it had in the solution `before`.
+/// Where that is a copy, which knows no cells of twice the length, its errors are added.
 ///
 /// # Errors
 /// Why there is no estimate.
 pub(super) fn discretisation(
     solution: &FrictionSolution,
     half: &FrictionSolution,
-    loaded: [bool; 2],
+    freedoms: &[Freedom; 3],
+    before: Option<&FrictionSolution>,
 ) -> Result<FrictionDiscretisation, Unestimated> {
     if !half.report.converged() {
         return Err(Unestimated::Unsolved);
@@ -148,35 +197,92 @@ pub(super) fn discretisation(
     let [[x0, x1], [y0, y1]] = solution.normal.contact_extent();
     let c = 0.5 * ((x1 - x0) * (y1 - y0)).sqrt();
     let capacity = solution.bound().sum() * solution.grid().cell_area();
-    let spin = match solution.motion {
-        TangentialMotion::Roll { spin, .. } if !is_line => spin.abs() * c,
-        _ => 0.0,
+    let dissipated = (fine.dissipated - coarse.dissipated).abs();
+    let motion = match solution.motion {
+        TangentialMotion::Roll { spin, .. } => {
+            fine.motion[0].hypot(fine.motion[1]) + spin.abs() * c
+        }
+        TangentialMotion::Slide { .. } => {
+            let [x, y] = &solution.displacement;
+            x.iter().zip(y).fold(0.0_f64, |most, (x, y)| most.max(x.hypot(*y)))
+        }
     };
-    let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-    let creeps = fine.creepage[0].hypot(fine.creepage[1]) + spin;
-    let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let changes = [
         over(apart(fine.force, coarse.force), capacity),
         over((fine.torque - coarse.torque).abs(), capacity * c),
-        over((fine.power - coarse.power).abs(), fine.power.abs()),
-        over(apart(fine.creepage, coarse.creepage), creeps),
+        over(dissipated, (capacity * motion).max(fine.dissipated.abs())),
+        over(apart(fine.motion, coarse.motion) + (fine.twist - coarse.twist).abs() * c, motion),
     ];
     let pressure = solution.normal.report.discretisation.map_or(0.0, |of| {
         let peak = over(of.peak_pressure.unwrap_or(0.0), solution.normal.peak_pressure());
         peak.max(over(of.load, solution.normal.load()))
     });
     let relative = changes.into_iter().fold(pressure, |most, change| most.max(BEYOND * change));
-    let all = |of: [bool; 2], error: f64| if of == [true; 2] { 0.0 } else { error };
+    let border = border(solution);
+    let stick_share = (BEYOND * (fine.stick_share - coarse.stick_share).abs()).max(border);
+    let slips = over(border, 1.0 - fine.stick_share).powi(2).min(1.0);
+    let dissipated = (BEYOND * dissipated).max((2.0 * relative).max(slips) * fine.dissipated.abs());
+    let slides = matches!(solution.motion, TangentialMotion::Slide { .. });
+    let is = |freedoms: &[Freedom], kind: fn(&Freedom) -> bool| freedoms.iter().any(kind);
+    let loaded = |freedom: &Freedom| matches!(freedom, Freedom::Loaded(_));
+    let free = |freedom: &Freedom| !matches!(freedom, Freedom::Loaded(_));
+    let (in_plane, about) = freedoms.split_at(2);
+    let unless = |given: bool, error: f64| if given { 0.0 } else { error };
+    // What one given component leaves to the other may vanish by symmetry.
+    let rest = match [loaded(&freedoms[0]), loaded(&freedoms[1])] {
+        [true, false] if slides => Some(1),
+        [false, true] if slides => Some(0),
+        _ => None,
+    };
+    let force = match rest {
+        Some(axis) => {
+            let [own, other] = [fine.force[axis], coarse.force[axis]];
+            (BEYOND * (own - other).abs()).max(relative * own.abs())
+        }
+        None => unless(!is(in_plane, free), relative * capacity),
+    };
+    let torque = unless(is_line || !is(about, free), relative * capacity * c);
+    let motion_error = unless(!is(in_plane, loaded), relative * motion);
+    if !slides {
+        return Ok(FrictionDiscretisation {
+            force,
+            torque,
+            dissipated,
+            creepage: Some(motion_error),
+            shift: None,
+            twist: None,
+            stick_share,
+        });
+    }
+    let is_copy = before.is_some_and(|before| before.half.is_none());
+    let stated = before.and_then(|before| before.report.discretisation);
+    if is_copy && stated.is_none() {
+        return Err(Unestimated::Before);
+    }
+    let stated = stated.unwrap_or_default();
+    let added =
+        |error: f64, earlier: f64| if is_copy && error > 0.0 { error + earlier } else { error };
+    // What is kept differs between the grids by what it did before.
+    let moved = |freedoms: &[Freedom], error: f64, change: f64, earlier: Option<f64>| {
+        let earlier = earlier.unwrap_or(0.0);
+        match is(freedoms, |freedom| *freedom == Freedom::Kept) {
+            true => added(error, earlier).max(earlier).max(BEYOND * change),
+            false => added(error, earlier),
+        }
+    };
+    let [turn, turned] = [over(relative * motion, c), (fine.twist - coarse.twist).abs()];
     Ok(FrictionDiscretisation {
-        force: all(loaded, relative * capacity),
-        torque: if is_line { 0.0 } else { relative * capacity * c },
-        power: relative * fine.power.abs(),
-        creepage: all(loaded.map(|loaded| !loaded), relative * creeps),
-        stick_share: (BEYOND * (fine.stick_share - coarse.stick_share).abs()).max(border(solution)),
+        force: added(force, stated.force),
+        torque: added(torque, stated.torque),
+        dissipated,
+        creepage: None,
+        shift: Some(moved(in_plane, motion_error, apart(fine.motion, coarse.motion), stated.shift)),
+        twist: Some(moved(about, unless(!is(about, loaded), turn), turned, stated.twist)),
+        stick_share,
     })
 }
 
-/// Share of the contact in the halves of the sticking cells that lie beside slipping ones.
+/// Share of the contact in the halves of the sticking cells that lie beside slipping ones, or in half a cell.
 fn border(solution: &FrictionSolution) -> f64 {
     let (stick, pressure) = (solution.stick(), &solution.normal.pressure);
     let [rows, columns] = solution.grid().shape();
@@ -190,5 +296,5 @@ fn border(solution: &FrictionSolution) -> f64 {
     };
     let touching = pressure.iter().filter(|p| **p > 0.0).count().max(1);
     let border = stick.indexed_iter().filter(|(cell, stick)| **stick && beside(*cell)).count();
-    0.5 * border as f64 / touching as f64
+    0.5 * border.max(1) as f64 / touching as f64
 }

@@ -7,11 +7,10 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ndarray::{Array2, Zip};
 
-use super::halved::{LEAST, coarse_friction, discretisation, refined};
+use super::halved::{LEAST, coarse_friction, coarse_state, discretisation, refined};
 use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
@@ -24,6 +23,7 @@ use crate::contact::{
 };
 use crate::error::{Error, Result, fraction, require};
 use crate::model::surface::{OffsetShape, Surface};
+use crate::numerics::clock::Stopwatch;
 use crate::numerics::parallel::dot;
 
 /// Callback that gets the report so far, and breaks to stop.
@@ -58,7 +58,7 @@ pub struct Last<'a> {
 
 /// The course of a move, of which its caller is told.
 struct FrictionCourse<'a, 'b> {
-    start: Instant,
+    start: Stopwatch,
     report: FrictionReport,
     stopped: bool,
     progress: &'a mut FrictionProgress<'b>,
@@ -88,7 +88,7 @@ pub(super) struct Session<'a> {
 }
 
 /// The solution on cells of twice the length, or why there is none.
-type Halved = std::result::Result<FrictionSolution, Unestimated>;
+type Halved = std::result::Result<Arc<FrictionSolution>, Unestimated>;
 
 impl<'a> Session<'a> {
     pub(super) fn new(
@@ -135,7 +135,39 @@ impl<'a> Session<'a> {
                 && normal.report.converged()
                 && normal.report.motion == motion
         });
-        self.settle(&problem, &motion, friction, [earlier, known], progress)
+        let mut course = FrictionCourse {
+            start: Stopwatch::start(),
+            report: FrictionReport {
+                coupled: self.coupled,
+                order: if problem.is_steady { self.options.order } else { 0 },
+                tolerance: self.options.tolerance,
+                ..FrictionReport::default()
+            },
+            stopped: false,
+            progress,
+        };
+        let half = self.halved(next, last, &mut course);
+        // A history goes on from a copy to the bit, and copies do not have the cells of twice the length.
+        let start = half.as_ref().and_then(|half| half.as_deref().ok()).filter(|_| last.is_none());
+        let pressures = [earlier, known];
+        let (normal, solved) =
+            self.settle(&problem, &motion, friction, pressures, start, &mut course)?;
+        let mut solution = self.finish(&problem, friction, (normal, solved), course)?;
+        if let Some(half) = half.filter(|_| solution.report.converged()) {
+            let errors = half.and_then(|half| {
+                let freedoms = &problem.increments;
+                let errors = discretisation(&solution, &half, freedoms, last.map(|l| l.solution))?;
+                solution.half = Some(half);
+                Ok(errors)
+            });
+            match errors {
+                Ok(errors) => solution.report.discretisation = Some(errors),
+                Err(reason) => {
+                    solution.normal.report.warnings.push(Warning::Unestimated { reason });
+                }
+            }
+        }
+        Ok(solution)
     }
 
     /// Motion, friction and problem of a step of sliding.
@@ -166,9 +198,8 @@ impl<'a> Session<'a> {
             is_steady: false,
             is_second_order: false,
             increments: [0, 1, 2].map(|k| match freedoms[k] {
-                Freedom::Kept => Freedom::Prescribed(0.0),
                 Freedom::Prescribed(value) => Freedom::Prescribed(value - starts[k]),
-                loaded => loaded,
+                other => other,
             }),
             before,
         };
@@ -200,28 +231,17 @@ impl<'a> Session<'a> {
     }
 
     /// Pressure and tractions in turn until neither changes the other, from the pressure of the `earlier` solution, or with
-    /// the `known` one.
+    /// the `known` one; where nothing came before, from the `start` on half the cells.
     fn settle(
         &self,
         problem: &TangentialProblem,
         motion: &Motion,
         friction: &Friction,
         [earlier, known]: [Option<&Solution>; 2],
-        progress: &mut FrictionProgress,
-    ) -> Result<FrictionSolution> {
+        start: Option<&FrictionSolution>,
+        course: &mut FrictionCourse,
+    ) -> Result<(Solution, Option<SolvedTractions>)> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let mut course = FrictionCourse {
-            start: Instant::now(),
-            report: FrictionReport {
-                coupled: self.coupled,
-                order: if problem.is_steady { self.options.order } else { 0 },
-                tolerance,
-                ..FrictionReport::default()
-            },
-            stopped: false,
-            progress,
-        };
-        let half = self.halved(problem, &mut course);
         let keeps_shares = problem.slides() || problem.is_second_order;
         let mut traction = problem.before.traction.clone();
         let mut last_bound: Option<Array2<f64>> = None;
@@ -230,7 +250,7 @@ impl<'a> Session<'a> {
         let (mut normal, solved) = loop {
             let normal = match known {
                 Some(known) => known.clone(),
-                None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
+                None => self.press(motion, &traction, pressure.as_ref(), course)?,
             };
             course.report.sweeps += 1;
             let is_first = course.report.sweeps == 1;
@@ -258,8 +278,8 @@ impl<'a> Session<'a> {
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
             let [x, y, _] = problem.increments.map(Freedom::force);
-            let starts = match &half {
-                Some(Ok(half)) if is_first => vec![refined(half, grid, &bound)],
+            let starts = match start {
+                Some(half) if is_first => vec![refined(half, grid, &bound)],
                 _ if is_first && x.hypot(y) > 0.0 && problem.slides() => {
                     self.starts(motion, &normal, [x, y], friction, &traction)?
                 }
@@ -273,7 +293,7 @@ impl<'a> Session<'a> {
                 pressure: &normal.pressure,
                 gap: &gap,
             };
-            let solved = self.tractions(problem, pressed, &starts, goal, &mut course);
+            let solved = self.tractions(problem, pressed, &starts, goal, course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
             }
@@ -290,7 +310,7 @@ impl<'a> Session<'a> {
             let (shape, mut watch) = (self.lifted(&traction), |_: &Report| course.tell());
             self.contact.compare(&mut normal, &shape, motion, &self.pressing(), &mut watch);
         }
-        self.finish(problem, friction, (normal, solved), half, course)
+        Ok((normal, solved))
     }
 
     /// Tractions for a pressure, with what is left of the convolutions.
@@ -323,7 +343,6 @@ impl<'a> Session<'a> {
         problem: &TangentialProblem,
         friction: &Friction,
         (mut normal, solved): (Solution, Option<SolvedTractions>),
-        half: Option<Halved>,
         course: FrictionCourse,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
@@ -366,7 +385,7 @@ impl<'a> Session<'a> {
         let warnings = &mut normal.report.warnings;
         warnings.retain(|warning| !matches!(warning, Warning::LargeMotion { .. }));
         warnings.extend(warning);
-        let mut solution = FrictionSolution {
+        Ok(FrictionSolution {
             normal,
             friction: friction.clone(),
             traction: fields.traction,
@@ -374,24 +393,23 @@ impl<'a> Session<'a> {
             slip: fields.slip,
             motion: fields.motion,
             report,
-        };
-        if let Some(half) = half.filter(|_| solution.report.converged()) {
-            let [along, across, _] = problem.increments;
-            let loaded = [along, across].map(|freedom| matches!(freedom, Freedom::Loaded(_)));
-            match half.and_then(|half| discretisation(&solution, &half, loaded)) {
-                Ok(errors) => solution.report.discretisation = Some(errors),
-                Err(reason) => {
-                    solution.normal.report.warnings.push(Warning::Unestimated { reason });
-                }
-            }
-        }
-        Ok(solution)
+            half: None,
+        })
     }
 
-    /// Steady rolling to second order on cells of twice the length, which starts from cells of four times the length, and so
-    /// on; `None` for other problems.
-    fn halved(&self, problem: &TangentialProblem, course: &mut FrictionCourse) -> Option<Halved> {
-        let rolling = problem.rolling.filter(|_| problem.is_steady && problem.is_second_order)?;
+    /// The move `next` on cells of twice the length, which in turn compares itself with cells of four times the length, and
+    /// so on. A step goes on from where `last` was on those cells. `None` for rolling cell by cell, and to first order.
+    fn halved(
+        &self,
+        next: Move,
+        last: Option<Last>,
+        course: &mut FrictionCourse,
+    ) -> Option<Halved> {
+        match next {
+            Move::Slide(_) => {}
+            Move::RollSteadily(_) if self.options.order == 2 => {}
+            _ => return None,
+        }
         let grid = self.contact.grid();
         let [rows, columns] = grid.shape();
         if columns < 2 * LEAST || !grid.is_line() && rows < 2 * LEAST {
@@ -408,13 +426,29 @@ impl<'a> Session<'a> {
             let options = FrictionOptions { tolerance, ..self.options };
             let session =
                 Session { compares: false, ..Session::new(&contact, self.shape, options)? };
-            let friction = coarse_friction(&rolling.friction, grid, contact.grid());
-            let rolling = Rolling { friction, ..rolling.clone() };
-            let problem = session.roll(&rolling, true, None)?;
+            let coarse = |friction: &Friction| coarse_friction(friction, grid, contact.grid());
             let mut progress = |_: &FrictionReport| course.tell();
-            session.settle(&problem, &rolling.motion, &rolling.friction, [None; 2], &mut progress)
+            let last_half = match last.map(|last| last.solution) {
+                None => None,
+                Some(FrictionSolution { half: Some(half), .. }) => Some(Arc::clone(half)),
+                Some(last) => Some(Arc::new(coarse_state(last, contact.grid())?)),
+            };
+            let is_own = last.is_some_and(|last| last.is_own && last.solution.half.is_some());
+            let last = last_half.as_deref().map(|solution| Last { solution, is_own });
+            match next {
+                Move::Slide(step) => {
+                    let friction = step.friction.as_ref().map(coarse);
+                    let step = Step { friction, ..step.clone() };
+                    session.solve(Move::Slide(&step), last, &mut progress)
+                }
+                Move::RollSteadily(rolling) | Move::RollOneCell(rolling) => {
+                    let friction = coarse(&rolling.friction);
+                    let rolling = Rolling { friction, ..rolling.clone() };
+                    session.solve(Move::RollSteadily(&rolling), None, &mut progress)
+                }
+            }
         };
-        Some(solve().map_err(|_| Unestimated::Unsolved))
+        Some(solve().map(Arc::new).map_err(|_| Unestimated::Unsolved))
     }
 
     /// The pressure that displaces the surfaces along each other: all of it, or none without coupling.

@@ -1,5 +1,7 @@
 //! The solution of a contact with friction.
 
+use std::sync::Arc;
+
 use ndarray::{Array2, Axis};
 
 use super::step::{Friction, RollingDirection};
@@ -34,7 +36,7 @@ pub enum TangentialMotion {
     },
 }
 
-/// Estimated discretisation errors of rolling: differences from the limit of ever finer cells.
+/// Estimated discretisation errors of sliding and of steady rolling: differences from the limit of ever finer cells.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -44,12 +46,19 @@ pub enum TangentialMotion {
 pub struct FrictionDiscretisation {
     /// Error of the force \[N\]: the length of the difference; 0 where both forces are given.
     pub force: f64,
-    /// Error of the torque \[N m\].
+    /// Error of the torque \[N m\]; 0 where it is given.
     pub torque: f64,
-    /// Error of the energy dissipated over the distance rolled \[N\].
-    pub power: f64,
-    /// Error of the creepage: the length of the difference; 0 where both creepages are given.
-    pub creepage: f64,
+    /// Error of the energy dissipated in the step \[J\], or in rolling over the distance rolled \[N\].
+    pub dissipated: f64,
+    /// Error of the shift \[m\]: the length of the difference; 0 where both shifts are given. `None` in rolling.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub shift: Option<f64>,
+    /// Error of the twist \[rad\]; 0 where it is given. `None` in rolling.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub twist: Option<f64>,
+    /// Error of the creepage: the length of the difference; 0 where both creepages are given. `None` in sliding.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub creepage: Option<f64>,
     /// Error of the share of the contact that sticks.
     pub stick_share: f64,
 }
@@ -85,8 +94,8 @@ pub struct FrictionReport {
     pub coupled: bool,
     /// Whether all cells in contact slip.
     pub full_slip: bool,
-    /// Estimated discretisation errors of steady rolling to second order. `None` in sliding and in rolling cell by cell,
-    /// and where a warning says why.
+    /// Estimated discretisation errors of sliding, and of steady rolling to second order. `None` in rolling cell by cell, and
+    /// where a warning says why.
     #[cfg_attr(feature = "serde", serde(default))]
     pub discretisation: Option<FrictionDiscretisation>,
     /// Order of steady rolling in the length of a cell; 0 in sliding and in rolling cell by cell.
@@ -109,7 +118,7 @@ impl FrictionReport {
 ///
 /// Tractions act on the body; on the counterbody their opposites do. Displacements are those of the body less those of
 /// the counterbody.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct FrictionSolution {
     /// Pressure, gap and approach.
     pub normal: Solution,
@@ -126,6 +135,21 @@ pub struct FrictionSolution {
     pub motion: TangentialMotion,
     /// Course and quality.
     pub report: FrictionReport,
+    /// The same history on cells of twice the length, with which the next step is compared; `None` where there is none, and
+    /// in a solution from a file. It does not count in comparisons.
+    pub half: Option<Arc<FrictionSolution>>,
+}
+
+impl PartialEq for FrictionSolution {
+    fn eq(&self, other: &Self) -> bool {
+        self.normal == other.normal
+            && self.friction == other.friction
+            && self.traction == other.traction
+            && self.displacement == other.displacement
+            && self.slip == other.slip
+            && self.motion == other.motion
+            && self.report == other.report
+    }
 }
 
 impl FrictionSolution {

@@ -81,7 +81,7 @@ impl Seed {
                 let cells = bilinear(solution.grid(), *at)?;
                 let mut seed = Self::new(state, 0.0);
                 for (cell, weight) in cells {
-                    if let Some(k) = place(&state.tangent.window, cell)
+                    if let Some(k) = number_in(&state.tangent.window, cell)
                         && state.tangent.contact[k]
                     {
                         seed.pressure[k] = weight;
@@ -284,8 +284,8 @@ pub(super) fn offsets(window: &Window, cells: &[([usize; 2], f64)]) -> [usize; 2
     })
 }
 
-/// Number of a cell of the grid in the window.
-pub(super) fn place([x, y]: &Window, [i, j]: [usize; 2]) -> Option<usize> {
+/// Number of a cell of the grid among those of the window, row by row; `None` outside it.
+fn number_in([x, y]: &Window, [i, j]: [usize; 2]) -> Option<usize> {
     (x.contains(&i) && y.contains(&j)).then(|| (i - x.start) * y.len() + (j - y.start))
 }
 

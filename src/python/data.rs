@@ -3,7 +3,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pythonize::pythonize;
+use pythonize::{depythonize, pythonize};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,14 @@ pub(super) fn read<T: DeserializeOwned>(kind: &str, text: &str) -> PyResult<T> {
         let place = key.map(|key| format!("the value of the key {key:?} does not fit: "));
         PyValueError::new_err(format!("{kind}: {}{message}", place.unwrap_or_default()))
     })
+}
+
+/// Value that words, numbers, lists and dicts of Python describe; `kind` names it in the error.
+///
+/// # Errors
+/// A `ValueError` if a field is missing, unknown, or holds a value that does not fit.
+pub(super) fn fitting<T: DeserializeOwned>(kind: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
+    depythonize(value).map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))
 }
 
 /// The last key of JSON text before a column.

@@ -96,6 +96,7 @@ impl PyFrictionSolved {
             slip: components("slip", slip)?,
             motion,
             report,
+            half: None,
         };
         Ok(Self(Arc::new(solution.checked()?)))
     }

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
 
 use super::arguments::{Real, read_only, real_matrix};
 use super::background::{self, Caller};
-use super::data::read;
+use super::data::fitting;
 use super::shapes::{Shape, shape};
 use super::solved::PySolved;
 use crate::contact::Solution;
@@ -63,16 +64,18 @@ impl PyLinear {
         })
     }
 
-    /// Derivatives of outputs, each described by JSON text or given as weights of the pressures.
+    /// Derivatives of outputs, each described by a word or a dict or given as weights of the pressures.
     fn gradients<'py>(
         &self,
         py: Python<'py>,
         outputs: Vec<Bound<'py, PyAny>>,
         wrt: Option<Vec<String>>,
     ) -> PyResult<Vec<Derivatives<'py>>> {
-        let parsed = outputs.iter().map(|output| match output.extract::<String>() {
-            Ok(described) => read("output", &described),
-            Err(_) => Ok(Output::Weighted(real_matrix("cotangent", output)?)),
+        let parsed = outputs.iter().map(|output| {
+            if output.is_instance_of::<PyString>() || output.is_instance_of::<PyDict>() {
+                return fitting("output", output);
+            }
+            Ok(Output::Weighted(real_matrix("cotangent", output)?))
         });
         let parsed = parsed.collect::<PyResult<Vec<_>>>()?;
         let gradients = self.run(py, move |plan| {

@@ -11,7 +11,7 @@ use crate::support::settings::stack;
 
 /// Numbers from which a history is made.
 #[derive(Debug, Clone)]
-struct Case {
+pub(super) struct Case {
     /// Moduli over the substrate's, Poisson's ratios, thicknesses over the radius of the contact.
     layers: Vec<(f64, f64, f64)>,
     /// Rigid, equal, or a body without layers of this modulus.
@@ -31,7 +31,7 @@ fn power(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..high).prop_map(|power| 10.0_f64.powf(power))
 }
 
-fn case() -> impl Strategy<Value = Case> {
+pub(super) fn case() -> impl Strategy<Value = Case> {
     let layer = (power(-1.0, 1.0), 0.0..0.49, power(-1.5, 0.3));
     let pull = (prop_oneof![0.0..0.9, 0.9..0.999], 0.0..std::f64::consts::TAU);
     let directions = prop_oneof![
@@ -68,6 +68,11 @@ fn case() -> impl Strategy<Value = Case> {
 
 impl Case {
     fn contact(&self) -> Result<Contact> {
+        self.contact_on(24)
+    }
+
+    /// A grid 3.2 radii of the largest contact without layers wide, with so many cells along both axes.
+    pub(super) fn contact_on(&self, cells: usize) -> Result<Contact> {
         let layers = self.layers.iter().map(|(ratio, nu, h)| [2.6 * ratio, *nu, *h]);
         let body = stack(Elastic::new(2.6, 0.3)?, layers)?;
         let counterbody = match self.counterbody {
@@ -76,11 +81,22 @@ impl Case {
             Some(Some(ratio)) => Some(Elastic::new(2.6 * ratio, 0.2)?.into()),
         };
         let setup = Setup { counterbody, threads: Some(1), ..Setup::default() };
-        Contact::plan(body, Grid::new([24, 24], [3.2, 3.2])?, setup)
+        Contact::plan(body, Grid::new([cells, cells], [3.2, 3.2])?, setup)
+    }
+
+    /// Loads of the approaches on 24 cells.
+    pub(super) fn loads(&self) -> Result<[f64; 3]> {
+        let contact = self.contact()?;
+        let load = |part: f64| -> Result<f64> {
+            let motion = Motion::approach(part / RADIUS);
+            Ok(contact.solve(&ball()?, &motion, &Options::default())?.load())
+        };
+        let [a, b, c] = self.approaches;
+        Ok([load(a)?, load(b)?, load(c)?])
     }
 
     /// Pulls, each with a load, and the friction of the second different from the first; the last also twists.
-    fn steps(&self, loads: [f64; 3]) -> Vec<Step> {
+    pub(super) fn steps(&self, loads: [f64; 3]) -> Vec<Step> {
         let each = self.pulls.iter().zip(loads).enumerate();
         each.map(|(k, ((share, angle), load))| {
             let friction = self.friction[k.min(1)];
@@ -105,8 +121,12 @@ impl Case {
 
 /// Cases: those of `NACRE_FUZZ`, or 40.
 fn cases_to_try() -> u32 {
-    let asked = std::env::var("NACRE_FUZZ").ok();
-    asked.and_then(|cases| cases.parse().ok()).unwrap_or(40)
+    asked().unwrap_or(40)
+}
+
+/// Cases that `NACRE_FUZZ` asks for.
+pub(super) fn asked() -> Option<u32> {
+    std::env::var("NACRE_FUZZ").ok()?.parse().ok()
 }
 
 proptest! {
@@ -118,11 +138,7 @@ proptest! {
         let contact = case.contact().expect("a contact");
         let options = precise(1e-7);
         let shape = ball().expect("a ball");
-        let loads = case.approaches.map(|part| {
-            let motion = Motion::approach(part / RADIUS);
-            let pressed = contact.solve(&shape, &motion, &Options::default());
-            pressed.expect("a solution").load()
-        });
+        let loads = case.loads().expect("loads");
         let slid = contact.slide(&shape, &case.steps(loads), &options, None);
         let rolled = contact.roll(&shape, &case.rolling(loads[0]), &options).map(|solution| vec![solution]);
         for solutions in [slid, rolled] {

@@ -20,7 +20,7 @@ surface = rough.random_surface(
     rms_slope=0.02,
     shortest=16e-6,
     longest=64e-6,
-    seed=2,
+    rng=2,
 )
 steel, hard = (
     nacre.Elastic(young=210e9, poisson=0.3),

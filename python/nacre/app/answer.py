@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import datetime
 import html
 from collections.abc import Callable, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import nacre
 import nacre._core as core
-from nacre.app.reading import apparent_modulus, substrate_verdict
+from nacre.bearing import PairSolution
 from nacre.case import Case, CaseError, toml
+from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
 from nacre.indent import solve as solve_indentation
+from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display, report
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
+from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
 Going = Callable[[], bool]
@@ -30,15 +33,30 @@ EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
 BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
+BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
+EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
+"""Extremes of stresses that the page shows."""
 DEPTHS, DEEPEST = 40, 1.25
 """Depths of the picture of stresses, and the largest over the width of the contact."""
-SLIDING = ("body", "friction", "direction", "residual")
-"""Keywords of stresses that pictures over depth take, too."""
 DIGITS = 5
 """Digits of the main number."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
 """What calculations raise."""
+
+
+class Measured(NamedTuple):
+    """What a case reads from files, which happens once, at the start."""
+
+    arguments: Answer
+    """Arguments in place of those of the case on the page."""
+    tables: Answer
+    """Tables of the case file, which have other ones in their place on the page."""
+    files: report.Rows
+    """Files, with their SHA-256."""
+
+
+NONE = Measured({}, {}, ())
 
 
 class Stopped(Exception):
@@ -46,7 +64,7 @@ class Stopped(Exception):
 
 
 def answer(
-    case: Case, stage: str, going: Going = lambda: True, fixed: Answer | None = None
+    case: Case, stage: str, going: Going = lambda: True, measured: Measured = NONE
 ) -> Answer:
     """Return what the page shows of a case at a stage.
 
@@ -58,8 +76,8 @@ def answer(
         One of `STAGES`; or "case" for its file, or "report".
     going
         Function that says whether the answer is still wanted.
-    fixed
-        Arguments in place of those of the case.
+    measured
+        What was read from files at the start.
 
     Returns
     -------
@@ -75,11 +93,11 @@ def answer(
         # Bearings are in SI, and shown in the units of the case.
         units = display.shown_in if case.kind == "bearing" else nacre.display_units
         with units(case.units):
-            arguments = case.arguments() | (fixed or {})
+            arguments = case.arguments() | measured.arguments
             if stage == "case":
-                return {"case": file_text(case)}
+                return {"case": file_text(case, measured)}
             if stage == "report":
-                return {"report": _report(case, arguments, going)}
+                return {"report": _report(case, arguments, going, measured)}
             return SOLVERS[case.kind](case, arguments, stage, going)
     except ERRORS as error:
         if not going():
@@ -87,10 +105,10 @@ def answer(
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
 
 
-def file_text(case: Case) -> str:
+def file_text(case: Case, measured: Measured = NONE) -> str:
     """Return the case file of what the page shows."""
     notes = f"{case.name}: nacre solve FILE", f"written by nacre {core.__version__}"
-    return toml.text(case.data, notes)
+    return toml.text(case.data | measured.tables, notes)
 
 
 def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
@@ -100,9 +118,10 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
     solution = _solved_contact(case, arguments, going)
     bare = _bare(case, arguments, going)
+    rows, beside = (one and _selected(one, CONTACT_ROWS) for one in (solution, bare))
     parts: Answer = {
         "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
-        "rows": _rows(_selected(solution, CONTACT_ROWS), bare and _selected(bare, CONTACT_ROWS)),
+        "rows": _rows(rows, beside),
         "picture-1": _pressures(solution, bare),
         "warnings": list(solution._warnings),
     }
@@ -115,6 +134,11 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         verdict = Verdict("unknown", f"Cannot tell: {error}.", (), None, None, None)
         return _answer(parts | _judged(verdict))
     _check(going)
+    if bare is not None:
+        of_bare = {k: v for k, v in keywords.items() if k in ("body", "friction", "direction")}
+        beside += _extremes(bare.stress_summary(**of_bare, progress=lambda _: going()))
+        _check(going)
+    parts["rows"] = _rows(rows + _extremes(summary), beside)
     parts["picture-2"] = _stresses(solution, bare, keywords)
     parts["warnings"] = list(dict.fromkeys([*parts["warnings"], *summary.warnings]))
     return _answer(parts | _judged(summary.verdict))
@@ -126,7 +150,7 @@ def _solved_contact(case: Case, arguments: Answer, going: Going) -> Any:
         **arguments, progress=lambda *_: going(), check=False
     )
     _check(going)
-    solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
+    solution = last_of(outcome)
     if not solution.report.converged:
         raise CaseError("no solution was found: the solve did not converge")
     return solution
@@ -160,18 +184,20 @@ def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
     rows = _selected(solution, BEARING_ROWS)
     rows += [] if life is None else solution.life(**life)._rows()
     is_tilted = any(arguments.get("tilt") or ())
+    is_pair = isinstance(solution, PairSolution)
     aligned = None
-    if is_tilted and stage != "full":
+    if is_tilted and not is_pair and stage != "full":
         aligned = bearing.solve(**keywords | {"tilt": (0.0, 0.0)})
         _check(going)
     parts = {
         "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
         "rows": _rows(rows),
-        "picture-1": _along_roller(solution, aligned),
-        "picture-2": _ring(solution),
+        "picture-1": _ring(solution.first) if is_pair else _along_roller(solution, aligned),
+        "picture-2": _ring(solution.second if is_pair else solution),
         "warnings": list(solution.report.warnings),
     }
-    following = {"draft": "full", "full": "stress" if is_tilted and bearing.rolls else None}
+    is_compared = is_tilted and not is_pair and bearing.rolls
+    following = {"draft": "full", "full": "stress" if is_compared else None}
     return _answer(parts | _judged(solution.verdict), following.get(stage))
 
 
@@ -213,31 +239,12 @@ SOLVERS = {"contact": _contact, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
-def _report(case: Case, arguments: Answer, going: Going) -> str:
+def _report(case: Case, arguments: Answer, going: Going, measured: Measured) -> str:
     """Return the report of a case, as a page of HTML."""
-    results: list[Any]
-    inputs, sliding = [("units of the case", case.units)], {}
-    if case.kind == "contact":
-        results, keywords = [_solved_contact(case, arguments, going)], case.stress()
-        sliding = {name: value for name, value in (keywords or {}).items() if name in SLIDING}
-        inputs += report.input_rows({"stress": keywords})
-        if keywords is not None:
-            results.append(results[0].stress_summary(**keywords, progress=lambda _: going()))
-    elif case.kind == "bearing":
-        bearing, life = arguments.pop("bearing"), case.life()
-        results = [bearing.solve(**arguments, progress=lambda *_: going())]
-        results += [] if life is None else [results[0].life(**life)]
-    else:
-        results = [solve_indentation(**arguments)]
+    results = results_of(case, arguments, {"progress": lambda *_: going()})
     _check(going)
-    judgements = list(report.verdicts(results))
-    if case.kind == "indent":
-        judgements.append(substrate_verdict(apparent_modulus(results[0])))
-    first, *others = results
-    sections = [first._sections(**sliding), *(one._sections() for one in others)]
-    sections.append(report.Sections("", inputs))
-    today = datetime.date.today().isoformat()
-    return report.page(case.name, today, sections, judgements, file_text(case))
+    text = file_text(case, measured)
+    return report_of(case, results, text, Path(case.name).stem, measured.files)
 
 
 def _check(going: Going) -> None:
@@ -256,6 +263,16 @@ def _judged(verdict: Verdict) -> Answer:
 
 def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
     return [row for row in result._rows() if row[0] in names]
+
+
+def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
+    """Return the largest stresses of all layers and the substrate."""
+    rows = []
+    for name, label in EXTREMES.items():
+        worst = max(summary.layers, key=lambda part: getattr(part, name)[0])
+        text = with_error(getattr(worst, name)[0], worst.uncertainty.get(name))
+        rows.append((label, text))
+    return rows
 
 
 def _rows(rows: Sequence[tuple[str, str]], bare: Sequence[tuple[str, str]] | None = None) -> str:
@@ -306,7 +323,7 @@ def _stresses(solution: Any, bare: Any, keywords: Answer) -> str:
     widths = [high - low for low, high in solution.contact_extent if high > low]
     bottom = DEEPEST * min(widths, default=min(solution.grid.size))
     inset = (0.0, 3 * interfaces[0]) if interfaces and interfaces[0] < bottom / 10 else None
-    sliding = {name: keywords[name] for name in SLIDING if name in keywords}
+    sliding = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
     curves = [Curve(*_over_depth(solution, bottom, interfaces, sliding), "coated" if bare else "")]
     if bare is not None:
         sliding.pop("residual", None)

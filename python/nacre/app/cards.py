@@ -7,17 +7,19 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 import nacre._core as core
 from nacre._tools.units import System
+from nacre.app.answer import NONE, Measured
 from nacre.app.fields import CARDS, Field, tidy
 from nacre.case import Case, CaseError, templates
 from nacre.case.bearing import UNITS
 from nacre.case.reference import place
+from nacre.case.results import files_of
 from nacre.results.quantities import INPUTS
 
 Data = dict[str, Any]
@@ -74,8 +76,8 @@ class Card:
     """Main fields."""
     more: tuple[Field, ...]
     """Fields of every other number."""
-    fixed: Data = field(default_factory=dict)
-    """Arguments that were read from files at the start."""
+    measured: Measured = NONE
+    """What was read from files at the start."""
 
     @functools.cached_property
     def by_path(self) -> dict[str, Field]:
@@ -142,7 +144,9 @@ def set_value(data: Data, one: Field, value: float | None) -> Data:
 def check_size(data: Data) -> None:
     """Raise an error if a case is too large for the page."""
     bearing, grid, indent = (data.get(name, {}) for name in ("bearing", "grid", "indent"))
-    bodies = [*(data.get(name, {}) for name in ("body", "counterbody")), *_bodies(bearing)]
+    singles = [bearing, *(bearing.get(name, {}) for name in ("first", "second"))]
+    bodies = [data.get(name, {}) for name in ("body", "counterbody")]
+    bodies += [body for one in singles for body in _bodies(one)]
     steps = [indent.get(name, 0) for name in ("load", "approach", "radius")]
     steps.append(data.get("slide", {}).get("steps", 0))
     shapes = [grid.get("shape", [0]), bearing.get("solve", {}).get("cells", [0])]
@@ -151,7 +155,10 @@ def check_size(data: Data) -> None:
     sizes = {
         "cells": (max(map(math.prod, shapes)), MOST_CELLS),
         "layers": (max(len(body.get("layers", ())) for body in bodies), MOST_LAYERS),
-        "elements": (bearing.get("count", 0) * bearing.get("rows", 1), MOST_ELEMENTS),
+        "elements": (
+            max(one.get("count", 0) * one.get("rows", 1) for one in singles),
+            MOST_ELEMENTS,
+        ),
         "steps": (max(len(one) if isinstance(one, list) else 0 for one in steps), MOST_STEPS),
     }
     for name, (size, most) in sizes.items():
@@ -210,17 +217,18 @@ def own_card(path: Any) -> Card:
     """Return the card of a case file; what it measures is read here, once."""
     case = Case.read(path)
     data: Data = {key: value for key, value in case.data.items() if key != "sweep"}
-    is_measured = "height_map" in str(data.get("shape", {}))
-    fixed = {"shape": case.arguments()["shape"]} if is_measured else {}
+    is_measured, measured = bool(case.measured()), NONE
     if is_measured:
+        shape = case.arguments()["shape"]
+        measured = Measured({"shape": shape}, {"shape": data["shape"]}, files_of(case))
         data["shape"] = {"kind": "sphere", "radius": 1.0}  # whose place the measured one takes
     if case.kind == "contact" and "grid" not in data and not is_measured:
         data["solve"] = {"max_cells": MOST_CELLS} | data["solve"]
     check_size(data)
-    others = (one for one in _others(data, ()) if one.path.partition(".")[0] not in fixed)
+    others = (one for one in _others(data, ()) if one.path.partition(".")[0] not in measured.tables)
     order = sorted(others, key=lambda one: _rank(one.path))
     fields, more = tuple(order[:MOST_FIELDS]), tuple(order[MOST_FIELDS:])
-    return Card("own", "own file", case.name, data, fields, more, fixed)
+    return Card("own", "own file", case.name, data, fields, more, measured)
 
 
 def _rank(path: str) -> int:

@@ -11,6 +11,7 @@ from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from socketserver import TCPServer
 from typing import Any
 
 import nacre
@@ -73,8 +74,7 @@ class Server(ThreadingHTTPServer):
 
     def server_bind(self) -> None:
         """Bind the port, without looking up the name of this computer."""
-        self.socket.bind(self.server_address)
-        self.server_address = self.socket.getsockname()
+        TCPServer.server_bind(self)
         self.server_name, self.server_port = ADDRESS, self.server_address[1]
 
     def handle_error(self, request: object, client_address: object) -> None:
@@ -107,7 +107,7 @@ class Server(ThreadingHTTPServer):
         try:
             case = card.case(values)
             with self.lane(stage == "draft", going):
-                return answer(case, stage, going, card.fixed)
+                return answer(case, stage, going, card.measured)
         except FieldError as error:
             return {"error": str(error), "field": error.path}
         except (LookupError, ValueError) as error:
@@ -178,7 +178,7 @@ class Handler(BaseHTTPRequestHandler):
         reply = self.server.reply(self._question(), stages)
         return "application/json", json.dumps(reply, allow_nan=False).encode()
 
-    def _question(self) -> dict[str, Any]:
+    def _question(self) -> dict[str, object]:
         """Return the question in the body of a request."""
         if self.headers.get_content_type() != "application/json":
             raise Refused(400, "Content-Type must be application/json")

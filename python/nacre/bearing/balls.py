@@ -9,8 +9,9 @@ from typing import ClassVar
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
-from nacre.bearing.geometry import RINGS, Ring, above, millimetres
-from nacre.hertz import Ellipse
+from nacre.bearing.equilibrium import Balls
+from nacre.bearing.geometry import RINGS, Array, Ring, above, millimetres
+from nacre.bearing.kinds import BallBearing
 
 FLATTEST = 100.0
 """Largest radius of a groove over the diameter of a ball, which is plane beside it."""
@@ -19,7 +20,7 @@ STATIC = 4.2e9
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Balls(Solvable):
+class _Balls(BallBearing, Solvable):
     """Bearing with one row of balls in grooves."""
 
     osculation: tuple[float, float] = (0.52, 0.53)
@@ -28,9 +29,6 @@ class _Balls(Solvable):
     """Factor b_m of ISO 281 for the rating."""
     shoulder_height: float | None = None
     """Height of the shoulders above the bottoms of the grooves [m]; None: a usual one."""
-
-    rolls: ClassVar[bool] = False
-    leans: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Check the arguments."""
@@ -81,9 +79,7 @@ class _Balls(Solvable):
 
     def spread(self, ring: Ring, pressure: float) -> float:
         """Return half of the angle at which the centre of a ball sees its contact [rad]."""
-        number = RINGS.index(ring)
-        along, rolling = self.radii[number]
-        unit = Ellipse(*self.own_radii, self.modulus[number], 1.0, along, rolling)
+        unit = self.ellipse(ring, 1.0)
         # Both semi-axes and the pressure are as the cube root of the load.
         half = unit.semi_axes[0] * pressure / unit.peak_pressure
         return math.asin(min(1.0, half / self.radius))
@@ -104,6 +100,10 @@ class _Balls(Solvable):
         groove = [-f * self.diameter for f in self.osculation]
         inner, outer = self.raceways
         return (groove[0], inner), (groove[1], -outer)
+
+    def motion(self, angles: Array) -> Balls:
+        """Return how balls at these angles move with the inner ring."""
+        return Balls(self, angles)
 
     def shape(self, ring: Ring) -> core.Shape:
         """Return the gap between a ball and a groove.

@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import nacre._core as core
 from nacre.bearing.balls import DeepGrooveBall
-from nacre.bearing.geometry import SMALLEST, WIDEST, above
+from nacre.bearing.geometry import SMALLEST, WIDEST, Bearing, above
 from nacre.bearing.iso import rating
-from nacre.bearing.static import check_bearing, static_rating
+from nacre.bearing.kinds import checked_bearing
+from nacre.bearing.static import static_rating
 
 TOLERANCE = 0.05
 """Difference of ratings that a catalogue may have: fifteen of ball bearings are within 0.8 %."""
@@ -30,9 +31,19 @@ class CatalogueCheck(NamedTuple):
     static_capacity: float | None
     """Of the static rating C_0."""
 
+    def __str__(self) -> str:
+        """Return a line for each rating."""
+        names = ("C of the catalogue", "ISO 281"), ("C_0 of the catalogue", "ISO 76")
+        rows = zip(names, self, strict=True)
+        return "\n".join(
+            f"{name}: {100 * value:+.2g} % from that of {standard} for this geometry"
+            for (name, standard), value in rows
+            if value is not None
+        )
+
 
 def check(
-    bearing: Any, *, capacity: float | None = None, static_capacity: float | None = None
+    bearing: Bearing, *, capacity: float | None = None, static_capacity: float | None = None
 ) -> CatalogueCheck:
     """Compare the ratings of a bearing by its geometry with those of a catalogue.
 
@@ -63,10 +74,10 @@ def check(
     --------
     >>> from nacre.bearing import DeepGrooveBall, check
     >>> bearing = DeepGrooveBall(count=9, diameter=7.9375e-3, pitch_diameter=38.5e-3)  # 6205
-    >>> round(check(bearing, capacity=14e3).capacity, 3)
-    0.001
+    >>> print(check(bearing, capacity=14e3))
+    C of the catalogue: -0.11 % from that of ISO 281 for this geometry
     """
-    check_bearing(bearing)
+    bearing = checked_bearing(bearing)
     if capacity is None and static_capacity is None:
         raise ValueError("capacity or static_capacity must be given, got neither")
     return CatalogueCheck(
@@ -128,7 +139,7 @@ def estimated_balls(
     ...         bore=30e-3, outside_diameter=62e-3, capacity=19.5e3, static_capacity=11.3e3
     ...     )
     >>> bearing.count, round(bearing.diameter * 1e3, 2)
-    (9, 9.54)
+    (9, 9.55)
     """
     bore, outside = above("bore", bore), above("outside_diameter", outside_diameter, bore)
     capacity, static = above("capacity", capacity), above("static_capacity", static_capacity)

@@ -13,18 +13,20 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
-from nacre._tools.typing import Layers
-from nacre.bearing.geometry import RINGS, STEEL, Bearing, Ring, laminae_of
+from nacre.bearing.geometry import RINGS, STEEL, Bearing, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
-from nacre.hertz import Ellipse, contact_modulus
+from nacre.hertz import contact_modulus
+
+if TYPE_CHECKING:
+    from nacre.bearing.kinds import BallBearing, RollerBearing
 
 Array = npt.NDArray[np.float64]
 
@@ -37,8 +39,6 @@ LINE = 10 / 9
 """Exponent of the deflection in the load of a lamina, ISO/TS 16281."""
 STANDARD = contact_modulus(STEEL, STEEL)
 """Contact modulus of the steel of the standard [Pa]."""
-WIDER = 1.5
-"""Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
 STEPS = 4
 """Steps of the width of a grid between a width and twice of it."""
 TOO_NARROW = 4.0
@@ -65,6 +65,7 @@ class Reaction(NamedTuple):
 
 
 Law = Callable[[Array], Reaction]
+"""Reaction of all contacts at their places ``(Z, 2, 2)``."""
 
 
 class Several:
@@ -113,8 +114,9 @@ class Slices:
     two equal ones has the factor ``2^(10/9)``; and the standard's ``2 P(x)`` is a drop at each.
     """
 
-    def __init__(self, bearing: Any, *, standard: bool = True) -> None:
+    def __init__(self, bearing: RollerBearing, *, standard: bool = True) -> None:
         """Take the standard's steel, or the moduli of the substrates for a first guess."""
+        self.length, self.diameter = bearing.length, bearing.diameter
         self.x = laminae_of(bearing.length, LAMINAE)
         self.drop = np.stack([bearing.drop(ring, LAMINAE) for ring in RINGS])
         both = SPRING * (bearing.length * 1e3) ** (8 / 9) * 1e3**LINE / LAMINAE
@@ -132,6 +134,21 @@ class Slices:
         loads: Array = self.spring * self.deflections(places) ** LINE
         return loads
 
+    def heaviest(self, places: Array) -> Array:
+        """Return the largest loads per length of the contacts ``(Z, 2)`` [N/m]."""
+        heaviest: Array = self.loads(places).max(-1) * LAMINAE / self.length
+        return heaviest
+
+    def touching(self) -> Array:
+        """Return the loads per length of contacts a millionth of the diameter deep [N/m]."""
+        force = self.spring[:, 0] * (1e-6 * self.diameter) ** LINE
+        touching: Array = force * (LAMINAE / self.length)
+        return touching
+
+    def approach(self, force: float) -> float:
+        """Return a guess of the approach of an element that is pressed on the outer ring [m]."""
+        return float((force / self.spring[1, 0] / LAMINAE) ** 0.9)
+
     def __call__(self, places: Array) -> Reaction:
         """Return the reaction of all contacts."""
         deflection = self.deflections(places)
@@ -148,9 +165,23 @@ class Slices:
 class Hertzian:
     """Hertz's ellipses of balls in grooves, of the substrates."""
 
-    def __init__(self, bearing: Bearing) -> None:
-        self.unit = [ellipse_of(bearing, ring, 1.0) for ring in RINGS]
+    def __init__(self, bearing: BallBearing) -> None:
+        self.diameter = bearing.diameter
+        self.unit = [bearing.ellipse(ring, 1.0) for ring in RINGS]
         self.spring = np.array([one.approach**-1.5 for one in self.unit])
+
+    def heaviest(self, places: Array) -> Array:
+        """Return the loads of the contacts ``(Z, 2)`` [N]."""
+        return self(places).force[..., 0]
+
+    def touching(self) -> Array:
+        """Return the loads of contacts a millionth of the diameter deep [N]."""
+        touching: Array = self.spring * (1e-6 * self.diameter) ** 1.5
+        return touching
+
+    def approach(self, force: float) -> float:
+        """Return the approach of an element that is pressed on the outer ring [m]."""
+        return float((force / self.spring[1]) ** (2 / 3))
 
     def pressures(self, loads: Array) -> Array:
         """Return the peak pressures under loads ``(Z, 2)`` [Pa]."""
@@ -165,35 +196,7 @@ class Hertzian:
         return Reaction(0.4 * self.spring * deflection**2.5, force, stiffness)
 
 
-def ellipse_of(bearing: Any, ring: Ring, load: float) -> Ellipse:
-    """Return Hertz's contact of a ball or a barrel that carries a load [N]."""
-    number = RINGS.index(ring)
-    (own_x, own_y), (x, y) = bearing.own_radii, bearing.radii[number]
-    return Ellipse(own_x, own_y, bearing.modulus[number], load, x, y)
-
-
-def grid_of(bearing: Any, ring: Ring, line: float, cells: tuple[int, int]) -> core.Grid:
-    """Return a grid for a contact that carries a load.
-
-    That of a roller spans its length, or of a barrel what Hertz's ellipse needs of it. `line` is
-    the largest load per length [N/m] of a roller, and the load of a ball [N].
-    """
-    if not bearing.rolls:
-        a, b = ellipse_of(bearing, ring, line).semi_axes
-        return core.Grid(cells, (2 * WIDER * a, 2 * WIDER * b))
-    ends = np.array([-0.5, 0.0, 0.5]) * bearing.length
-    curvature = float(bearing.curvature(ring, ends).min())
-    modulus = bearing.modulus[RINGS.index(ring)]
-    half = math.sqrt(4 * line / (math.pi * modulus * curvature))
-    length = bearing.length
-    if bearing.aligns:
-        # In the middle of an ellipse the load per length is 3 W/(4 a), and a = c W^(1/3).
-        unit = ellipse_of(bearing, ring, 1.0).semi_axes[0]
-        length = min(length, 2 * WIDER * unit * math.sqrt(4 * unit * line / 3))
-    return core.Grid(cells, (length, 2 * WIDER * half))
-
-
-def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
+def binned(bearing: RollerBearing, contact: Solution) -> tuple[Array, Array]:
     """Return loads [N] and largest pressures [Pa] of the laminae of a roller in a contact.
 
     A cell that lies in two laminae gives each its part of the load, and both its pressure.
@@ -211,38 +214,27 @@ def binned(bearing: Any, contact: Solution) -> tuple[Array, Array]:
     return loads, pressures
 
 
-def bodies_of(bearing: Any, ring: Ring) -> tuple[Layers, Layers]:
-    """Return the bodies of a contact: ring and element, whose ends are free where they are so."""
-    element = bearing.element
-    if bearing.rolls and bearing.free_ends:
-        layers = element.layers if isinstance(element, core.HalfSpace) else ()
-        half = bearing.length / 2
-        base = element.substrate if isinstance(element, core.HalfSpace) else element
-        element = core.HalfSpace(base, layers, ends=(-half, half))
-    return getattr(bearing, ring), element
-
-
 class Solved:
     """Contacts that nacre solves, with warm starts; one plan for contacts of similar width."""
 
     costly = True
-    """Whether elements do not settle at each place of the ring, for which they are evaluated."""
+    """Whether elements settle no further than the ring has, as contacts take long."""
 
     def __init__(
         self,
-        bearing: Any,
+        bearing: Bearing,
         lines: Array,
         cells: tuple[int, int],
         tolerance: float,
         threads: int | None,
     ) -> None:
-        """Plan for the expected loads ``(Z, 2)`` of `grid_of`."""
+        """Plan for the expected loads ``(Z, 2)``, per length those of rollers."""
         self.bearing, self.tolerance = bearing, tolerance
         self.shapes = [bearing.shape(ring) for ring in RINGS]
-        reach = bearing.length / 2 if bearing.rolls else 0.0
-        self.reach = reach
+        self.reach = bearing.reach
         self.plans: dict[tuple[int, int], Contact] = {}
-        self.last_solutions: dict[tuple[int, int], Solution] = {}
+        self.last: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
+        """Place, solution and stiffness of each contact at the last places."""
         power = 2 if bearing.rolls else 3  # of the width, in the load
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
@@ -254,11 +246,7 @@ class Solved:
 
     def _foresee(self, places: Array) -> None:
         """Widen grids of contacts that are expected to be far wider than them."""
-        guess = law(self.bearing, "solved")
-        if isinstance(guess, Slices):
-            lines = guess.loads(places).max(-1) * LAMINAE / self.bearing.length
-        else:
-            lines = guess(places).force[..., 0]
+        lines = self.bearing.law("solved").heaviest(places)
         while True:
             allowed = TOO_NARROW * self.heaviest / np.maximum(lines, 1e-100 * self.heaviest)
             most = floor(np.log2(allowed) / self.power)
@@ -266,7 +254,7 @@ class Solved:
                 break
             self._widen()
         for j, r in np.argwhere(most < self.halved):
-            self.last_solutions.pop((int(j), int(r)), None)  # it starts from no other grid
+            self.last.pop((int(j), int(r)), None)  # it starts from no other grid
         self.halved = np.minimum(self.halved, most)
 
     def _plan(self, element: int, ring: int) -> Contact:
@@ -274,14 +262,18 @@ class Solved:
         key = ring, int(self.halved[element, ring])
         if key not in self.plans:
             line = self.heaviest * 2.0 ** (-self.power * key[1])
-            grid = grid_of(self.bearing, RINGS[ring], line, self.cells)
-            body, counterbody = bodies_of(self.bearing, RINGS[ring])
+            grid = self.bearing.grid(RINGS[ring], line, self.cells)
+            body, counterbody = self.bearing.bodies(RINGS[ring])
             self.plans[key] = Contact(body, grid, counterbody, threads=1)
         return self.plans[key]
 
     def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
         """Return a contact and its stiffness, of which a warning says nothing yet."""
-        initial = self.last_solutions.get((element, ring))
+        initial = None
+        if (element, ring) in self.last:
+            before, initial, stiffness = self.last[element, ring]
+            if np.array_equal(place, before):
+                return initial, stiffness
         while True:
             plan = self._plan(element, ring)
             solution = plan.solve(
@@ -305,7 +297,7 @@ class Solved:
 
         None where half the cells do not carry them, as where a corner bears on the outermost cells.
         """
-        body, counterbody = bodies_of(self.bearing, RINGS[ring])
+        body, counterbody = self.bearing.bodies(RINGS[ring])
         cells = contact.grid.shape[0] // 2, contact.grid.shape[1] // 2
         plan = Contact(body, core.Grid(cells, contact.grid.size), counterbody)
         moment = contact.moment[0] if self.bearing.leans else None
@@ -325,7 +317,7 @@ class Solved:
         """Return whether a contact ends within its grid, but for the ends of a roller."""
         inside = solution.in_contact
         across = inside[:, 0].any() or inside[:, -1].any()
-        whole = self.bearing.rolls and solution.grid.size[0] == self.bearing.length
+        whole = solution.grid.size[0] == 2 * self.reach
         along = not whole and (inside[0].any() or inside[-1].any())
         return not (across or along)
 
@@ -347,7 +339,7 @@ class Solved:
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
         groups = self._equal(tasks, places)
-        solutions: dict[tuple[int, int], Solution] = {}
+        solved: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
         pool = ThreadPoolExecutor(self.workers)
         try:
             with warnings.catch_warnings():
@@ -359,7 +351,7 @@ class Solved:
                     solution, tangent = future.result()
                     for j, r in group:
                         self.halved[j, r] = self.halved[group[0]]
-                        solutions[j, r] = solution
+                        solved[j, r] = places[j, r].copy(), solution, tangent
                         energy[j, r] = solution.elastic_energy
                         force[j, r] = solution.load, solution.moment[0]
                         stiffness[j, r] = tangent[:2, :2]
@@ -368,7 +360,8 @@ class Solved:
         if not self.bearing.leans:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
-        self.last_solutions = solutions
+        self.last = solved
+        solutions = {key: solution for key, (_, solution, _) in solved.items()}
         return Reaction(energy, force, stiffness, solutions)
 
     def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:
@@ -385,10 +378,3 @@ class Solved:
         pairs = np.ndindex(self.halved.shape)
         sizes = [self._plan(element, ring).grid.size for element, ring in pairs]
         return np.array(sizes).reshape(-1, 2, 2)
-
-
-def law(bearing: Bearing, model: str) -> Law:
-    """Return the contacts of the standard, or those for a first guess of solved ones."""
-    if bearing.rolls:
-        return Slices(bearing, standard=model == "iso16281")
-    return Hertzian(bearing)

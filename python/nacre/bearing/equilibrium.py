@@ -11,14 +11,18 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre.bearing.cone import AXIAL
 from nacre.bearing.contact_laws import LAMINAE, Law, Reaction, slices_of
-from nacre.bearing.geometry import RINGS, Bearing, laminae_of
+from nacre.bearing.geometry import RINGS, laminae_of
+
+if TYPE_CHECKING:
+    from nacre.bearing.balls import _Balls
+    from nacre.bearing.rollers import SphericalRoller, _Rollers
 
 Array = npt.NDArray[np.float64]
 
@@ -68,7 +72,7 @@ class Elements(ABC):
     """Length that makes moments forces [m]."""
     size: float
     """Pitch diameter [m]."""
-    outward: tuple[Any, Any]
+    outward: tuple[Array | tuple[float, float], Array | float]
     """Parts of the centrifugal force on the elements' coordinates, and on the ring along z."""
 
     def ring_motion(self, ring: Array) -> Array:
@@ -99,7 +103,7 @@ class Rollers(Elements):
     They are approaches and slopes of both contacts together, and of the outer one.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: _Rollers, angles: Array) -> None:
         """Take the motion of the inner ring at each roller."""
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
@@ -160,7 +164,7 @@ class Balls(Elements):
     Both are (radial, axial), and z counts from the centre of the outer groove.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: _Balls, angles: Array) -> None:
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
         groove = [(f - 0.5) * bearing.diameter for f in bearing.osculation]
@@ -234,7 +238,7 @@ class Barrels(Balls):
     circle is a sphere. Ribs hold the barrels along their axes at speed.
     """
 
-    def __init__(self, bearing: Any, angles: Array) -> None:
+    def __init__(self, bearing: SphericalRoller, angles: Array) -> None:
         """Take the centres of both circles, and on which side of the middle a row is."""
         cos, sin = np.cos(angles), np.sin(angles)
         zero = np.zeros_like(angles)
@@ -283,10 +287,12 @@ class Shaft(Elements):
         own = self._stacked([part.outward[0] for part in parts], 2)
         self.outward = own, self._stacked(along, 1)
 
-    def _stacked(self, numbers: Sequence[Any], width: int) -> Array:
+    def _stacked(self, numbers: Sequence[Array | float | tuple[float, ...]], width: int) -> Array:
         """Return numbers of all parts for each element ``(Z, width)``."""
         rows = [np.zeros((len(one.motion), width)) for one in self.parts]
-        return np.concatenate([row + number for row, number in zip(rows, numbers, strict=True)])
+        return np.concatenate(
+            [row + np.asarray(number) for row, number in zip(rows, numbers, strict=True)]
+        )
 
     def ring_motion(self, ring: Array) -> Array:
         """Return ``t`` of all elements ``(Z, 2)`` at displacements of the shaft."""
@@ -322,12 +328,6 @@ class Shaft(Elements):
         return np.concatenate(angles)
 
 
-def kinematics_of(bearing: Bearing, angles: Array) -> Elements:
-    """Return the motion of the elements of a bearing at their angles."""
-    kind = Barrels if bearing.aligns else Rollers if bearing.leans else Balls
-    return kind(bearing, angles)
-
-
 @dataclass
 class State:
     """Displacements, positions and reactions, with the gradient of the energy and its tangent."""
@@ -353,8 +353,8 @@ class State:
     """Energies of the elements ``(Z,)``, with that of the centrifugal force."""
     balance: float = math.inf
     """Largest mismatch, relative."""
-    unsettled: float = math.inf
-    """Largest mismatch of an element, relative."""
+    unsettled: Array = field(default_factory=lambda: np.zeros(0))
+    """Mismatches of the elements, relative ``(Z,)``."""
 
 
 @dataclass
@@ -375,8 +375,8 @@ class Problem:
         self.outward = np.array(own)
         along = np.zeros((len(self.kinematics.motion), 1)) + ring
         self.thrust = float((along * self.centrifugal).sum())
-        self.settles = not getattr(self.law, "costly", False)
-        """Whether elements settle at each place of the ring: contacts that are solved cost more."""
+        self.costly = getattr(self.law, "costly", False)
+        """Whether contacts are solved, so that elements settle no further than the ring has."""
 
     def state(self, ring: Array, own: Array) -> State:
         """Return what holds at a displacement and positions."""
@@ -414,10 +414,10 @@ class Problem:
         state.balance, state.unsettled = self.mismatches(state)
         return state
 
-    def mismatches(self, state: State) -> tuple[float, float]:
-        """Return the largest mismatch of forces and moments, relative to those that act.
+    def mismatches(self, state: State) -> tuple[float, Array]:
+        """Return mismatches of forces and moments, relative to those that act.
 
-        The first is that of the ring and of the elements, the second that of the elements.
+        The first is the largest of the ring and of the elements, the second those of the elements.
         """
         force: float = max(
             float(np.abs(state.reaction.force[..., 0]).sum()) / 2,
@@ -426,23 +426,25 @@ class Problem:
         )
         pressed = state.deepest > ROUNDING * self.kinematics.size
         if force == 0.0 or not (pressed or self.loads.any() or np.any(self.centrifugal)):
-            return 0.0, 0.0
+            return 0.0, np.zeros(len(state.own))
         arm = np.array([1, 1, 1, self.kinematics.arm, self.kinematics.arm])
         ring = np.abs(state.wanting / arm)[self.free]
-        own = float(np.abs(state.slack / self.kinematics.lengths).max(initial=0.0))
-        return max(float(ring.max(initial=0.0)), own) / force, own / force
+        own = np.abs(state.slack / self.kinematics.lengths).max(axis=1) / force
+        return max(float(ring.max(initial=0.0)) / force, float(own.max(initial=0.0))), own
 
-    def settled(self, state: State, tolerance: float) -> State:
-        """Return the state with the elements in equilibrium at this place of the ring.
+    def settled(self, state: State, mismatch: float) -> State:
+        """Return the state with no element above a mismatch, at this place of the ring.
 
         Each element makes Newton's steps of its own, which are made again at a quarter where its
         energy rises.
         """
         share = np.ones(len(state.own))
         for _ in range(SETTLING):
-            if state.unsettled <= ELEMENTS * tolerance:
+            moves = state.unsettled > mismatch
+            if not moves.any():
                 break
-            step = state.back[0] * np.minimum(share, self.limits(state, state.back[0]))[:, None]
+            share = np.minimum(share, self.limits(state, state.back[0]))
+            step = np.where(moves, share, 0.0)[:, None] * state.back[0]
             trial = self.state(state.ring, state.own + step)
             lower = trial.energies <= state.energies + FLAT * trial.reaction.energy.sum(1)
             share = np.where(lower, 1.0, share / 4)
@@ -544,11 +546,11 @@ class Problem:
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
 
-        def reached(ring: Array, own: Array) -> State:
-            state = self.state(ring, own)
-            return self.settled(state, tolerance) if self.settles else state
+        def reached(ring: Array, own: Array, balance: float) -> State:
+            mismatch = balance if self.costly else 0.0
+            return self.settled(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
 
-        state, reach = reached(ring, own), FARTHEST
+        state, reach = reached(ring, own, math.inf), FARTHEST
         # Steps must go below the lowest values so far: steps of rounding alone would never end.
         lowest, closest = state.energy, state.balance
         for done in range(max_iterations + 1):
@@ -561,7 +563,8 @@ class Problem:
             ring_step, own_step, shorter = self.step(state, reach)
             share = 1.0
             for _ in range(HALVINGS):
-                trial = reached(state.ring + share * ring_step, state.own + share * own_step)
+                ring, own = state.ring + share * ring_step, state.own + share * own_step
+                trial = reached(ring, own, state.balance)
                 rounding = SLACK * float(np.abs(trial.reaction.energy).sum())
                 if trial.energy < lowest or (
                     trial.energy <= state.energy + rounding and trial.balance < closest

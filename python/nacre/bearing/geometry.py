@@ -7,7 +7,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,10 @@ from nacre._tools.typing import Layers
 from nacre._tools.units import system
 from nacre.hertz import contact_modulus
 from nacre.results.values import decode
+
+if TYPE_CHECKING:
+    from nacre.bearing.contact_laws import Hertzian, Slices
+    from nacre.bearing.equilibrium import Elements
 
 Array = npt.NDArray[np.float64]
 Ring = Literal["inner", "outer"]
@@ -415,6 +419,27 @@ class Bearing(ABC):
         """Whether a body has layers."""
         bodies = (self.element, self.inner, self.outer)
         return any(isinstance(body, core.HalfSpace) and body.layers for body in bodies)
+
+    @property
+    def reach(self) -> float:
+        """Half of the length of a contact that may be tilted [m], 0 of balls."""
+        return 0.0
+
+    @abstractmethod
+    def motion(self, angles: Array) -> Elements:
+        """Return how elements at these angles move with the inner ring."""
+
+    @abstractmethod
+    def law(self, model: str) -> Slices | Hertzian:
+        """Return the contacts of the standard, or those for a first guess of solved ones."""
+
+    @abstractmethod
+    def grid(self, ring: Ring, load: float, cells: tuple[int, int]) -> core.Grid:
+        """Return a grid for a contact that carries a load, per length that of rollers."""
+
+    def bodies(self, ring: Ring) -> tuple[Layers, Layers]:
+        """Return the bodies of a contact: ring and element."""
+        return getattr(self, ring), self.element
 
     @abstractmethod
     def shape(self, ring: Ring) -> core.Shape:

@@ -9,7 +9,7 @@ in N, as in the standards.
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, above, laminae_of
+from nacre.bearing.kinds import BallBearing, RollerBearing, checked_bearing
 
 Array = npt.NDArray[np.float64]
 Edge = Literal["standard", "pressure"] | None
@@ -76,7 +77,7 @@ def load_integrals(epsilon: float, exponent: float) -> tuple[float, float]:
     return float((values * np.cos(psi)).sum() / math.pi), float(values.sum() / math.pi)
 
 
-def rating(bearing: Any) -> float:
+def rating(bearing: Bearing) -> float:
     """Dynamic load rating of ISO 281 [N], of steel without layers.
 
     It is the radial rating C_r; of ball bearings with a contact angle above 45°, which are thrust
@@ -112,12 +113,10 @@ def rating(bearing: Any) -> float:
     >>> round(rating(bearing))
     48417
     """
-    candidate: object = bearing
-    if not isinstance(candidate, Bearing):
-        raise TypeError(f"bearing must be a bearing, got {bearing!r}")
+    bearing = checked_bearing(bearing)
     gamma, diameter = bearing.gamma, bearing.diameter * 1e3
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
-    if bearing.rolls:
+    if isinstance(bearing, RollerBearing):
         shape = 551.13373 * 0.377 * REDUCTION * gamma ** (2 / 9)
         shape *= (1 - gamma) ** (29 / 27) * (1 + gamma) ** -0.25
         shape *= (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
@@ -140,13 +139,13 @@ def is_thrust(bearing: Bearing) -> bool:
     return bool(bearing.nominal_angle > math.pi / 4)
 
 
-def _conformity(grooves: tuple[float, float]) -> float:
+def _conformity(grooves: tuple[float, ...]) -> float:
     """Return how much better the inner groove fits the ball than the outer one, in f_c."""
     inner, outer = grooves
     return float((inner / outer * (2 * outer - 1) / (2 * inner - 1)) ** 0.41)
 
 
-def _shape(ratio: float, grooves: tuple[float, float], thrust: bool) -> float:
+def _shape(ratio: float, grooves: tuple[float, ...], thrust: bool) -> float:
     """Return the part of f_c in which the grooves of a ball bearing are."""
     inside = (1.0 if thrust else 1.04) * ratio**1.72 * _conformity(grooves)
     inner = grooves[0]
@@ -164,7 +163,7 @@ class ReferenceLife(NamedTuple):
     """Ratings of the contacts of an element with inner and outer ring [N]."""
 
 
-def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
+def capacities(bearing: Bearing, capacity: float) -> tuple[float, float]:
     """Return the ratings Q_ci and Q_ce of the contacts of an element [N].
 
     ISO/TS 16281:2008, equations (19) and (20) for balls, (21) and (22) for those of thrust
@@ -172,12 +171,13 @@ def capacities(bearing: Any, capacity: float) -> tuple[float, float]:
     """
     gamma, count = bearing.gamma, bearing.count
     ratio, cos = (1 - gamma) / (1 + gamma), math.cos(bearing.nominal_angle)
-    if bearing.rolls:
+    if isinstance(bearing, RollerBearing):
         share = (1.038 * ratio ** (143 / 108)) ** 4.5
         base = capacity / (REDUCTION * count * cos * bearing.rows ** (7 / 9))
         factors = ((0.378, share), (0.364, 1 / share))
         power = 2 / 9
     else:
+        assert isinstance(bearing, BallBearing)
         thrust = is_thrust(bearing)
         share = (1.0 if thrust else 1.044) * ratio**1.72 * _conformity(bearing.osculation)
         share **= 10 / 3
@@ -220,7 +220,7 @@ def edge_factors(count: int) -> Array:
     return factors
 
 
-def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
+def hertz_pressures(bearing: RollerBearing, loads: Array, moduli: Array) -> Array:
     """Return Hertz's pressures of laminae under their loads ``(Z, 2, laminae)`` [Pa]."""
     count = loads.shape[-1]
     x = laminae_of(bearing.length, count)
@@ -230,7 +230,7 @@ def hertz_pressures(bearing: Any, loads: Array, moduli: Array) -> Array:
     return pressures
 
 
-def pressure_factors(bearing: Bearing, loads: Array, pressures: Array) -> Array:
+def pressure_factors(bearing: RollerBearing, loads: Array, pressures: Array) -> Array:
     """Return pressures of laminae over those of Hertz under their loads ``(Z, 2, laminae)``.
 
     ISO/TS 16281:2008, equations (58) and (59), with the moduli of the substrates in place of the

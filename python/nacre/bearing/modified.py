@@ -11,13 +11,13 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import nacre._core as core
-from nacre.bearing.contact_laws import bodies_of, ellipse_of, grid_of
-from nacre.bearing.geometry import RINGS, Ring, above
+from nacre.bearing.geometry import RINGS, Bearing, Ring, above
 from nacre.bearing.iso import is_thrust
-from nacre.bearing.static import STEEL, check_bearing, element_load, static_rating, total_load
+from nacre.bearing.kinds import CurvedRaceways, RollerBearing, checked_bearing
+from nacre.bearing.static import STEEL, element_load, static_rating, total_load
 from nacre.contact import Contact
 from nacre.results.verdict import SINGULAR
 
@@ -255,7 +255,7 @@ def life_modification_factor(
     return float(0.1 * max(rest, least) ** -known.k)
 
 
-def fatigue_load_limit(bearing: Any) -> float:
+def fatigue_load_limit(bearing: Bearing) -> float:
     """Fatigue load limit C_u of ISO 281 [N]: the heaviest element then has 1500 MPa.
 
     Parameters
@@ -284,8 +284,11 @@ def fatigue_load_limit(bearing: Any) -> float:
     >>> round(fatigue_load_limit(bearing))
     587
     """
-    check_bearing(bearing)
-    load = element_load(bearing, LIMIT) if not bearing.rolls else _roller_load(bearing)
+    bearing = checked_bearing(bearing)
+    if isinstance(bearing, RollerBearing):
+        load = _roller_load(bearing)
+    else:
+        load = element_load(bearing, LIMIT)
     if load is None:
         warnings.warn(
             "the fatigue load limit is C_0/8.2: the pressure of the contact has no limit at its "
@@ -297,7 +300,7 @@ def fatigue_load_limit(bearing: Any) -> float:
     return total_load(bearing, load, SHARE[bearing.rolls]) * _smaller(bearing)
 
 
-def simple_fatigue_load_limit(bearing: Any) -> float:
+def simple_fatigue_load_limit(bearing: Bearing) -> float:
     """Fatigue load limit by the simple formulae of ISO 281: C_0/22 or C_0/8.2 [N].
 
     Parameters
@@ -323,12 +326,12 @@ def simple_fatigue_load_limit(bearing: Any) -> float:
     return static_rating(bearing) / SIMPLE[bearing.rolls] * _smaller(bearing)
 
 
-def _smaller(bearing: Any) -> float:
+def _smaller(bearing: Bearing) -> float:
     """Return the factor by which limits of larger bearings are smaller."""
     return float(min(1.0, LARGE / bearing.pitch) ** LARGER[bearing.rolls])
 
 
-def _roller_load(bearing: Any) -> float | None:
+def _roller_load(bearing: RollerBearing) -> float | None:
     """Return the load at which a contact of a profiled roller has `LIMIT` [N], the smaller one.
 
     None where the pressure at its ends has no limit.
@@ -338,11 +341,11 @@ def _roller_load(bearing: Any) -> float | None:
     return min((load for load in loads if load is not None), default=None)
 
 
-def _contact_load(bearing: Any, ring: Ring) -> float | None:
+def _contact_load(bearing: RollerBearing, ring: Ring) -> float | None:
     """Return the load at which a contact of a roller has `LIMIT` [N], or None."""
     load, line = _hertz_load(bearing, ring)
-    body, counterbody = bodies_of(bearing, ring)
-    plan = Contact(body, grid_of(bearing, ring, line, CELLS), counterbody)
+    body, counterbody = bearing.bodies(ring)
+    plan = Contact(body, bearing.grid(ring, line, CELLS), counterbody)
     power, contact, last = 2.0, None, None
     for _ in range(STEPS):
         with warnings.catch_warnings():
@@ -360,10 +363,10 @@ def _contact_load(bearing: Any, ring: Ring) -> float | None:
     return None
 
 
-def _hertz_load(bearing: Any, ring: Ring) -> tuple[float, float]:
+def _hertz_load(bearing: RollerBearing, ring: Ring) -> tuple[float, float]:
     """Return Hertz's load at `LIMIT` [N], and that per length in the middle [N/m]."""
-    if bearing.aligns:
-        unit = ellipse_of(bearing, ring, 1.0)
+    if isinstance(bearing, CurvedRaceways):
+        unit = bearing.ellipse(ring, 1.0)
         load = (LIMIT / unit.peak_pressure) ** 3
         # Semi-axes are as the cube root of the load.
         return load, 0.75 * load / (unit.semi_axes[0] * math.cbrt(load))
@@ -391,7 +394,7 @@ class Lubrication(NamedTuple):
         """Whether there is a_ISO."""
         return any(value is not None for value in self[:4])
 
-    def check(self, bearing: Any) -> None:
+    def check(self, bearing: Bearing) -> None:
         """Raise an error unless κ follows from one argument, and e_C is given, in range."""
         names = self._fields[:3]
         ways = [name for name in names if getattr(self, name) is not None]
@@ -414,7 +417,7 @@ class Lubrication(NamedTuple):
         if ways:
             self.cleanliness(bearing)
 
-    def kappa(self, bearing: Any, speed: float) -> float:
+    def kappa(self, bearing: Bearing, speed: float) -> float:
         """Return the viscosity ratio at a speed [rad/s]."""
         if self.viscosity_ratio is not None:
             return float(self.viscosity_ratio)
@@ -425,7 +428,7 @@ class Lubrication(NamedTuple):
             raise ValueError("speed must be given, in solve or life, for a kinematic_viscosity")
         return float(self.kinematic_viscosity) / reference_viscosity(speed, bearing.pitch)
 
-    def cleanliness(self, bearing: Any) -> tuple[float, str]:
+    def cleanliness(self, bearing: Bearing) -> tuple[float, str]:
         """Return e_C, and where it is from in words: of a range it is the middle."""
         if isinstance(self.contamination, str):
             low, high = contamination_range(self.contamination, bearing.pitch)
@@ -439,7 +442,7 @@ class Lubrication(NamedTuple):
             )
         return value, f"e_C {value:g}"
 
-    def factor(self, bearing: Any, speed: float, limit: float, load: float) -> float:
+    def factor(self, bearing: Bearing, speed: float, limit: float, load: float) -> float:
         """Return a_ISO under an equivalent load [N] with a fatigue load limit [N].
 
         With additives that work κ is 1 where it is below and e_C at least 0.2, and a_ISO at most 3:

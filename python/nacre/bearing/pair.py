@@ -7,9 +7,11 @@ kinematics are those of the single bearings; each ring is set along the axis by 
 from __future__ import annotations
 
 import math
+import os
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
@@ -18,16 +20,23 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.arguments import read_fields
 from nacre._tools.typing import among
-from nacre._tools.units import printable
+from nacre._tools.units import printable, rounded
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
-from nacre.bearing.contact_laws import Law, Reaction, Several, law
-from nacre.bearing.equilibrium import Problem, Shaft, State, kinematics_of
+from nacre.bearing.contact_laws import Law, Reaction, Several
+from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
 from nacre.bearing.rollers import TaperedRoller
-from nacre.bearing.solution import VECTORS, BearingReport, BearingSolution, Model
+from nacre.bearing.solution import (
+    STIFFNESS,
+    VECTORS,
+    BearingReport,
+    BearingSolution,
+    Model,
+    stiffness_rows,
+)
 from nacre.bearing.solving import (
     CELLS,
     Along,
@@ -41,20 +50,22 @@ from nacre.bearing.solving import (
     find_equilibrium,
     issue,
     largest_of,
-    pressed_by,
     read_conditions,
     solution_of,
     solve_bearing,
     solved_contacts,
 )
+from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.quantities import BEARING, PAIR_LIFE
-from nacre.results.report import Sections
+from nacre.results.report import Sections, input_rows, table, writer
 from nacre.results.table_results import TableResult, Tabular
 from nacre.results.values import encode, refusing
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
 Arrangement = Literal["O", "X", "tandem"]
@@ -68,6 +79,8 @@ FARTHEST = 100.0
 """Largest distance over the pitch diameter: shafts as long bend more than their bearings."""
 PRELOAD_STEPS = 50
 """Newton steps, at least, for the place of the rings without load: it takes some five."""
+PRELOAD = {"distance": "m", "preload_force": "N", "preload_distance": "m"}
+"""Units of what sets a pair."""
 STANDSTILL = Operation(0.0, 0.0, "inner")
 """Operation in which bearings are preloaded."""
 
@@ -336,11 +349,11 @@ def _equilibrium(
     """Return the equilibrium of the shaft with rings that are set so far along their axes."""
     loads, moved, free = _read(pair, conditions)
     bearings = pair.bearings
-    parts = [kinematics_of(one, element_angles(one, operation.rotation)) for one in bearings]
+    parts = [one.motion(element_angles(one, operation.rotation)) for one in bearings]
     shaft, counts = Shaft(parts, _ways(pair), settings), [one.elements for one in bearings]
-    laws = [law(one, options.model) for one in bearings]
+    laws = [one.law(options.model) for one in bearings]
     forces = [centrifugal_force(one, operation) for one in bearings]
-    pressed = [pressed_by(one, force) for one, force in zip(laws, forces, strict=True)]
+    pressed = [one.approach(force) for one, force in zip(laws, forces, strict=True)]
     problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
     check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
 
@@ -478,11 +491,11 @@ class PairLife(TableResult):
         def text(life: float) -> str:
             if math.isinf(life):
                 return "infinite: no element is loaded"
-            return f"{life / 1e6:.6g} million revolutions"
+            return f"{rounded(life / 1e6, 4)} million revolutions"
 
         lives = {row.label: text(row.of(self)) for row in PAIR_LIFE if row.name != "hours"}
         if math.isfinite(self.hours):
-            lives["hours"] = f"{self.hours:.6g}"
+            lives["hours"] = rounded(self.hours, 4)
         return [*lives.items(), ("model", self.model)]
 
     def _sections(self) -> Sections:
@@ -539,6 +552,11 @@ class PairSolution(Tabular):
         return self.first, self.second
 
     @property
+    def verdict(self) -> Verdict:
+        """Verdict: those on both bearings, of which the worst decides."""
+        return pair_verdict(dict(zip(NAMES, self.bearings, strict=True)))
+
+    @property
     def peak_pressure(self) -> float:
         """Largest pressure of all contacts [Pa]."""
         return max(one.peak_pressure for one in self.bearings)
@@ -570,6 +588,30 @@ class PairSolution(Tabular):
         True
         """
         return self.tangent.copy()
+
+    def plot(self) -> dict[str, Axes]:
+        """Draw loads over the angle and pressures of both bearings.
+
+        Needs ``nacre-contact[plot]``.
+
+        Returns
+        -------
+        dict of matplotlib.axes.Axes
+            The axes, by name, as those of `nacre.plot.bearing_pair`.
+
+        Examples
+        --------
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> len(pair.solve(model="iso16281").plot())
+        4
+        """
+        from nacre import plot
+
+        return plot.bearing_pair(self)
 
     def life(
         self, edge: Edge = "standard", *, rotating: Ring | None = None, **modification: Any
@@ -607,7 +649,7 @@ class PairSolution(Tabular):
         >>> life.second  # it has lost contact
         inf
         """
-        if "spectrum" in modification:
+        if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
         first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
         slope = LINE if self.pair.first.rolls else POINT
@@ -639,30 +681,28 @@ class PairSolution(Tabular):
 
     @display.in_si
     def _sections(self) -> Sections:
-        parts = [one._sections() for one in self.bearings]
-
-        def rows(name: str) -> list[tuple[str, str]]:
-            pairs = zip(NAMES, parts, strict=True)
-            return [
-                (f"{which}: {key}", text)
-                for which, part in pairs
-                for key, text in getattr(part, name)
-            ]
-
-        tables = [
-            one._replace(title=f"{one.title}, {which} bearing")
-            for which, part in zip(NAMES, parts, strict=True)
+        values = {field.name: getattr(self.pair, field.name) for field in fields(self.pair)}
+        names = ("model", "rotation", "speed", "rotating", "cells")
+        values |= {name: getattr(self.first, name) for name in names}
+        parts = {name: getattr(self, name)._sections() for name in NAMES}
+        numbers = [row for row in self._rows() if row[0] not in ("contacts", "ended")]
+        numbers += [
+            (f"{name}: {key}", text) for name, part in parts.items() for key, text in part.numbers
+        ]
+        pictures = [
+            picture._replace(caption=f"{name.capitalize()} bearing. {picture.caption}")
+            for name, part in parts.items()
+            for picture in part.pictures
+        ]
+        tables = [table(STIFFNESS, stiffness_rows(self.tangent))]
+        tables += [
+            one._replace(title=f"{one.title}, {name} bearing")
+            for name, part in parts.items()
             for one in part.tables
         ]
-        return Sections(
-            self._TITLE,
-            rows("inputs"),
-            [*self._rows(), *rows("numbers")],
-            [picture for part in parts for picture in part.pictures],
-            tables,
-            rows("model"),
-            self.report.warnings,
-        )
+        model = parts["first"].model
+        inputs = input_rows(values, PRELOAD)
+        return Sections(self._TITLE, inputs, numbers, pictures, tables, model, self.report.warnings)
 
     @staticmethod
     def _vectors() -> list[Any]:
@@ -670,7 +710,43 @@ class PairSolution(Tabular):
         kinds = {row.name: row for row in BEARING}
         return [kinds[name] for name in VECTORS]
 
-    save = display.in_si(Tabular.save)
+    @display.in_si
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
+            ``nacre-contact[files]``, ``.csv`` for the table of elements, a picture, or ``.html``
+            for a report.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from nacre.bearing import AngularContactBall, Pair
+        >>> ball = AngularContactBall(
+        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+        ... )
+        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+        >>> solution = pair.solve(model="iso16281")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(solution.save(f"{folder}/pair.nc")) == solution
+        True
+        """
+        writers = files.tabular(self, self._file_rows(), **self._comments()) | writer(self)
+        writers |= files.pictures(lambda: next(iter(self.plot().values())))
+        return files.save(path, writers)
 
     def _comments(self) -> dict[str, Any]:
         vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
@@ -711,11 +787,12 @@ class PairSolution(Tabular):
         return printable(f"<{type(self).__name__}: {rows}>")
 
     def __str__(self) -> str:
-        """Return the main numbers."""
-        return display.text(self._rows(), self.report.warnings)
+        """Return the verdict and the main numbers."""
+        return f"{self.verdict}\n\n" + display.text(self._rows(), self.report.warnings)
 
     def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.report.warnings)
+        verdict = self.verdict.sentences
+        return display.markup(self._rows(), self.report.warnings, verdict=verdict)
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""

@@ -214,7 +214,7 @@ def _duties(solution: BearingSolution, spectrum: Iterable[Duty]) -> list[tuple[f
     return checked
 
 
-def _conditions(solution: BearingSolution, place: str, force: Any) -> dict[str, Any]:
+def _conditions(solution: BearingSolution, place: str, force: object) -> dict[str, object]:
     """Return the keywords of `solve` for a force of a spectrum; all else is as in the solution."""
     loaded = solution.loaded_directions
     if loaded is None:

@@ -13,7 +13,9 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
+from nacre.bearing.equilibrium import Barrels, Rollers
 from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres
+from nacre.bearing.kinds import WIDER, CurvedRaceways, RollerBearing
 
 Array = npt.NDArray[np.float64]
 Word = Literal["iso16281", "iso16281_cylindrical"]
@@ -47,7 +49,7 @@ def _check_angle(angle: float) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Rollers(Solvable):
+class _Rollers(RollerBearing, Solvable):
     """Bearing with one row of rollers on straight or crowned raceways."""
 
     length: float
@@ -59,7 +61,6 @@ class _Rollers(Solvable):
     free_ends: bool = True
     """Whether the ends of the rollers are free surfaces."""
 
-    rolls: ClassVar[bool] = True
     leans: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -142,6 +143,10 @@ class _Rollers(Solvable):
                 f"profile must cover the roller of {millimetres(self.length)}, got {profile}"
             )
         return drops
+
+    def motion(self, angles: Array) -> Rollers:
+        """Return how rollers at these angles move with the inner ring."""
+        return Rollers(self, angles)
 
     def shape(self, ring: Ring) -> core.Shape:
         """Return the gap between a roller and a raceway.
@@ -460,7 +465,7 @@ def _rise(radius: float, x: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SphericalRoller(Solvable):
+class SphericalRoller(RollerBearing, CurvedRaceways, Solvable):
     """Bearing with barrels on an outer raceway that is a sphere, which aligns itself.
 
     The outer raceway is a sphere about the bearing's centre, of the radius ``d_m/(2 cos α) + D/2``.
@@ -540,7 +545,6 @@ class SphericalRoller(Solvable):
     """Factor b_m of ISO 281 for the rating."""
 
     kind: ClassVar[str] = "spherical_roller"
-    rolls: ClassVar[bool] = True
     leans: ClassVar[bool] = False
     aligns: ClassVar[bool] = True
 
@@ -643,6 +647,16 @@ class SphericalRoller(Solvable):
         """Drop of a roller from the raceway at the middles of laminae [m]."""
         x = laminae_of(self.length, laminae)
         return _rise(self.profile_radius, x) - _rise(self.grooves[RINGS.index(ring)], x)
+
+    def motion(self, angles: Array) -> Barrels:
+        """Return how barrels at these angles move with the inner ring."""
+        return Barrels(self, angles)
+
+    def _loaded_length(self, ring: Ring, line: float) -> float:
+        """Return how much of a barrel a contact needs whose largest load per length is this [m]."""
+        # In the middle of an ellipse the load per length is 3 W/(4 a), and a = c W^(1/3).
+        unit = self.ellipse(ring, 1.0).semi_axes[0]
+        return min(self.length, 2 * WIDER * unit * math.sqrt(4 * unit * line / 3))
 
     def shape(self, ring: Ring) -> core.Shape:
         """Return the gap between a roller and a raceway.

@@ -13,9 +13,10 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import among
 from nacre._tools.units import printable, rounded, symbol
-from nacre.bearing.contact_laws import LAMINAE, bodies_of
+from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
+from nacre.bearing.kinds import RollerBearing
 from nacre.bearing.modified import Lubrication
 from nacre.bearing.rating_life import BearingLife, Duty, life_of
 from nacre.bearing.static import StaticLoad, static_load_of
@@ -71,6 +72,8 @@ ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": (
 """Units in which angles are printed, and how many there are in a radian."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
+STIFFNESS = "Stiffness in N, N m, m and rad"
+"""Title of the table of a stiffness."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
 """What a report says of the model."""
 
@@ -135,6 +138,13 @@ class BearingReport(Result):
             f"<BearingReport: {self.termination} after {self.iterations} steps, "
             f"balance {self.balance:.1e}; {len(self.warnings)} warnings>"
         )
+
+
+def stiffness_rows(tangent: Array) -> list[list[Any]]:
+    """Return the rows of the table of a stiffness ``(5, 5)``, with names."""
+    head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
+    names = [f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]
+    return [head, *([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -316,7 +326,7 @@ class BearingSolution(Tabular):
             return None
         key = element, number
         if key not in self._contacts:
-            body, counterbody = bodies_of(self.bearing, ring)
+            body, counterbody = self.bearing.bodies(ring)
             size = tuple(self.grid_sizes[key].tolist())
             plan = Contact(body, core.Grid(self.cells, size), counterbody)
             self._contacts[key] = plan.solve(
@@ -360,6 +370,7 @@ class BearingSolution(Tabular):
                 'edge must be "standard" or None for contacts of the standard, whose '
                 'pressure is not known, got "pressure"'
             )
+        assert isinstance(self.bearing, RollerBearing)
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
     def life(
@@ -594,12 +605,9 @@ class BearingSolution(Tabular):
         rows = self._rows()
         model = [row for row in rows if row[0] in ("contacts", "ended")]
         numbers = [*(row for row in rows if row not in model), *self._geometry()]
-        stiffness = [[f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]]
-        head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
-        matrix = zip(stiffness[0], self.tangent.tolist(), strict=True)
         tables = [
             table("Elements and rings", self._element_rows()),
-            table("Stiffness in N, N m, m and rad", [head, *([n, *row] for n, row in matrix)]),
+            table(STIFFNESS, stiffness_rows(self.tangent)),
         ]
         errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
         limits = [*model, *errors, ("not counted", NOT_COUNTED)]

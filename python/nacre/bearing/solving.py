@@ -7,7 +7,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -18,21 +18,23 @@ from nacre._tools.typing import among
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
-    LINE,
     STANDARD,
     Hertzian,
     Law,
     Slices,
     Solved,
     binned,
-    law,
 )
-from nacre.bearing.equilibrium import Problem, State, kinematics_of
+from nacre.bearing.equilibrium import Problem, State
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, Ring, above
 from nacre.bearing.iso import hertz_pressures
+from nacre.bearing.kinds import BallBearing, RollerBearing
 from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
 from nacre.contact.solution import Solution
 from nacre.results.verdict import SINGULAR
+
+if TYPE_CHECKING:
+    from nacre.bearing.pair import PairSolution
 
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None] | None
@@ -127,7 +129,7 @@ class BearingOptions:
         )
 
 
-def _positive(name: str, value: Any) -> int:
+def _positive(name: str, value: object) -> int:
     """Return an integer of at least 1, or raise an error."""
     number = core.integer(name, value)
     if number < 1:
@@ -196,12 +198,12 @@ def _conditions(
     return as_arrays(loads, moved)
 
 
-def largest_of(bearing: Any) -> dict[str, float]:
+def largest_of(bearing: Bearing) -> dict[str, float]:
     """Return the largest values along a direction: beyond them nothing is a bearing any more.
 
     Forces are ten times those of `HIGHEST` on all of the elements' cross-sections.
     """
-    wide = bearing.length if bearing.rolls else bearing.diameter
+    wide = 2 * bearing.reach or bearing.diameter
     force = 10 * HIGHEST * bearing.elements * bearing.diameter * wide
     moment = force * bearing.pitch
     return {"force": force, "moment": moment, "tilt": 1.0, "displacement": bearing.diameter}
@@ -258,9 +260,13 @@ def centrifugal_force(bearing: Bearing, operation: Operation) -> float:
     return bearing.mass * bearing.pitch / 2 * cage**2
 
 
-def solved_contacts(bearing: Bearing, law: Law, places: Array, options: BearingOptions) -> Solved:
+def solved_contacts(
+    bearing: Bearing, law: Slices | Hertzian, places: Array, options: BearingOptions
+) -> Solved:
     """Return contacts that nacre solves, on grids for the loads of a first guess."""
-    lines = _lines(bearing, law, places)
+    lines = law.heaviest(places)
+    if not lines.any():
+        lines = lines + law.touching()
     return Solved(bearing, lines, options.cells, FINER * options.tolerance, options.threads)
 
 
@@ -305,7 +311,7 @@ def find_equilibrium(
     return problem, state, (done, ending)
 
 
-def issue(solution: Any, options: BearingOptions) -> None:
+def issue(solution: BearingSolution | PairSolution, options: BearingOptions) -> None:
     """Warn of what limits a solution, and raise an error if it did not converge."""
     report = solution.report
     for message in report.warnings:
@@ -326,13 +332,13 @@ def solve_bearing(
     loads, moved, free = _conditions(bearing, ring)
     operation, options = operation.checked(bearing), options.checked(bearing)
     angles = element_angles(bearing, operation.rotation)
-    kinematics, guess = kinematics_of(bearing, angles), law(bearing, options.model)
+    kinematics, guess = bearing.motion(angles), bearing.law(options.model)
     centrifugal = centrifugal_force(bearing, operation)
     problem = Problem(kinematics, guess, loads, free, centrifugal)
     check_carried(kinematics.generators(), loads, problem.thrust, free, kinematics.arm)
     problem, state, ending = find_equilibrium(
         problem,
-        problem.start(moved, pressed_by(guess, centrifugal)),
+        problem.start(moved, guess.approach(centrifugal)),
         lambda state: solved_contacts(bearing, guess, state.places, options),
         lambda problem, state, tolerance: check_sides(bearing, problem, state, tolerance),
         options,
@@ -340,28 +346,6 @@ def solve_bearing(
     solution = solution_of(bearing, operation, options, problem, state, ending)
     issue(solution, options)
     return solution
-
-
-def pressed_by(law: Any, force: float) -> float:
-    """Return a guess of the approach of an element that is pressed on the outer ring."""
-    if force == 0:
-        return 0.0
-    spring = law.spring[1]
-    if isinstance(law, Hertzian):
-        return float((force / spring) ** (2 / 3))
-    return float((force / spring[0] / LAMINAE) ** 0.9)
-
-
-def _lines(bearing: Any, law: Any, places: Array) -> Array:
-    """Return the expected loads of the contacts by which their grids are chosen."""
-    if isinstance(law, Slices):
-        lines: Array = law.loads(places).max(-1) * LAMINAE / bearing.length
-    else:
-        lines = law(places).force[..., 0]
-    if not lines.any():  # nothing touches: grids for a millionth of the diameter
-        exponent, pieces = (LINE, LAMINAE / bearing.length) if bearing.rolls else (1.5, 1.0)
-        lines = lines + np.ravel(law.spring) * (1e-6 * bearing.diameter) ** exponent * pieces
-    return lines
 
 
 def solution_of(
@@ -381,17 +365,15 @@ def solution_of(
         contacts = dict(state.reaction.contacts)
         peaks = np.zeros(loads.shape)
         sizes = problem.law.sizes()
-        if bearing.rolls:
-            laminae, pressures = (
-                np.zeros((*loads.shape, LAMINAE)),
-                np.zeros((*loads.shape, LAMINAE)),
-            )
         for key, contact in contacts.items():
             peaks[key] = contact.peak_pressure
-            if laminae is not None and pressures is not None:
-                laminae[key], pressures[key] = binned(bearing, contact)
+        if isinstance(bearing, RollerBearing):
+            laminae, pressures = fields = np.zeros((2, *loads.shape, LAMINAE))
+            for key, contact in contacts.items():
+                fields[:, *key] = binned(bearing, contact)
     elif isinstance(problem.law, Slices):
         laminae = problem.law.loads(places)
+        assert isinstance(bearing, RollerBearing)
         pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
         peaks = pressures.max(-1)
     else:
@@ -458,7 +440,7 @@ def _discretisation(
             return dict.fromkeys(errors)
         singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)
         values = [coarse.peak_pressure]
-        if bearing.rolls:
+        if isinstance(bearing, RollerBearing):
             values.append(float(edge_pressure(binned(bearing, coarse)[1])))
         for name, value, field in zip(names, values, pressures, strict=False):
             known = errors[name]
@@ -482,9 +464,9 @@ def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[str]:
         )
 
 
-def _beyond_shoulders(bearing: Any, normals: Array, peaks: Array) -> Iterable[str]:
+def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterable[str]:
     """Yield a warning where contacts of balls reach beyond the shoulders of the rings."""
-    if bearing.rolls:
+    if not isinstance(bearing, BallBearing):
         return
     for k, (ring, shoulder) in enumerate(zip(RINGS, bearing.shoulders, strict=True)):
         reached = (
@@ -502,7 +484,9 @@ def _beyond_shoulders(bearing: Any, normals: Array, peaks: Array) -> Iterable[st
             )
 
 
-def _notes(bearing: Bearing, model: Model, contacts: Mapping[Any, Solution]) -> Iterable[str]:
+def _notes(
+    bearing: Bearing, model: Model, contacts: Mapping[tuple[int, int], Solution]
+) -> Iterable[str]:
     """Yield warnings: those of contacts by kind, and what the standard's contacts leave out."""
     if model == "iso16281":
         if bearing.layered:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import nacre._core as core
 from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import GROOVES, is_thrust
+from nacre.bearing.kinds import BallBearing, RollerBearing, checked_bearing
 from nacre.hertz import Ellipse, contact_modulus
 from nacre.results import display
 from nacre.results.quantities import STATIC_LOAD
@@ -34,7 +35,7 @@ AXIAL = {5: 0.52, 10: 0.50, 15: 0.46, 20: 0.42, 25: 0.38, 30: 0.33, 35: 0.29, 40
 """Factors Y_0 of angular contact ball bearings by contact angle [°]: ISO 76:2006, table 2."""
 
 
-def element_load(bearing: Any, pressure: float) -> float:
+def element_load(bearing: BallBearing, pressure: float) -> float:
     """Return the load at which a ball of steel has this pressure on a ring [N], the smaller one.
 
     Grooves are those of the tables, or wider ones. Hertz; ISO 281:2007, annex B, has the same.
@@ -50,7 +51,7 @@ def element_load(bearing: Any, pressure: float) -> float:
     return min(loads)
 
 
-def total_load(bearing: Any, load: float, share: float) -> float:
+def total_load(bearing: Bearing, load: float, share: float) -> float:
     """Return the load of a bearing whose heaviest element carries `load` [N].
 
     The load is the axial one of thrust bearings, whose elements share it equally, and else a radial
@@ -61,13 +62,7 @@ def total_load(bearing: Any, load: float, share: float) -> float:
     return float(elements * (math.sin(angle) if is_thrust(bearing) else math.cos(angle) / share))
 
 
-def check_bearing(bearing: object) -> None:
-    """Raise a `TypeError` unless this is a bearing."""
-    if not isinstance(bearing, Bearing):
-        raise TypeError(f"bearing must be a bearing, got {bearing!r}")
-
-
-def static_rating(bearing: Any) -> float:
+def static_rating(bearing: Bearing) -> float:
     """Load rating C_0 of ISO 76 [N], of a bearing at rest, of steel without layers.
 
     It is the radial rating C_0r; of ball bearings with a contact angle above 45°, which are thrust
@@ -99,14 +94,14 @@ def static_rating(bearing: Any) -> float:
     >>> round(static_rating(bearing))
     11256
     """
-    check_bearing(bearing)
-    if bearing.rolls:
+    bearing = checked_bearing(bearing)
+    if isinstance(bearing, RollerBearing):
         size = bearing.elements * bearing.length * bearing.diameter * 1e6
         return float(44 * (1 - bearing.gamma) * size * math.cos(bearing.nominal_angle))
     return total_load(bearing, element_load(bearing, PRESSURE), SHARE)
 
 
-def equivalent_static_load(bearing: Any, radial: float, axial: float = 0.0) -> float:
+def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) -> float:
     """Equivalent static load P_0 of ISO 76 [N].
 
     Parameters
@@ -136,7 +131,7 @@ def equivalent_static_load(bearing: Any, radial: float, axial: float = 0.0) -> f
     >>> equivalent_static_load(bearing, radial=1000.0, axial=2000.0)
     1600.0
     """
-    check_bearing(bearing)
+    bearing = checked_bearing(bearing)
     if (bearing.rolls and bearing.nominal_angle) or bearing.aligns or is_thrust(bearing):
         raise ValueError(
             f"bearing must be a cylindrical roller bearing, or a ball bearing of a contact angle "

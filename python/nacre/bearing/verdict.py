@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from nacre._tools.units import plain
@@ -30,6 +32,8 @@ STATIC = {True: 4.0e9, False: 4.2e9}
 """Pressure of the static rating of roller bearings, and of ball bearings [Pa], ISO 76:2006.
 
 Self-aligning ball bearings, of 4.6 GPa, are not among nacre's."""
+LEVELS = ("bad", "fair", "good", "unknown")
+"""Levels, the worst first; a bearing without load has none."""
 UNKNOWN = "The error of the peak pressure is not known: a warning says why."
 BARE = "Layers are not counted in the life: it is that of bare rings."
 
@@ -63,6 +67,16 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     words, *lines = [*sentences, *bare]
     decided_by = "edge pressure" if edge.value >= peak.value else "peak pressure"
     return Verdict(level, words, tuple(lines), factor, decided_by, peak.share)
+
+
+def pair_verdict(bearings: Mapping[str, BearingSolution]) -> Verdict:
+    """Return the verdict on bearings on one shaft, by name: the worst decides, and comes first."""
+    verdicts = [(name, bearing_verdict(one)) for name, one in bearings.items()]
+    verdicts.sort(key=lambda row: (LEVELS.index(row[1].level), row[1].factor or math.inf))
+    words, *lines = [f"{name} bearing: {s}" for name, one in verdicts for s in one.sentences]
+    name, worst = verdicts[0]
+    decided_by = worst.decided_by and f"{name} bearing, {worst.decided_by}"
+    return replace(worst, words=words, lines=tuple(lines), decided_by=decided_by)
 
 
 class _Pressure(NamedTuple):

@@ -15,12 +15,14 @@ from nacre.bearing import (
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
+    Pair,
     SphericalRoller,
     TaperedRoller,
     film_thickness,
 )
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import Ring
+from nacre.bearing.pair import Arrangement
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
 from nacre.case.tables import (
@@ -28,11 +30,11 @@ from nacre.case.tables import (
     Counts,
     Directions,
     Number,
-    Pair,
     Table,
     parameter_texts,
     with_words,
 )
+from nacre.case.tables import Pair as Two
 
 KINDS: dict[str, type[Solvable]] = {
     bearing_class.kind: bearing_class
@@ -48,6 +50,7 @@ KINDS: dict[str, type[Solvable]] = {
 SOLVE = parameter_texts(Solvable.solve)
 LIFE = parameter_texts(BearingSolution.life)
 FILMS = parameter_texts(film_thickness)
+PAIR = parameter_texts(Pair)
 
 
 UNITS: dict[str, str] = (
@@ -56,11 +59,12 @@ UNITS: dict[str, str] = (
             *("diameter", "length", "pitch_diameter", "raceway_diameters", "raceway_crown"),
             *("profile_radius", "groove_radius", "clearance", "shoulder_height", "thickness"),
             *("displacement", "roughness", "radius", "amplitude", "flat_length", "z_m"),
+            *("distance", "preload_distance"),
             *("profile.x", "SampledProfile.x", "drop", "corners", "smoothing", "ends"),
         ),
         "m",
     )
-    | dict.fromkeys(("force", "capacity", "load", "fatigue_load_limit"), "N")
+    | dict.fromkeys(("force", "preload_force", "capacity", "load", "fatigue_load_limit"), "N")
     | dict.fromkeys(("young", "yield_stress", "strength", "shear_yield", "contact_modulus"), "Pa")
     | {"moment": "N m", "density": "kg/m³", "film.speed": "m/s"}
     | {"viscosity": "Pa s", "pressure_viscosity": "1/Pa", "kinematic_viscosity": "m²/s"}
@@ -205,10 +209,14 @@ class BearingFilm(Table):
     ring: Ring = Field("inner", description="Ring of the contact.")
 
 
-class BearingKind(Table):
-    """Keys that every bearing may have: what is solved, a life, and a film."""
+class SingleKind(Table):
+    """Keys of a bearing."""
 
     bearing_class: ClassVar[type[Any]]
+
+
+class BearingKind(SingleKind):
+    """Keys that every bearing may have: what is solved, a life, and a film."""
 
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
@@ -218,8 +226,8 @@ class BearingKind(Table):
 TYPES: dict[str, Any] = {
     "count": Count,
     "rows": Count,
-    "raceway_diameters": Pair | None,
-    "osculation": Pair,
+    "raceway_diameters": Two | None,
+    "osculation": Two,
     "profile": Annotated[
         Literal["iso16281", "iso16281_cylindrical", "straight"] | AnyProfile,
         with_words('"iso16281", "iso16281_cylindrical", "straight", or a table with the key kind'),
@@ -235,8 +243,9 @@ FOLLOWS = {"angular_contact_ball": ("clearance",)}
 """Arguments that are no keys, since others say what they are: the contact angle, the clearance."""
 
 
-def _table(kind: str, bearing_class: type[Any]) -> type[BearingKind]:
-    """Return the table of a bearing: a key for each argument."""
+def _table(kind: str, base: type[SingleKind], suffix: str) -> Any:
+    """Return the table of a bearing: a key for each argument, and those of its base."""
+    bearing_class = KINDS[kind]
     descriptions = parameter_texts(bearing_class)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
@@ -256,18 +265,45 @@ def _table(kind: str, bearing_class: type[Any]) -> type[BearingKind]:
             Field(default=default_value, description=descriptions.get(one.name, "")),
         )
     summary = inspect.cleandoc(bearing_class.__doc__ or "").partition("\n")[0]
-    table: type[BearingKind] = create_model(
-        f"{bearing_class.__name__}Case", __base__=BearingKind, __doc__=summary, **fields
-    )
+    name = bearing_class.__name__ + suffix
+    table: type[SingleKind] = create_model(name, __base__=base, __doc__=summary, **fields)
     table.bearing_class = bearing_class
     return table
 
 
-TABLES = {kind: _table(kind, bearing_class) for kind, bearing_class in KINDS.items()}
+if TYPE_CHECKING:
+    AnySingle = SingleKind
+else:
+    AnySingle = Annotated[
+        _table("angular_contact_ball", SingleKind, "OfPair")
+        | _table("tapered_roller", SingleKind, "OfPair"),
+        Field(discriminator="kind"),
+    ]
+
+
+class PairKind(Table):
+    """Two angular contact ball or two tapered roller bearings on one rigid shaft."""
+
+    film: ClassVar[None] = None
+
+    kind: Literal["pair"] = Field(description="Kind, which decides on the other keys.")
+    first: AnySingle = Field(description="Bearing at `z = -distance/2`.")
+    second: AnySingle | None = Field(
+        None, description="Bearing at `z = distance/2`; by default it is equal to the first."
+    )
+    arrangement: Arrangement = Field(description=PAIR["arrangement"])
+    distance: Number = Field(description=PAIR["distance"])
+    preload_force: Number | None = Field(None, description=PAIR["preload_force"])
+    preload_distance: Number | None = Field(None, description=PAIR["preload_distance"])
+    solve: BearingSolve = Field(description="What is solved.")
+    life: BearingLife | None = Field(None, description="Life that is printed.")
+
+
+TABLES = {kind: _table(kind, BearingKind, "Case") for kind in KINDS} | {"pair": PairKind}
 """Tables of bearings, by kind."""
 
 if TYPE_CHECKING:
-    AnyBearing = BearingKind
+    AnyBearing = BearingKind | PairKind
 else:
     AnyBearing = Annotated[
         Union[tuple(TABLES.values())],  # noqa: UP007
@@ -303,29 +339,38 @@ class BearingCase(Keys):
         return type(self).model_validate(scaled(data, sizes_of(self.units)))
 
     def arguments(self) -> dict[str, Any]:
-        """Return the bearing and the keywords of its ``solve``, in SI."""
+        """Return the bearing, or the pair of them, and the keywords of its ``solve``, in SI."""
         return self._si()._arguments()
 
     def _arguments(self) -> dict[str, object]:
         """Return the bearing and the keywords of its ``solve``, where all numbers are in SI."""
-        arguments = self.bearing.model_dump(
-            exclude={"kind", "solve", "life", "film"}, exclude_unset=True
-        )
+        table = self.bearing
+        if isinstance(table, PairKind):
+            first = self._single("bearing.first", table.first)
+            second = first if table.second is None else self._single("bearing.second", table.second)
+            names = ("arrangement", "distance", "preload_force", "preload_distance")
+            with at("bearing"):
+                pair = Pair(first, second, **{name: getattr(table, name) for name in names})
+            return {"bearing": pair, **table.solve.keywords()}
+        return {"bearing": self._single("bearing", table), **table.solve.keywords()}
+
+    def _single(self, path: str, table: SingleKind) -> Any:
+        """Return the bearing of a table at a path."""
+        arguments = table.model_dump(exclude={"kind", "solve", "life", "film"}, exclude_unset=True)
         for name in arguments:
-            value = getattr(self.bearing, name)
+            value = getattr(table, name)
             if isinstance(value, Body):
-                arguments[name] = self._body(f"bearing.{name}", value)
+                arguments[name] = self._body(f"{path}.{name}", value)
             elif isinstance(value, Directions):
                 arguments[name] = value.pair()
             elif name == "profile":
-                with at("bearing.profile"):
+                with at(f"{path}.profile"):
                     straight = None if value == "straight" else value
                     arguments[name] = straight if isinstance(value, str) else value.make()
             elif isinstance(value, list):
                 arguments[name] = tuple(value)
-        with at("bearing"):
-            bearing = self.bearing.bearing_class(**arguments)
-        return {"bearing": bearing, **self.bearing.solve.keywords()}
+        with at(path):
+            return table.bearing_class(**arguments)
 
     def life(self) -> dict[str, Any] | None:
         """Return the keywords of the life, or None where none is asked for."""

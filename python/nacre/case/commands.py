@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import warnings
 from collections.abc import Mapping
@@ -17,15 +16,14 @@ import nacre
 from nacre._tools.disk import PICTURES, check_folder, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import printable, system
-from nacre.bearing import BearingSolution, Film, film_thickness
-from nacre.bearing.geometry import RINGS, Ring
+from nacre.bearing.pair import NAMES
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.case import templates as _templates
 from nacre.case.bearing import scaled, sizes_of
+from nacre.case.results import Results, files_of, last_of, naming, report_of, results_of
 from nacre.indent.solution import IndentSolution
-from nacre.indent.solution import solve as solve_indentation
-from nacre.results import files, report, tables
+from nacre.results import files, tables
 from nacre.results.display import SLIGHT, aligned, column, shown_in
 from nacre.results.quantities import BEARING, ERROR
 from nacre.results.table_results import TableResult
@@ -60,8 +58,6 @@ Units = Annotated[
     ),
 ]
 ARTICLES = {"bearing": "a bearing", "indent": "an indentation"}
-DEPTH_OPTIONS = ("body", "friction", "direction", "residual")
-"""Keywords of stresses that the picture over depth in a report takes."""
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
@@ -130,7 +126,7 @@ def solve(
         solve_case(case, case_file, save or [], as_json)
         return
     arguments = case_file.arguments()
-    stress_options, fatigue_options = case_file.stress(), case_file.fatigue()
+    case_file.fatigue()  # whose limits are checked before the solve
     if initial is not None:
         try:
             arguments["initial"] = nacre.load(initial)
@@ -139,11 +135,11 @@ def solve(
     for path in save or []:
         _check_ending(path)
     try:
-        check_direction(arguments, **(stress_options or {}))
+        check_direction(arguments, **(case_file.stress() or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(case_file.units):
-        _solve(case, case_file, arguments, (stress_options, fatigue_options), save or [], as_json)
+        _solve(case, case_file, arguments, save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -160,27 +156,15 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
                 f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
             )
         _check_ending(path)
-    arguments = case_file.arguments()
-    bearing, life_options = arguments.pop("bearing"), case_file.life()
-    added: dict[str, TableResult] = {}
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), alive():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
-        try:
-            with alive():
-                solution = bearing.solve(**arguments)
-                if life_options is not None:
-                    added["life"] = solution.life(**life_options)
-        except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: bearing: {error}") from error
-        if (film := case_file.film()) is not None:
-            try:
-                added["film"] = _film(solution, **film)
-            except (ArithmeticError, TypeError, ValueError) as error:
-                raise CaseError(f"{case}: bearing.film: {error}") from error
+        results = results_of(case_file, case_file.arguments())
+    solution = results["bearing"]
+    added = {name: one for name, one in results.items() if one is not solution}
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         with shown_in(case_file.units):
-            state = _verdicts({"bearing": solution} | added)
+            state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}
         state |= {name: one._state() for name, one in added.items()}
         print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
@@ -190,121 +174,76 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     for path in save:
         if path.suffix.lower() == ".html":
             with shown_in(case_file.units):
-                _save_report(path, [solution, *added.values()], case, case_file)
+                _save_report(path, results, case, case_file)
         else:
             solution.save(path)
 
 
-def _save_report(
-    path: Path,
-    parts: list[Any],
-    case: Path,
-    case_file: Case,
-    inputs: report.Rows = (),
-    stress: dict[str, Any] | None = None,
-) -> None:
+def _save_report(path: Path, results: Results, case: Path, case_file: Case) -> None:
     """Write a report with the case file, and the files that it names."""
-    text, rows = case.read_text(encoding="utf-8-sig"), [*_files(case_file), *inputs]
-    files.save(path, {".html": lambda file: report.write(file, parts, text, rows, stress)})
-
-
-def _files(case_file: Case) -> list[tuple[str, str]]:
-    """Return the units of a case, and the measured files that it names with their SHA-256."""
-    digests = [
-        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
-        for path in case_file.measured()
-    ]
-    return [("units of the case", case_file.units), *digests]
+    text, rows = case.read_text(encoding="utf-8-sig"), files_of(case_file)
+    page = report_of(case_file, results, text, path.stem, rows)
+    files.save(path, {".html": lambda file: file.write_text(page, encoding="utf-8")})
 
 
 def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) -> dict[str, Any]:
-    """Return the state of a solved bearing, which is in SI, in the units of its case."""
+    """Return the state of a solved bearing or pair, which is in SI, in the units of its case."""
     sizes = {unit: 1 / size for unit, size in sizes_of(units).items()}
-    record = {"units": units} | state | {"bearing": scaled(state["bearing"], sizes)}
-    tables = [(record, [(row.name, row.si()) for row in BEARING])]
-    for name, one in added.items():
-        record[name] = dict(state[name])
-        tables.append((record[name], [(row.name, one._si(row)) for row in one._QUANTITIES]))
-    for table, kinds in tables:
-        for name, unit in kinds:
-            if unit in sizes and table.get(name) is not None:
-                table[name] = (np.asarray(table[name]) * sizes[unit]).tolist()
     rows = np.array([sizes["N"]] * 3 + [sizes["N m"]] * 2)
     columns = np.array([sizes["m"]] * 3 + [1.0] * 2)
-    record["tangent"] = (np.asarray(state["tangent"]) * rows[:, None] / columns).tolist()
+
+    def converted(state: dict[str, Any], kinds: Mapping[str, str]) -> dict[str, Any]:
+        record = dict(state)
+        for name, value in state.items():
+            if name in ("bearing", "pair"):
+                record[name] = scaled(value, sizes)
+            elif name in NAMES and isinstance(value, dict):
+                record[name] = converted(value, kinds)
+            elif name == "tangent":
+                record[name] = (np.asarray(value) * rows[:, None] / columns).tolist()
+            elif kinds.get(name) in sizes and value is not None:
+                record[name] = (np.asarray(value) * sizes[kinds[name]]).tolist()
+        return record
+
+    record = {"units": units} | converted(state, {row.name: row.si() for row in BEARING})
+    for name, one in added.items():
+        record[name] = converted(state[name], {row.name: one._si(row) for row in one._QUANTITIES})
     return record
 
 
-def _verdicts(results: Mapping[str, Any]) -> dict[str, Any]:
+def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     """Return the verdicts on results, by the names of these; some have none."""
     judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
     verdicts = {name: one._state() for name, one in judged.items()}
     return {"verdict": verdicts} if verdicts else {}
 
 
-def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
-    """Return the film in the heaviest contact of a ring."""
-    heaviest = solution.loads[:, RINGS.index(ring)].argmax()
-    if (contact := solution.contact(int(heaviest), ring)) is None:
-        raise ValueError("no element is loaded, so that there is no film")
-    return film_thickness(contact, **keywords)
-
-
 def _solve(
-    case: Path,
-    case_file: Case,
-    arguments: dict[str, Any],
-    options: tuple[dict[str, Any] | None, dict[str, Any] | None],
-    save: list[Path],
-    as_json: bool,
+    case: Path, case_file: Case, arguments: dict[str, object], save: list[Path], as_json: bool
 ) -> None:
     """Solve, save and print in the units that are set."""
-    stress_options, fatigue_options = options
-    friction = case_file.friction
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), alive():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
-        try:
-            with alive():
-                outcome = getattr(nacre, friction or "solve")(**arguments)
-        except (ArithmeticError, TypeError, ValueError) as error:
-            # The notes of an error name the step of a history.
-            message = ": ".join([friction or "solve", *getattr(error, "__notes__", []), str(error)])
-            raise CaseError(f"{case}: {message}") from error
-        # Of a history, the last step is printed.
-        solution = outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
-        try:
-            stress = None if stress_options is None else solution.stress_summary(**stress_options)
-        except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: stress: {error}") from error
-        try:
-            fatigue = (
-                None
-                if fatigue_options is None
-                else nacre.fatigue.assess(solution, **fatigue_options)
-            )
-        except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: fatigue: {error}") from error
+        results = results_of(case_file, arguments)
+    outcome = results["solution"]
+    solution = last_of(outcome)  # of a history, the last step is printed
+    summaries = {name: one for name, one in results.items() if one is not outcome}
     steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
-        summaries = {"stress": stress, "fatigue": fatigue}
-        extremes = {name: one.to_dict() for name, one in summaries.items() if one is not None}
+        extremes = {name: one.to_dict() for name, one in summaries.items()}
         extremes |= _verdicts(summaries)
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
             print(f"{steps}\n\nlast step")
-        print(*(one for one in (solution, stress, fatigue) if one is not None), sep="\n\n")
-    whole = solution if steps is None else steps
-    sliding = {k: v for k, v in (stress_options or {}).items() if k in DEPTH_OPTIONS}
-    keywords = dict(zip(("stress", "fatigue"), options, strict=True))
-    parts = [whole, *(one for one in (stress, fatigue) if one is not None)]
+        print(solution, *summaries.values(), sep="\n\n")
     for path in save:
         if path.suffix.lower() == ".html":
-            _save_report(path, parts, case, case_file, report.input_rows(keywords), sliding)
+            _save_report(path, results, case, case_file)
         else:
             # The fields of ParaView's file are those of the last step.
-            (solution if path.suffix.lower() == ".vtr" else whole).save(path)
+            (solution if path.suffix.lower() == ".vtr" else outcome).save(path)
 
 
 @app.command(cls=Command)
@@ -356,7 +295,12 @@ def sweep(
     for path in save or []:
         if path.suffix.lower() == ".html":
             text = case.read_text(encoding="utf-8-sig")
-            save_report(dataset, path, case=text, inputs=_files(case_file))
+            save_report(
+                dataset,
+                path,
+                case=text,
+                inputs=[("units of the case", case_file.units), *files_of(case_file)],
+            )
             continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
@@ -395,16 +339,15 @@ def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: b
     arguments = case_file.arguments()
     with nacre.display_units(case_file.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
-        try:
-            with alive():
-                solution = solve_indentation(**arguments)
+        with alive():
+            results = results_of(case_file, arguments)
+            solution = results["indent"]
+            with naming(case_file, "indent"):
                 numbers = _indent_numbers(solution)
-        except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: indent: {error}") from error
         print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
         for path in save:
             if path.suffix.lower() == ".html":
-                _save_report(path, [solution], case, case_file)
+                _save_report(path, results, case, case_file)
             else:
                 solution.save(path)
 

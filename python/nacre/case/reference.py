@@ -140,6 +140,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield from kinds("IndentCase", "adhesion", "adhesion")
     yield "`[indent]`", definitions["Indent"]
     yield from kinds("BearingCase", "bearing", "bearing")
+    yield from kinds("PairKind", "first", "bearing.first")
     yield "`[bearing.raceway_crown]`", definitions["Rings"]
     yield "`[bearing.solve]`", definitions["BearingSolve"]
     yield "`[bearing.solve.force]` and `[bearing.solve.displacement]`", definitions["InSpace"]

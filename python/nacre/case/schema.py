@@ -261,7 +261,7 @@ class Range(Table):
 
 
 Values = Annotated[
-    Range | Annotated[list[Any], Field(min_length=1)],
+    Range | Annotated[list[object], Field(min_length=1)],
     with_words("a list of values, or a table with first, last and count"),
 ]
 
@@ -405,13 +405,13 @@ class CaseTable(Bodies):
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
         with at("shape"):
             shape = self.shape.make(folder, System(self.units).metres)
-        keywords: dict[str, Any] = {"shape": shape, **self.bodies()}
+        keywords: dict[str, object] = {"shape": shape, **self.bodies()}
         if self.grid is not None:
             with at("grid"):
                 keywords["grid"] = self.grid.make()
         return keywords | self.solve.keywords() | self._friction()
 
-    def _friction(self) -> dict[str, Any]:
+    def _friction(self) -> dict[str, object]:
         """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
         motion = self.slide or self.roll
         if motion is None:

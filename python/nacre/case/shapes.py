@@ -138,12 +138,14 @@ class RandomSurface(Shape):
     longest: Number = Field(description=RANDOM["longest"])
     rms_slope: Number | None = Field(None, description=RANDOM["rms_slope"])
     rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
-    seed: Count = Field(description=RANDOM["seed"])
+    seed: Count = Field(
+        description="Number that chooses the surface: the same one makes the same surface."
+    )
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         arguments = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
-        return rough.random_surface(**arguments)
+        return rough.random_surface(rng=arguments.pop("seed"), **arguments)
 
 
 class Crossed(Shape):

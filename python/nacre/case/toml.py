@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """Keys that need no quotation marks."""
 
 
-def text(data: Mapping[str, Any], comments: tuple[str, ...] = ()) -> str:
+def text(data: Mapping[str, object], comments: tuple[str, ...] = ()) -> str:
     """Return the TOML of a case, after comments.
 
     Examples
@@ -27,7 +26,7 @@ def text(data: Mapping[str, Any], comments: tuple[str, ...] = ()) -> str:
     return "\n".join([*notes, *_table(data, ())]) + "\n"
 
 
-def _table(data: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+def _table(data: Mapping[str, object], path: tuple[str, ...]) -> Iterator[str]:
     """Yield the lines of a table: its values first, then the tables in it."""
     tables = {key: value for key, value in data.items() if isinstance(value, Mapping)}
     values = {key: value for key, value in data.items() if key not in tables}
@@ -47,7 +46,7 @@ def _text(words: str) -> str:
     return json.dumps(words, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     """Return a value: a text, true or false, a number, or a list or a table in one line."""
     if isinstance(value, Mapping):
         items = (f"{_key(key)} = {_value(one)}" for key, one in value.items())

@@ -198,7 +198,7 @@ def slide(
     body: Layers,
     counterbody: Layers | None = None,
     *,
-    steps: Iterable[Mapping[str, Any]],
+    steps: Iterable[Mapping[str, object]],
     **keywords: Unpack[PlannedSlideKeywords],
 ) -> History: ...
 
@@ -211,7 +211,7 @@ def slide(
     grid: core.Grid | None = None,
     max_cells: int | None = None,
     threads: int | None = None,
-    steps: Iterable[Mapping[str, Any]] | None = None,
+    steps: Iterable[Mapping[str, object]] | None = None,
     load: float | None = None,
     approach: float | None = None,
     eccentricity: Along | None = None,
@@ -301,7 +301,9 @@ def slide(
 
     Notes
     -----
-    Coulomb's law holds in each cell. The bodies are half-spaces, and all is quasi-static. Once a
+    Coulomb's law holds in each cell. The bodies are half-spaces, and all is quasi-static. The
+    history is also found on cells of twice the length: `FrictionReport.discretisation` follows from
+    it, and a first step starts there. Once a
     history has begun, every exception that ends it, `KeyboardInterrupt` included, carries the
     finished steps as `solutions`. With the last of them as `initial`, the history goes on to the
     bit.
@@ -828,14 +830,14 @@ class Contact:
     def slide(
         self,
         shape: core.Shape,
-        steps: Iterable[Mapping[str, Any]],
+        steps: Iterable[Mapping[str, object]],
         **keywords: Unpack[SlideKeywords],
     ) -> History: ...
 
     def slide(
         self,
         shape: core.Shape,
-        steps: Iterable[Mapping[str, Any]] | None = None,
+        steps: Iterable[Mapping[str, object]] | None = None,
         *,
         load: float | None = None,
         approach: float | None = None,
@@ -1062,7 +1064,7 @@ class Contact:
             f"coefficients={coefficients!r}, threads={self._plan.asked_threads()!r})"
         )
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         keywords = {"coefficients": self.coefficients, "threads": self._plan.asked_threads()}
         call = (type(self), (self.body, self.grid, self.counterbody), keywords)
@@ -1138,7 +1140,7 @@ def _mappings(
     return [dict(item) for item in mappings]
 
 
-def _history_steps(steps: Iterable[Mapping[str, Any]] | None) -> list[FrictionStep] | None:
+def _history_steps(steps: Iterable[Mapping[str, object]] | None) -> list[FrictionStep] | None:
     """Return the steps of a history, where there is one."""
     if steps is None:
         return None

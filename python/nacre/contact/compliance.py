@@ -23,7 +23,7 @@ Method = Literal["exact", "plain", "difference", "image", "spectral"]
 def frequency_response(body: Body, wavenumber: float) -> float: ...
 @overload
 def frequency_response(body: Body, wavenumber: Vector | Matrix) -> Field: ...
-def frequency_response(body: Body, wavenumber: Any) -> Any:
+def frequency_response(body: Body, wavenumber: object) -> Any:
     """Frequency response: normal surface displacement per unit pressure of one wavenumber.
 
     Parameters
@@ -71,7 +71,7 @@ class SurfaceCompliance(NamedTuple, Generic[Value]):
 def surface_compliance(body: Layers, wavenumber: float) -> SurfaceCompliance[float]: ...
 @overload
 def surface_compliance(body: Layers, wavenumber: Vector | Matrix) -> SurfaceCompliance[Field]: ...
-def surface_compliance(body: Layers, wavenumber: Any) -> SurfaceCompliance[Any]:
+def surface_compliance(body: Layers, wavenumber: object) -> SurfaceCompliance[Any]:
     """Surface displacements per unit traction of one wavenumber, normal and lateral.
 
     With the x axis along the wave, under pressure p and tractions q_x, q_y on the body::
@@ -402,7 +402,7 @@ class Convolution:
         nx, ny = self.shape
         return f"<Convolution on {nx} x {ny} cells, {self.threads} threads>"
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Return a callable and arguments with which a pickle of any protocol plans again."""
         call = (type(self), (self.coefficients,), {"threads": self._planned.asked_threads})
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]

@@ -93,12 +93,12 @@ class FrictionReport(Result):
     full_slip: bool
     """Whether all cells in contact slip."""
     discretisation: dict[str, float] | None
-    """Estimated errors of steady rolling due to the size of the cells, by name.
+    """Estimated errors of sliding and of steady rolling due to the size of the cells, by name.
 
-    ``force`` [N], ``torque`` [N m], ``power`` [N], that of `FrictionSolution.dissipated`,
-    ``creepage`` and ``stick_share``. Forces and creepages have the length of their error; it is 0
-    where both are given. `None` in sliding, in rolling cell by cell and with ``order=1``, and where
-    a warning says why.
+    ``force`` [N], ``torque`` [N m], ``dissipated`` [J], in rolling [N], and ``stick_share``;
+    ``shift`` [m] and ``twist`` [rad] of sliding, ``creepage`` of rolling. Forces, shifts and
+    creepages have the length of their error; it is 0 for what is given. `None` in rolling cell by
+    cell and with ``order=1``, and where a warning says why.
     """
     order: int
     """Order of steady rolling in the length of a cell; 0 in sliding and in rolling cell by cell."""
@@ -709,7 +709,9 @@ def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:
     report, rolls = solution.report, solution.shift is None
     rows = display.rows(solution, FRICTION, TEXTS, solution.grid.is_line, rolls)
     touching, sticking = int((solution.pressure > 0).sum()), int(solution.stick.sum())
-    state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
+    share = (report.discretisation or {}).get("stick_share", 0.0)
+    error = f" ± {np.ceil(share * touching):.0f}" if share > 0 else ""
+    state = "all slips" if report.full_slip else f"{sticking}{error} of {touching} cells stick"
     coupled = f", {report.sweeps} sweeps" if report.coupled else ""
     accuracy = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
     return [
@@ -721,7 +723,7 @@ def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:
 
 
 def _with_error(solution: FrictionSolution, name: str, text: str, size: float, unit: str) -> str:
-    """Return what is said of a number of rolling, with its discretisation error where there is one.
+    """Return what is said of a number of friction, with its discretisation error if it has one.
 
     The error is one of its `size`, or has a unit where it is larger.
     """
@@ -754,9 +756,17 @@ def _torque(solution: FrictionSolution) -> str | None:
     return _with_error(solution, "torque", written(torque, "N m"), abs(torque), "N m")
 
 
+def _shift(solution: FrictionSolution) -> str | None:
+    if (shift := solution.shift) is None:
+        return None
+    text = display.pair(display.without_rounding(shift), "m")
+    return _with_error(solution, "shift", text, float(np.hypot(*shift)), "m")
+
+
 def _twist(solution: FrictionSolution) -> str | None:
-    is_given = solution.twist is not None and not solution.grid.is_line
-    return f"{solution.twist:.4g} rad" if is_given else None
+    if (twist := solution.twist) is None or solution.grid.is_line:
+        return None
+    return _with_error(solution, "twist", f"{twist:.4g} rad", abs(twist), "rad")
 
 
 def _dissipated(solution: FrictionSolution) -> str:
@@ -764,12 +774,20 @@ def _dissipated(solution: FrictionSolution) -> str:
     work = max(map(abs, solution.force)) * max(map(abs, solution.shift or (1.0,)))
     lost = solution.dissipated if solution.dissipated > display.SLIGHT * work else 0.0
     unit = energy(solution.grid.is_line, solution.shift is None)
-    return _with_error(solution, "power", written(lost, unit), lost, unit)
+    return _with_error(solution, "dissipated", written(lost, unit), lost, unit)
+
+
+def _part(solution: FrictionSolution, name: Literal["force", "shift"], part: float) -> str:
+    """Return a component of a force or a shift, with the error of the vector."""
+    unit = "m" if name == "shift" else ("N/m" if solution.grid.is_line else "N")
+    text = written(part, unit)
+    return _with_error(solution, name, text, abs(part), unit) if part else text
 
 
 TEXTS: dict[str, Callable[[FrictionSolution], str | None]] = {
     "force": _force,
     "torque": _torque,
+    "shift": _shift,
     "twist": _twist,
     "creepage": _creepage,
     "spin": lambda s: None if s.spin is None else f"{s.spin:.4g} /{symbol('m')}",
@@ -780,8 +798,8 @@ TEXTS: dict[str, Callable[[FrictionSolution], str | None]] = {
 
 def _step_rows(steps: Sequence[FrictionSolution]) -> list[list[str]]:
     """Return the rows of a table of the steps of a history, the heading first."""
-    line, rolls = steps[0].grid.is_line, steps[0].shift is None
-    force, motion_name = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
+    rolls = steps[0].shift is None
+    motion_name = "creepage" if rolls else "shift"
     rows = [["step", "force x", "force y", f"{motion_name} 1" if rolls else "shift x"]]
     rows[0] += [f"{motion_name} 2" if rolls else "shift y", "dissipated", "ended"]
     motions = [(step.creepage if rolls else step.shift) or (0.0, 0.0) for step in steps]
@@ -790,8 +808,8 @@ def _step_rows(steps: Sequence[FrictionSolution]) -> list[list[str]]:
         display.without_rounding(np.ravel([step.force for step in steps]).tolist()), (-1, 2)
     )
     for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
-        motion_cells = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
-        force_cells = [written(part, force) for part in pull]
+        motion_cells = [f"{part:.4g}" if rolls else _part(step, "shift", part) for part in motion]
+        force_cells = [_part(step, "force", part) for part in pull]
         outcome = [_dissipated(step), step.report.termination]
         rows.append([str(number), *force_cells, *motion_cells, *outcome])
     return rows

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -48,8 +47,8 @@ SHARPNESS, DEPTHS = 200.0, 9
 the largest of 1e5 values by at most 6 % of it."""
 
 
-def described(output: Output) -> tuple[str, str]:
-    """Return the name of an output, and its description for the compiled module as JSON text."""
+def described(output: Output) -> tuple[str, object]:
+    """Return the name of an output, and the word or dict by which Rust knows it."""
     if isinstance(output, str):
         if output not in WORDS:
             # The pressure of a cell is no smooth function of what moves the peak between cells.
@@ -58,7 +57,7 @@ def described(output: Output) -> tuple[str, str]:
                 f"output must be {_quoted(WORDS)}, a pair such as "
                 f'("pressure_norm", 8.0), or a dict of a stress, got "{output}"{hint}'
             )
-        return output, json.dumps(WORDS[output])
+        return output, WORDS[output]
     if isinstance(output, dict):
         return _stress(output)
     value: Any
@@ -68,17 +67,17 @@ def described(output: Output) -> tuple[str, str]:
         raise TypeError(f"output must be a word, a pair or a dict, got {output!r}") from None
     if word == "pressure_norm":
         power = core.real(word, value)
-        return f"pressure_norm {power:g}", json.dumps({word: power})
+        return f"pressure_norm {power:g}", {word: power}
     if word in ("pressure", "displacement", "gap"):
         place = _numbers(word, value, 2)
-        return f"{word} at {_coordinates(place)}", json.dumps({word: place})
+        return f"{word} at {_coordinates(place)}", {word: place}
     raise ValueError(
         'output must be ("pressure_norm", r), ("pressure", (x, y)), ("displacement", (x, y)) or '
         f'("gap", (x, y)), got {output!r}'
     )
 
 
-def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
+def _stress(table: Mapping[str, object]) -> tuple[str, object]:
     """Return the name and the description of a stress."""
     for key in table:
         if key not in STRESS:
@@ -94,16 +93,16 @@ def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
     (key,) = keys
     where, side = table[key], table.get("side", "below")
     sharp = {"sharpness": core.real("sharpness", table.get("sharpness", SHARPNESS))}
-    place: dict[str, Any]
+    place: dict[str, object]
     if key == "at":
         point = _numbers("at", where, 3)
         name, place = f"{word} at {_coordinates(point)}", {"point": [point, side]}
     elif key == "layer":
-        number = core.integer(key, where)
-        layer = {"layer": number, "depths": core.integer("depths", table.get("depths", DEPTHS))}
+        number = _count(key, where)
+        layer = {"layer": number, "depths": _count("depths", table.get("depths", DEPTHS))}
         name, place = f"{word} in layer {number}", {"layer": layer | sharp}
     else:
-        number = core.integer(key, where)
+        number = _count(key, where)
         interface = {"interface": number, "side": side}
         name, place = f"{word} at interface {number}", {"interface": interface | sharp}
     direction = table.get("direction")
@@ -114,10 +113,10 @@ def _stress(table: Mapping[str, Any]) -> tuple[str, str]:
         "friction": core.real("friction", table.get("friction", 0.0)),
         "direction": None if direction is None else _numbers("direction", direction, 2),
     }
-    return name, json.dumps({"stress": stress})
+    return name, {"stress": stress}
 
 
-def _quoted(words: Mapping[str, Any]) -> str:
+def _quoted(words: Mapping[str, object]) -> str:
     return ", ".join(f'"{word}"' for word in words)
 
 
@@ -125,7 +124,15 @@ def _coordinates(numbers: list[float]) -> str:
     return f"({', '.join(f'{number:g}' for number in numbers)})"
 
 
-def _numbers(name: str, values: Any, count: int) -> list[float]:
+def _count(name: str, value: object) -> int:
+    """Return a number of layers, interfaces or depths."""
+    number = core.integer(name, value)
+    if number < 0:
+        raise ValueError(f"{name} must be at least 0, got {number}")
+    return number
+
+
+def _numbers(name: str, values: object, count: int) -> list[float]:
     """Return so many numbers."""
     numbers = core.vector(name, count, values)
     return [core.real(name, number) for number in numbers]
@@ -137,8 +144,8 @@ class MethodCall:
 
     solution: Any
     method: str
-    arguments: tuple[Any, ...]
-    keywords: dict[str, Any]
+    arguments: tuple[object, ...]
+    keywords: dict[str, object]
 
     def reduced(self) -> tuple[Any, tuple[Any, ...]]:
         """Return a callable and arguments that make the value again."""
@@ -249,7 +256,7 @@ class Gradient(Fields):
         items = ", ".join(f"{path}: {value:.6e}" for path, value in self.items())
         return f"Gradient({self.output} = {self.value:.6e}, {{{items}}})"
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         """Return the call that makes the gradient again."""
         return self._call.reduced()
 
@@ -297,16 +304,16 @@ class Direction(Fields):
             f"tilt=({self.tilt[0]:.6e}, {self.tilt[1]:.6e}), valid_step={self.valid_step:.3e})"
         )
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         """Return the call that makes the change again."""
         return self._call.reduced()
 
 
 def gradients(
-    solution: Any,
+    solution: object,
     method: str,
-    outputs: Sequence[Any],
-    named_outputs: Sequence[tuple[str, Any]],
+    outputs: Sequence[object],
+    named_outputs: Sequence[tuple[str, object]],
     wrt: Sequence[str] | None,
     **options: Any,
 ) -> list[Gradient]:

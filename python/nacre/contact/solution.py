@@ -178,7 +178,7 @@ class Report(Result):
     """Tolerance that was asked for."""
     seconds: float
     """Seconds that the solve took, without planning."""
-    _data: dict[str, Any]
+    _data: dict[str, object]
     """State of the report, but for its grid and its bodies."""
 
     @property
@@ -201,9 +201,9 @@ class Report(Result):
         }
         return cls(**data | fields | dict(zip(BODIES, bodies, strict=True)), _data=data)
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         bodies = {name: getattr(self, name) for name in BODIES}
-        state: dict[str, Any] = values.encode(self._data | bodies)
+        state: dict[str, object] = values.encode(self._data | bodies)
         return state
 
     @classmethod
@@ -225,7 +225,7 @@ class Report(Result):
         return as_text("Report", state), *bodies
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         return cls._of(core.checked_report(*cls._parts(state)))
 
     def __repr__(self) -> str:
@@ -645,7 +645,7 @@ class Solution(Result, Stressed):
         >>> round(total["load"] * 10.0 / total.value, 6)
         1.0
         """
-        options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
+        options: dict[str, object] = {"shape": shape, "tolerance": tolerance}
         named_outputs = [("weighted pressure", cotangent)]
         return gradients(self, "vjp", [cotangent], named_outputs, wrt, **options)[0]
 
@@ -679,7 +679,7 @@ class Solution(Result, Stressed):
 
         return plot.overview(self, axes)
 
-    def plot_3d(self, axes: Any = None, *, interactive: bool = False) -> Any:
+    def plot_3d(self, axes: object = None, *, interactive: bool = False) -> Any:
         """Draw the pressure as a relief; needs ``nacre-contact[plot]``.
 
         A relief that can be turned needs ``nacre-contact[view]``.
@@ -885,7 +885,7 @@ class Solution(Result, Stressed):
         """Return the SI unit of a quantity of this contact."""
         return row.si(line=self.grid.is_line)
 
-    def _attributes(self) -> dict[str, Any]:
+    def _attributes(self) -> dict[str, object]:
         """Return what files say of the contact besides its numbers and fields."""
         report, parts = self.report, ("body", "counterbody", "grid", "motion", "discretisation")
         return {
@@ -904,7 +904,7 @@ class Solution(Result, Stressed):
     def _names(cls) -> list[str]:
         return ["pressure", "gap", "displacement", "approach", "tilt", *OPTIONAL, "report"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         optional = {name: self._solved.field(name) for name in OPTIONAL}
         return {
             **{name: getattr(self, name) for name in ("pressure", "gap", "displacement")},

@@ -52,7 +52,7 @@ class Problem:
     scales: list[Scale]
     objective: Any
     cases: list[dict[str, Any]]
-    limits: list[tuple[Any, float]]
+    limits: list[tuple[object, float]]
     across: float
     most: float = math.inf
     tolerance: float = 1e-4
@@ -60,7 +60,7 @@ class Problem:
     solves: int = 0
     grids: list[core.Grid] = field(default_factory=list)
     evaluations: dict[bytes, Point] = field(default_factory=dict)
-    plans: dict[int, tuple[Contact, dict[str, Any]]] = field(default_factory=dict)
+    plans: dict[int, tuple[Contact, dict[str, object]]] = field(default_factory=dict)
 
     def by_name(self, x: Array) -> dict[str, float]:
         """Return the parameters by name at a point of the optimiser."""

@@ -17,6 +17,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import printable, written
+from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Warned
 from nacre.results.quantities import INDENT, units
@@ -24,6 +25,7 @@ from nacre.results.report import Picture, Sections, input_rows, table
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
+from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray
@@ -204,7 +206,7 @@ class IndentSolution(Tabular, Warned):
     @cached_property
     def _states(self) -> core.IndentStates:
         """Contacts of the compiled module, solved again."""
-        arguments: dict[str, Any] = {self.given: getattr(self, self.given)}
+        arguments: dict[str, object] = {self.given: getattr(self, self.given)}
         return self.indentation._planned.at(self.branch, **arguments)
 
     @property
@@ -374,6 +376,29 @@ class IndentSolution(Tabular, Warned):
         title = "indentation of a coated body"
         rows = input_rows(inputs)
         return Sections(title, rows, numbers, pictures, contacts, MODEL, self.warnings)
+
+    def verdict(self) -> Verdict:
+        """Return the verdict: whether the largest depth tells the modulus of the outermost layer.
+
+        It compares with a bare half-space of the layer that bears the same load at the same depth,
+        without adhesion: good up to 5 % from the layer's modulus, fair up to 20 %, else bad. Its
+        `factor` is the modulus that is read so over the layer's.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown of a body without layers.
+
+        Examples
+        --------
+        >>> glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
+        >>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
+        >>> tip = nacre.indent.Tip.sphere(5e-6)
+        >>> verdict = nacre.indent.solve(body, tip, load=1e-3).verdict()
+        >>> verdict.level, round(verdict.factor, 1), verdict.lines[0]
+        ('bad', 2.4, 'The error is below 10 % only up to 1.91 nm of depth.')
+        """
+        return substrate_verdict(apparent_modulus(self))
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the load as a function of the approach, or of one contact the pressure.
@@ -583,7 +608,7 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        arguments: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
+        arguments: dict[object, object] = {"load": load, "approach": approach, "radius": radius}
         return self._at(arguments, branch, "load")
 
     def _at(self, arguments: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:

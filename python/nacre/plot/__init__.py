@@ -5,7 +5,7 @@ carry units with a prefix, SI or those of `nacre.display_units`. `nacre.Solution
 functions as methods.
 """
 
-from nacre.plot.bearing import bearing, elements_pressure, load_distribution
+from nacre.plot.bearing import bearing, bearing_pair, elements_pressure, load_distribution
 from nacre.plot.fatigue import fatigue_depth, shakedown_map
 from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
@@ -23,6 +23,7 @@ __all__ = [
     "STYLE",
     "animate_wear",
     "bearing",
+    "bearing_pair",
     "chart",
     "compare",
     "course",

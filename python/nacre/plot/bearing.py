@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,7 @@ with extra("plot"):
     from matplotlib.ticker import MaxNLocator
 
 if TYPE_CHECKING:
+    from nacre.bearing.pair import PairSolution
     from nacre.bearing.solution import BearingSolution
 
 Array = npt.NDArray[np.float64]
@@ -86,6 +87,48 @@ def bearing(
 
 
 @in_si
+def bearing_pair(solution: PairSolution) -> dict[str, Axes]:
+    """Draw the loads of both bearings of a pair, and the pressure along the heaviest elements.
+
+    Parameters
+    ----------
+    solution
+        Solved pair.
+
+    Returns
+    -------
+    dict of matplotlib.axes.Axes
+        The axes, by name: those of `bearing` after "first" and "second".
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> from nacre.bearing import AngularContactBall, Pair
+    >>> ball = AngularContactBall(
+    ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
+    ... )
+    >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    >>> sorted(plot.bearing_pair(pair.solve(model="iso16281")))
+    ['first loads', 'first pressure', 'second loads', 'second pressure']
+    """
+    parts = ("loads", "pressure")
+    names = [[f"{which} {part}" for part in parts] for which in ("first", "second")]
+    with styled():
+        figure = plt.figure(figsize=(WIDTH, 0.8 * WIDTH), layout="constrained")
+        polar: Any = {row[0]: {"projection": "polar"} for row in names}
+        panels: dict[str, Axes] = figure.subplot_mosaic(
+            names,  # type: ignore[arg-type]  # Matplotlib's types know no lists of lists
+            width_ratios=[1, 1.5],
+            per_subplot_kw=polar,
+        )
+        for row, one in zip(names, solution.bearings, strict=True):
+            bearing(one, {part: panels[name] for part, name in zip(parts, row, strict=True)})
+            pressure = panels[row[1]]
+            title = f"{row[1].partition(' ')[0]} bearing, {pressure.get_title(loc='left')}"
+            pressure.set_title(title, loc="left")
+    return dict(panels)
+
+
 def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) -> Axes:
     """Draw the loads of the elements around the bearing, x to the right.
 

@@ -47,7 +47,7 @@ class Tangential(Protocol):
 FrictionContact = TypeVar("FrictionContact", bound=Tangential)
 
 
-def _plain(value: object) -> Any:
+def _plain(value: object) -> object:
     """Return a field as plain data: arrays stay, and a result in it is its fields."""
     if isinstance(value, np.ndarray):
         return value
@@ -123,7 +123,7 @@ def as_text(kind: str, state: Mapping[str, object], *, infinite: bool = False) -
     return "{" + ", ".join(fields) + "}"
 
 
-def _fitted(kind: Any, value: Any) -> Any:
+def _fitted(kind: Any, value: object) -> Any:
     """Return plain data as a value of the type of a field, or raise a `TypeError`."""
     origin, parts = get_origin(kind), get_args(kind)
     if NoneType in parts and origin is not tuple:  # a type or None
@@ -255,7 +255,7 @@ class Result(Fields):
         return cls._restored(values.checked_state(data, cls.__name__, cls._names(), cls._LATER))
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         """Return the result with these fields, checked."""
         name = cls.__name__
         if cls._COMPILED:
@@ -263,7 +263,7 @@ class Result(Fields):
         return cls(**cls._checked(state))
 
     @classmethod
-    def _checked(cls, state: dict[str, Any]) -> dict[str, Any]:
+    def _checked(cls, state: dict[str, object]) -> dict[str, Any]:
         """Return these fields, checked by their annotations."""
         kinds, fields = get_type_hints(cls), {}
         for key, value in state.items():

@@ -208,7 +208,7 @@ def fields(instance: Any, units: Mapping[str, str]) -> list[tuple[str, str]]:
     ]
 
 
-def _field(value: Any, unit: str) -> str:
+def _field(value: object, unit: str) -> str:
     """Return a field in words: numbers with their unit, a peak and its place, an array's range."""
     if isinstance(value, float | np.floating):
         return number(float(value), unit)

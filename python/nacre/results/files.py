@@ -92,7 +92,7 @@ def gridded(result: Gridded) -> xarray.Dataset:
     return dataset(result._TITLE, units, variables, coordinates, state, **attributes)
 
 
-def take_arrays(state: dict[str, Any], table: Iterable[Quantity]) -> dict[str, Array]:
+def take_arrays(state: dict[str, object], table: Iterable[Quantity]) -> dict[str, Array]:
     """Take the arrays out of a state, and return them by the names of their quantities."""
     arrays = {}
     for row in table:
@@ -201,7 +201,7 @@ def load(path: AnyPath) -> Any:
         raise ValueError(f"{str(path)!r} must be a result that nacre saved: {error}") from error
 
 
-def _restored(text: str, arrays: Mapping[str, Array]) -> Any:
+def _restored(text: str, arrays: Mapping[str, Array]) -> object:
     """Return the result with this state, in which the arrays take their places."""
     try:
         state = json.loads(text)

@@ -113,9 +113,20 @@ def write(
     results: Sequence[Reported],
     case: str | None = None,
     inputs: Rows = (),
-    stress: Mapping[str, Any] | None = None,
+    stress: Mapping[str, object] | None = None,
 ) -> None:
-    """Write the report of results of one case, whose file is `case`; its name is that of `path`.
+    """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
+    path.write_text(text(path.stem, results, case, inputs, stress), encoding="utf-8")
+
+
+def text(
+    name: str,
+    results: Sequence[Reported],
+    case: str | None = None,
+    inputs: Rows = (),
+    stress: Mapping[str, object] | None = None,
+) -> str:
+    """Return the report of results of one case, whose file is `case`.
 
     The first result takes keywords of stresses for its picture over depth.
     """
@@ -125,7 +136,7 @@ def write(
         parts = [results[0]._sections(**(stress or {})), *(one._sections() for one in results[1:])]
     notes = [Sections("", inputs, warnings=[str(one.message) for one in caught])]
     today = datetime.date.today().isoformat()
-    path.write_text(page(path.stem, today, [*parts, *notes], judgements, case), encoding="utf-8")
+    return page(name, today, [*parts, *notes], judgements, case)
 
 
 def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
@@ -150,7 +161,7 @@ def page(
     name: str,
     date: str,
     parts: Sequence[Sections],
-    judgements: Sequence[Any],
+    judgements: Sequence[object],
     case: str | None = None,
 ) -> str:
     """Return the page of a report."""
@@ -189,14 +200,14 @@ def page(
     )
 
 
-def input_rows(values: Mapping[str, Any], units: Mapping[str, str] | None = None) -> Rows:
+def input_rows(values: Mapping[str, object], units: Mapping[str, str] | None = None) -> Rows:
     """Return inputs by path, with units: those of `units` first. Arrays stand by their SHA-256."""
     by_name = INPUTS | dict(units or {})
     leaves = (_leaves(name, encode(value, digest=True), by_name) for name, value in values.items())
     return [row for rows in leaves for row in rows]
 
 
-def _leaves(path: str, value: Any, units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Yield the rows of an encoded value."""
     if isinstance(value, Mapping) and value.keys() == {"array"}:
         shape, digest = value["array"]
@@ -262,12 +273,12 @@ def table(
     return Table(title, [name for name, _ in cells], texts, [*notes, *more])
 
 
-def _is_empty(values: Sequence[Any]) -> bool:
+def _is_empty(values: Sequence[object]) -> bool:
     """Return whether a column has rows, but nothing in them."""
     return bool(values) and all(value != value or value == "" for value in values)
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
 
 

@@ -55,7 +55,7 @@ class Gridded(HasQuantities, Protocol):
     def y(self) -> Array:
         """Cell centres along y [m]."""
 
-    def _attributes(self) -> dict[str, Any]: ...
+    def _attributes(self) -> dict[str, object]: ...
 
 
 class Peaked(Gridded, Protocol):

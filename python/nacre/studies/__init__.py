@@ -142,7 +142,7 @@ def sweep(
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
         holds the reason; ``warnings`` holds the warnings of each solve. Beside peak pressure,
-        approach and load, of bearings peak and edge pressure, and of rolling what
+        approach and load, of bearings peak and edge pressure, and of friction what
         `FrictionReport.discretisation` has, stand their errors due to the size of the cells, such
         as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does not
         change a bit.

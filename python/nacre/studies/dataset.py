@@ -17,8 +17,8 @@ from nacre.studies.outputs import (
     AXES,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
+    OF_SLIDING,
     RING_AXES,
-    ROLLING,
     Output,
     errors,
 )
@@ -118,8 +118,8 @@ def assemble(
     estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
     if kinds["indents"]:
         estimated = ()
-    elif kinds["rolls"]:
-        estimated = (*ESTIMATED, *ROLLING)
+    elif not kinds["bears"]:
+        estimated = (*ESTIMATED, *OF_SLIDING)
     for name, quantity in errors(outputs, names, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))

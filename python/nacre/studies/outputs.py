@@ -90,9 +90,8 @@ ESTIMATED = ("peak_pressure", "approach", "load")
 """Outputs whose errors due to the size of the cells are estimated."""
 ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
-ROLLING = {name: name for name in ("force", "torque", "creepage", "stick_share")}
-ROLLING |= {"dissipated": "power"}
-"""Those of steady rolling, and the names of their errors; those of a pair are of its length."""
+OF_SLIDING = ("force", "torque", "shift", "twist", "creepage", "dissipated", "stick_share")
+"""The same of sliding and of steady rolling; those of pairs are of their lengths."""
 
 
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
@@ -207,9 +206,9 @@ def output_values(
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     normal: Any = getattr(solution, "normal", solution)
     estimates = normal.report.discretisation or {}
-    rolling = (normal is not solution and solution.report.discretisation) or {}
-    for name, quantity in errors(outputs, outputs, (*ESTIMATED, *ROLLING)).items():
-        estimate = estimates.get(quantity, rolling.get(ROLLING.get(quantity, "")))
+    tangential = (normal is not solution and solution.report.discretisation) or {}
+    for name, quantity in errors(outputs, outputs, (*ESTIMATED, *OF_SLIDING)).items():
+        estimate = estimates.get(quantity, tangential.get(quantity))
         numbers[name] = np.nan if estimate is None else float(estimate)
     return numbers
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -51,7 +51,7 @@ class Study:
         )
 
     @property
-    def _dims(self) -> tuple[Any, ...]:
+    def _dims(self) -> tuple[object, ...]:
         """Return the dimensions along which cases lie."""
         if "error" in self.dataset:
             return self.dataset["error"].dims
@@ -66,7 +66,7 @@ class Study:
     def _head(self, name: str) -> str:
         return f"{name} [{unit}]" if (unit := self._unit(name)) else name
 
-    def _number(self, name: str, value: Any) -> str:
+    def _number(self, name: str, value: object) -> str:
         """Return a value of a variable, with its unit."""
         if not isinstance(value, float | int) or isinstance(value, bool):
             return str(value)
@@ -176,7 +176,7 @@ def save_report(
     >>> import tempfile
     >>> from nacre.studies.report import save_report
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> case = {"shape": nacre.Sphere(5e-3), "body": steel, "max_cells": 1024}
+    >>> case = {"shape": nacre.Sphere(5e-3), "body": steel, "max_cells": 4096}
     >>> study = nacre.sweep(case, {"load": [5.0, 10.0]})
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     save_report(study, f"{folder}/study.html").name

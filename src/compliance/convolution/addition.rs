@@ -307,7 +307,7 @@ mod tests {
                     let scale = 1e-11 * expected.abs().max(1.0);
                     assert!((u - expected).abs() < scale, "{u} {expected}");
                     let entries: f64 = (p.indexed_iter())
-                        .map(|((k, l), p)| convolution.added([i, k], j.abs_diff(l)) * p)
+                        .map(|((k, l), p)| convolution.added([i, j], [k, l]) * p)
                         .sum();
                     assert!((entries - expected).abs() < scale, "{entries} {expected}");
                 }

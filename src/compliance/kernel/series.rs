@@ -181,8 +181,8 @@ impl<const N: usize> Series<N> {
 
 impl Series<1> {
     /// The series of one function `d` of α, sampled in ln α between `ends` ever closer until its terms
-    /// have fallen off, and the error that is left in 2πr H. `size` is that of the numbers whose
-    /// difference `d` is.
+    /// have fallen off, and the error that is left in 2πr H. `d` is a difference of numbers as large as `size`,
+    /// of which its rounding and the terms that are negligible are shares.
     pub(crate) fn resolved(
         d: impl Fn(f64) -> f64,
         ends: [f64; 2],
@@ -192,7 +192,9 @@ impl Series<1> {
     ) -> (Self, f64) {
         // 0.05, and four halvings at most: responses that vary faster keep a larger error.
         const SPACINGS: [f64; 5] = [0.05, 0.025, 0.0125, 0.00625, 0.003125];
+        // Terms over `size` below which closer samples change nothing: a hundred times its rounding.
         const CONVERGED: f64 = 1e-13;
+        // Some units in the last place of `size`.
         const ROUNDING: f64 = 1e-15;
         let sampled = |spacing: f64| {
             let mesh = LogMesh::over(ends, period, spacing);

@@ -5,18 +5,17 @@ use std::sync::{Arc, OnceLock};
 
 use ndarray::Array2;
 
-use crate::compliance::convolution::{Addition, Convolution, Workspace};
-use crate::compliance::ends::Ends;
+use crate::compliance::convolution::{Convolution, Workspace};
 use crate::compliance::influence::memory;
 use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
-use crate::contact::plan::{bodies, operator};
+use crate::contact::plan::PlannedOperator;
 use crate::contact::problem::patch::{block, copied};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
 use crate::numerics::linear_cg::{self, Watch};
-use crate::numerics::parallel::{Threads, check_memory, dot};
+use crate::numerics::parallel::{check_memory, dot};
 
 /// Residual of a linear solve, relative to its right side, below which it is rounding.
 const ROUNDING: f64 = 1e-15;
@@ -39,12 +38,11 @@ pub(crate) struct Tangent {
     cell_area: f64,
     /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
     pub(crate) raise: f64,
-    /// Coefficients at the offsets of the window, and what the ends of bodies add to them.
-    coefficients: Array2<f64>,
-    additions: Vec<Addition>,
+    /// Coefficients at the offsets of the window at least, and what the ends of bodies add to them.
+    planned: Arc<PlannedOperator>,
     source: (Body, Setup, Grid),
     /// Coefficients of the whole grid, once they are needed.
-    far: OnceLock<Array2<f64>>,
+    far: OnceLock<Arc<Array2<f64>>>,
 }
 
 impl Tangent {
@@ -60,23 +58,20 @@ impl Tangent {
             grid.shape(),
             2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
         )?;
-        let threads = Arc::new(Threads::new(None)?);
         let setup = Setup {
             counterbody: report.counterbody.clone(),
             coefficients: solution.coefficients.clone(),
             threads: None,
         };
-        let is_given = setup.coefficients.is_some();
-        let near = if is_given { *grid } else { grid.of_offsets(shape) };
-        let additions = match &solution.ends {
-            Some(additions) => additions.clone(),
-            None => Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?,
+        let planned = match &solution.operator {
+            Some(planned) => Arc::clone(planned),
+            None => Arc::new(PlannedOperator::anew(&report.body, &setup, grid, shape)?),
         };
-        let (coefficients, datum) = operator(&report.body, &setup, &near, &additions, &threads)?;
-        let corner = block(&coefficients, &full_window(shape)).to_owned();
-        let within = additions.iter().map(|addition| addition.on_rows(x.clone()));
+        let corner = block(&planned.coefficients, &full_window(shape)).to_owned();
+        let within = planned.additions.iter().map(|addition| addition.on_rows(x.clone()));
         let repeats = repeating(grid, &window);
-        let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
+        let convolution =
+            Convolution::plan_repeated(&corner, repeats, Arc::clone(&planned.threads))?;
         let mut convolution = convolution.plus(within.collect());
         let springs = solution.compliance.as_ref().map(|c| c.on(grid)).transpose()?;
         if let Some(springs) = &springs {
@@ -97,9 +92,8 @@ impl Tangent {
             scale: [half(0), half(1)],
             coordinates,
             cell_area: grid.cell_area(),
-            raise: datum.raise() * grid.cell_area(),
-            coefficients,
-            additions,
+            raise: planned.datum.raise() * grid.cell_area(),
+            planned,
             source: (report.body.clone(), setup, *grid),
             far: OnceLock::new(),
         })
@@ -135,13 +129,12 @@ impl Tangent {
     /// # Errors
     /// Errors of planning the contact.
     pub(crate) fn reach(&self, offsets: [usize; 2]) -> Result<()> {
-        let known = [self.coefficients.nrows(), self.coefficients.ncols()];
-        let is_near = offsets[0] <= known[0] && offsets[1] <= known[1];
+        let near = &self.planned.coefficients;
+        let is_near = offsets[0] <= near.nrows() && offsets[1] <= near.ncols();
         if !is_near && self.far.get().is_none() {
             let (body, setup, grid) = &self.source;
-            let threads = Arc::new(Threads::new(None)?);
-            let (coefficients, _) = operator(body, setup, grid, &self.additions, &threads)?;
-            self.far.get_or_init(|| coefficients);
+            let whole = PlannedOperator::anew(body, setup, grid, grid.shape())?;
+            self.far.get_or_init(|| whole.coefficients);
         }
         Ok(())
     }
@@ -150,9 +143,9 @@ impl Tangent {
     /// than the window is wide need [`Tangent::reach`] first.
     pub(crate) fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
         let [i, j] = [0, 1].map(|axis| one[axis].abs_diff(other[axis]));
-        let added = self.additions.iter();
+        let added = self.planned.additions.iter();
         let added: f64 = added.map(|added| added.entry([one[0], other[0]], j)).sum();
-        self.far.get().unwrap_or(&self.coefficients)[[i, j]] + added
+        self.far.get().unwrap_or(&self.planned.coefficients)[[i, j]] + added
     }
 
     /// `out` = `operator` `input` on the contact, 0 elsewhere.
@@ -309,5 +302,38 @@ impl Tangent {
             (0..3).map(|i| a[i] * row(i)).sum::<f64>() * self.cell_area
         };
         columns.map(|a| columns.map(|b| form(a, b)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::contact::{Contact, Motion, Options, Setup, Solution};
+    use crate::error::Result;
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
+    use crate::model::surface::Paraboloid;
+
+    use super::Tangent;
+
+    /// The tangent has the coefficients and the threads of the plan that solved the contact. A solution from a file is planned
+    /// anew; of a bare body, whose coefficients do not depend on the grid, its stiffness is the same to the bit.
+    #[test]
+    fn the_tangent_has_the_plan_of_the_solution() -> Result<()> {
+        let grid = Grid::new([32, 24], [4.0, 3.0])?;
+        let setup = Setup { threads: Some(1), ..Setup::default() };
+        let contact = Contact::plan(Elastic::new(1.0, 0.3)?, grid, setup)?;
+        let shape = Paraboloid::new(1e3, 1e3)?;
+        let solution = contact.solve(&shape, &Motion::load(1e-3), &Options::default())?;
+        let window = solution.cells_in_contact().expect("a contact");
+        let tangent = Tangent::plan(&solution, window)?;
+        assert_eq!(tangent.convolution.threads(), 1);
+        assert!(Arc::ptr_eq(&tangent.planned, &contact.operator));
+        let fields = [solution.pressure.clone(), solution.gap(), solution.displacement.clone()];
+        let (approach, tilt) = (solution.approach, solution.tilt);
+        let copy = Solution::from_fields(fields, approach, tilt, solution.report.clone())?;
+        assert_eq!(copy.stiffness(None)?, solution.stiffness(None)?);
+        Ok(())
     }
 }

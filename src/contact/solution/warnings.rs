@@ -81,14 +81,14 @@ pub enum Warning {
         /// Largest creepage in the contact, or twist \[rad\].
         size: f64,
     },
-    /// Rolling has no estimate of its discretisation error.
+    /// Sliding or rolling has no estimate of its discretisation error.
     Unestimated {
         /// Why.
         reason: Unestimated,
     },
 }
 
-/// Why rolling has no estimate of its discretisation error.
+/// Why sliding or rolling has no estimate of its discretisation error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Unestimated {
@@ -98,6 +98,8 @@ pub enum Unestimated {
     Unsolved,
     /// The contact was given its influence coefficients, which cells of twice the length do not have.
     Coefficients,
+    /// The step goes on from one that has no estimate.
+    Before,
 }
 
 /// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
@@ -254,7 +256,7 @@ impl fmt::Display for Warning {
             Self::Unestimated { reason } => {
                 write!(
                     f,
-                    "force, torque, power and creepage have no estimate of their discretisation error: "
+                    "force, torque, motion and dissipated energy have no estimate of their discretisation error: "
                 )?;
                 f.write_str(match reason {
                     Unestimated::Coarse => "it needs 16 cells across the contact; take a finer grid",
@@ -264,6 +266,7 @@ impl fmt::Display for Warning {
                     Unestimated::Coefficients => {
                         "the influence coefficients that were given are those of this grid alone; leave them out"
                     }
+                    Unestimated::Before => "the step before has none",
                 })
             }
         }

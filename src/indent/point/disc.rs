@@ -64,22 +64,24 @@ impl Layers {
         Self { ends, rows }
     }
 
-    /// The slope at `t`.
+    /// The slope at `t`: the polynomial through the values at the nodes of its panel, by the barycentric formula
+    /// (Berrut and Trefethen 2004, eq. 4.2, doi:10.1137/S0036144502417715). `points` are the nodes in −1 to 1 with their
+    /// barycentric weights. Beyond the first and the last panel these continue.
     fn slope(&self, t: f64, points: &[[f64; 2]; NODES]) -> f64 {
         let after = self.ends.partition_point(|end| *end <= t);
         let panel = after.clamp(1, self.rows.len()) - 1;
         let [low, high] = [self.ends[panel], self.ends[panel + 1]];
         let x = (2.0 * t - low - high) / (high - low);
-        let (mut sum, mut all) = (0.0, 0.0);
+        let (mut weighted_slopes, mut weights) = (0.0, 0.0);
         for ([place, weight], [_, slope]) in points.iter().zip(&self.rows[panel]) {
             let distance = x - place;
             if distance.abs() < 1e-14 {
                 return *slope;
             }
-            sum += weight / distance * slope;
-            all += weight / distance;
+            weighted_slopes += weight / distance * slope;
+            weights += weight / distance;
         }
-        sum / all
+        weighted_slopes / weights
     }
 }
 

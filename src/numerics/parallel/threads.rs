@@ -10,6 +10,7 @@ use std::time::Duration;
 use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
 use crate::error::{Error, Result};
+use crate::numerics::clock;
 
 /// Largest permitted number of threads. Larger numbers are taken for mistakes, since each thread has a
 /// stack and working memory.
@@ -162,7 +163,7 @@ impl Threads {
     }
 
     fn pool(&self) -> Option<Arc<SharedPool>> {
-        let process = std::process::id();
+        let process = clock::process();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         match &*pool {
             Some((owner, pool)) if *owner == process => Some(Arc::clone(pool)),

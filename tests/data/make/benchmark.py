@@ -7,6 +7,7 @@ file has changed; docs/benchmark.md describes the cases.
 
 import argparse
 import csv
+import hashlib
 import io
 import json
 import sys
@@ -231,6 +232,17 @@ def contents():
     yield "template.csv", every.getvalue()
 
 
+def checksums():
+    """Text of SHA256SUMS: of all files of the folder but itself."""
+    files = sorted(path for path in HERE.rglob("*") if path.is_file())
+    names = [path.relative_to(HERE).as_posix() for path in files if path.suffix != ".pyc"]
+    return "".join(
+        f"{hashlib.sha256((HERE / name).read_bytes()).hexdigest()}  {name}\n"
+        for name in names
+        if name != "SHA256SUMS"
+    )
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="write the files")
@@ -242,6 +254,11 @@ def main():
             path.write_text(text, encoding="utf-8")
         elif not path.exists() or path.read_text(encoding="utf-8") != text:
             stale.append(name)
+    sums = HERE / "SHA256SUMS"
+    if write:
+        sums.write_text(checksums(), encoding="utf-8")
+    elif not sums.exists() or sums.read_text(encoding="utf-8") != checksums():
+        stale.append(sums.name)
     if stale:
         sys.exit(f"not as the reference numbers are: {', '.join(stale)}")
 

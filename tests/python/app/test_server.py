@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -330,6 +331,26 @@ def test_a_port_that_is_taken_is_passed_over(server: Server) -> None:
     other = open_server(server.server_port, cards())
     assert server.server_port < other.server_port < server.server_port + 10
     other.server_close()
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node")
+def test_the_script_is_javascript(server: Server, tmp_path: Path) -> None:
+    path = tmp_path / "page.js"
+    path.write_bytes(server.files["/page.js"][1])
+    subprocess.run(["node", "--check", path], check=True, capture_output=True)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a port would be shared there")
+def test_a_port_with_connections_of_an_ended_program_is_free() -> None:
+    ended = open_server(0, cards())
+    with socket.create_connection(("127.0.0.1", ended.server_port)):
+        request, _ = ended.get_request()
+        request.shutdown(socket.SHUT_RDWR)
+        request.close()
+        ended.server_close()
+        again = open_server(ended.server_port, cards())
+        assert again.server_port == ended.server_port
+        again.server_close()
 
 
 def test_without_a_free_port_there_is_a_line(

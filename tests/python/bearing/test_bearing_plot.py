@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 from nacre import plot
-from nacre.bearing import CylindricalRoller, DeepGrooveBall
+from nacre.bearing import AngularContactBall, CylindricalRoller, DeepGrooveBall, Pair
 
 ROLLERS = CylindricalRoller(
     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
@@ -70,3 +71,16 @@ def test_labels_of_loads_lie_on_white_above_the_bars() -> None:
         box: Any = text.get_bbox_patch()
         assert box.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
         assert text.get_zorder() > max(bar.get_zorder() for bar in axes.patches)
+
+
+def test_both_bearings_of_a_pair_are_drawn(tmp_path: Path) -> None:
+    ball = AngularContactBall(count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4)
+    pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    solution = pair.solve(force=(500.0, 0.0, 300.0), model="iso16281")
+    panels = solution.plot()
+    for name, one in zip(("first", "second"), solution.bearings, strict=True):
+        bars: list[Any] = list(panels[f"{name} loads"].patches)
+        np.testing.assert_allclose([bar.get_height() for bar in bars], one.loads[:, 0])  # at rest
+        title = panels[f"{name} pressure"].get_title(loc="left")
+        assert title == f"{name} bearing, peak pressures, Hertz"
+    assert solution.save(tmp_path / "pair.png").stat().st_size > 10_000

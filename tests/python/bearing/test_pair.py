@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import json
 import math
 import pickle
 from pathlib import Path
@@ -25,6 +26,8 @@ from nacre.bearing import (
     SphericalRoller,
     TaperedRoller,
 )
+from nacre.case import Case, CaseError
+from support import Capture, command, written
 
 Array = np.ndarray[Any, Any]
 STANDARD: dict[str, Any] = {"model": "iso16281"}
@@ -483,3 +486,95 @@ def test_loads_without_equilibrium_are_refused() -> None:
             force=(5000.0, 0.0, 0.0), moment=(9.0, 0.0), max_iterations=1, **STANDARD
         )
     assert isinstance(error.value.solution, PairSolution)
+
+
+CASE = """
+units = "N-mm-MPa"
+
+[bearing]
+kind = "pair"
+arrangement = "X"
+distance = 50
+preload_distance = 0.01
+
+[bearing.first]
+kind = "tapered_roller"
+count = 17
+diameter = 8
+length = 11
+pitch_diameter = 48
+contact_angle = 0.25
+
+[bearing.second]
+kind = "tapered_roller"
+count = 18
+diameter = 8
+length = 11
+pitch_diameter = 50
+contact_angle = 0.25
+
+[bearing.solve]
+force = { x = 4000, y = 0, z = 500 }
+moment = { x = 0, y = 2000 }
+model = "iso16281"
+
+[bearing.life]
+speed = 100
+"""
+
+
+def test_a_case_file_describes_a_pair(tmp_path: Path, capsys: Capture) -> None:
+    sizes: dict[str, Any] = {"diameter": 8e-3, "length": 11e-3, "contact_angle": 0.25}
+    first = TaperedRoller(count=17, pitch_diameter=48e-3, **sizes)
+    second = TaperedRoller(count=18, pitch_diameter=50e-3, **sizes)
+    pair = Pair(first, second, arrangement="X", distance=50e-3, preload_distance=10e-6)
+    load: dict[str, Any] = {"force": (4000.0, 0.0, 500.0), "moment": (0.0, 2.0)}
+    solution = quiet(pair.solve, **load, model="iso16281")
+    path = written(tmp_path, CASE)
+    assert Case.read(path).arguments()["bearing"] == pair
+    assert command("solve", str(path), "--json") == 0
+    numbers = json.loads(capsys.readouterr().out)
+    lengths = {"displacement": 1e-3, "force": 1.0, "moment": 1e-3}
+    for name, unit in lengths.items():
+        expected = np.array(getattr(solution, name)) / unit
+        np.testing.assert_allclose(numbers[name], expected, rtol=1e-9, atol=1e-9)
+    peak = solution.second.peak_pressures / 1e6
+    np.testing.assert_allclose(numbers["second"]["peak_pressures"], peak, rtol=1e-9)
+    stiffness = solution.stiffness()
+    assert numbers["tangent"][2][2] == pytest.approx(stiffness[2, 2] / 1e3, rel=1e-9)
+    assert numbers["tangent"][4][4] == pytest.approx(stiffness[4, 4] * 1e3, rel=1e-9)
+    assert numbers["life"]["hours"] == pytest.approx(solution.life(speed=100.0).hours, rel=1e-9)
+    assert numbers["verdict"]["bearing"]["words"] == solution.verdict.words
+
+
+def test_the_second_bearing_of_a_case_is_like_the_first(tmp_path: Path) -> None:
+    single = CASE.partition("[bearing.second]")[0] + CASE[CASE.index("[bearing.solve]") :]
+    pair = Case.read(written(tmp_path, single)).arguments()["bearing"]
+    assert pair.second == pair.first
+    wrong = CASE.replace("count = 18", "count = 1")
+    with pytest.raises(CaseError, match=r"bearing\.second: count must be"):
+        Case.read(written(tmp_path, wrong)).arguments()
+    wrong = CASE.replace("distance = 50\n", "distance = -50\n")
+    with pytest.raises(CaseError, match="bearing: distance must be"):
+        Case.read(written(tmp_path, wrong)).arguments()
+    film = CASE + "\n[bearing.film]\nspeed = 1\nviscosity = 1e-8\npressure_viscosity = 0.02\n"
+    with pytest.raises(CaseError, match="film"):
+        Case.read(written(tmp_path, film))
+
+
+def test_the_verdict_of_a_pair_is_that_of_its_worse_bearing() -> None:
+    heavy: dict[str, Any] = {"force": (0.0, 0.0, 80e3), "moment": (0.0, 0.0)}
+    pair = Pair(BALL, OTHER_BALL, arrangement="O", distance=30e-3, preload_force=200.0)
+    solution = quiet(pair.solve, **heavy, model="iso16281")
+    singles = dict(zip(("first", "second"), solution.bearings, strict=True))
+    assert {one.verdict.level for one in singles.values()} == {"bad", "unknown"}
+    verdict = solution.verdict
+    worse = max(singles, key=lambda name: singles[name].peak_pressure)
+    assert verdict.level == "bad"
+    assert verdict.decided_by == f"{worse} bearing, peak pressure"
+    assert verdict.factor == singles[worse].verdict.factor
+    assert verdict.words == f"{worse} bearing: {singles[worse].verdict.words}"
+    assert str(solution).startswith(verdict.words)
+    light = quiet(pair.solve, force=(500.0, 0.0, 0.0), moment=(0.0, 0.0), model="iso16281")
+    factors = [one.verdict.factor or math.inf for one in light.bearings]
+    assert light.verdict.factor == min(factors)

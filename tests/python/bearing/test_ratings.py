@@ -417,7 +417,7 @@ def test_wrong_types_are_named() -> None:
     with pytest.raises(TypeError, match="additives must be True or False"):
         LOADED.life(additives=1, **LIMIT)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="bearing must be a bearing"):
-        static_rating(3)
+        static_rating(3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match='element must be "ball" or "roller"'):
         life_modification_factor(1.0, 1.0, "needle")  # type: ignore[arg-type]
     for bearing in (SPHERICAL, TAPERED, THRUST):

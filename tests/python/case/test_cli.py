@@ -25,7 +25,9 @@ def run(*arguments: object) -> tuple[int, str, str]:
 def test_help_names_the_commands() -> None:
     code, out, err = run("--help")
     assert (code, err) == (0, "")
-    assert [name for name in ("info", "indent", "solve", "sweep") if f" {name} " not in out] == []
+    assert [
+        name for name in ("info", "indent", "solve", "sweep", "verify") if f" {name} " not in out
+    ] == []
 
 
 def test_without_arguments_help_is_printed_and_the_exit_code_is_2(capsys: Capture) -> None:

@@ -57,7 +57,7 @@ def test_a_file_is_never_overwritten(tmp_path: Path, capsys: Capture) -> None:
 
 def test_unknown_kinds_are_refused_with_the_list(capsys: Capture) -> None:
     assert command("new", "ball") == 2
-    assert "KIND must be one of bearing, ball-bearing, contact" in capsys.readouterr().err
+    assert "KIND must be one of bearing, ball-bearing, pair, contact" in capsys.readouterr().err
 
 
 def test_the_contact_is_hertz_s_but_for_the_coat(tmp_path: Path, capsys: Capture) -> None:

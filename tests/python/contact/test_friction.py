@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -184,6 +185,38 @@ def test_a_history_keeps_what_a_step_does_not_give() -> None:
     assert [s.shift for s in loop] == [first, first, first, (0.0, 1e-8)]
     np.testing.assert_allclose(loop[1].force, loop[0].force, atol=1e-7)
     assert loop[1].dissipated == pytest.approx(0, abs=1e-9 * loop[0].dissipated + 1e-20)
+
+
+def test_sliding_states_its_errors_everywhere(tmp_path: Path) -> None:
+    """Errors are printed, saved and stand in studies; what is given has none."""
+    grid = nacre.Grid((40, 40), (2.4e-4, 2.4e-4))
+    case: dict[str, Any] = {
+        "shape": BALL,
+        "body": STEEL,
+        "counterbody": STEEL,
+        "grid": grid,
+        **HELD,
+    }
+    loop = nacre.slide(**case, steps=[{"force": (2.0, 0.0)}, {"shift": (0.0, 0.0)}])
+    pulled, pushed = (step.report.discretisation for step in loop)
+    assert pulled is not None
+    assert pushed is not None
+    names = {"force", "torque", "dissipated", "shift", "twist", "stick_share"}
+    assert pulled.keys() == pushed.keys() == names
+    assert (pulled["force"], pushed["shift"]) == (0.0, 0.0)
+    shift = loop[0].shift
+    assert shift is not None
+    assert 0 < pulled["shift"] < 0.02 * shift[0]
+    assert 0 < pushed["force"] < 0.02 * 3.0  # of what friction carries
+    (line,) = (row for row in str(loop[0]).splitlines() if row.startswith("shift"))
+    assert line.endswith(f"± {100 * pulled['shift'] / shift[0]:.1g} %")
+    loaded = nacre.load(loop.save(tmp_path / "a.nc"))
+    assert [step.report.discretisation for step in loaded] == [pulled, pushed]
+    outputs = ["shift", "dissipated", "stick_share"]
+    swept = {"friction": [case.pop("friction")]}
+    study = nacre.sweep(case | {"force": (2.0, 0.0)}, swept, outputs=outputs, progress=False)
+    for name in outputs:
+        assert study[f"{name}_discretisation"].item() == pulled[name]
 
 
 def test_a_resumed_history_is_the_same_to_the_bit() -> None:

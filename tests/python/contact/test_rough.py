@@ -19,7 +19,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # spots o
 BODY = nacre.Elastic(1.0, 0.0)
 PERIODIC = nacre.Grid((64, 64), (1.0, 1.0), periodic=(True, True))
 WAVES: dict[str, Any] = {"hurst": 0.8, "shortest": 8 / 64, "longest": 0.5}
-SURFACE = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, seed=4, **WAVES)
+SURFACE = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, rng=4, **WAVES)
 SOLUTION = nacre.solve(SURFACE, BODY, load=1e-3)
 
 
@@ -32,9 +32,9 @@ def hertz(cells: int, shift: float = 0.0) -> nacre.Solution:
 
 def test_a_seed_makes_the_same_surface_with_the_waves_that_are_asked_for() -> None:
     np.random.seed(1)  # noqa: NPY002  the global state must not matter
-    again = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, seed=4, **WAVES)
+    again = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, rng=4, **WAVES)
     assert (again.heights == SURFACE.heights).all()
-    other = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, seed=5, **WAVES)
+    other = rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, rng=5, **WAVES)
     assert abs(np.corrcoef(other.heights.ravel(), SURFACE.heights.ravel())[0, 1]) < 0.6
     spectrum = np.abs(np.fft.fft2(SURFACE.heights))
     number = np.fft.fftfreq(64, 1 / 64)
@@ -63,7 +63,7 @@ def test_the_height_may_be_given_and_the_spectrum_falls_as_it_should() -> None:
             shortest=4 / 128,
             longest=0.5,
             rms_height=2.0,
-            seed=seed,
+            rng=seed,
         )
         assert surface.heights.std() == pytest.approx(2.0, rel=1e-12)
         power += np.abs(np.fft.fft2(surface.heights)) ** 2
@@ -85,9 +85,32 @@ def test_the_height_may_be_given_and_the_spectrum_falls_as_it_should() -> None:
     ],
 )
 def test_wrong_surfaces_are_refused(wrong: dict[str, Any], message: str) -> None:
-    given = {**WAVES, "rms_slope": 0.01, "seed": 1, **wrong}
+    given = {**WAVES, "rms_slope": 0.01, "rng": 1, **wrong}
     with pytest.raises(ValueError, match=message):
         rough.random_surface((64, 64), (1.0, 1.0), **given)
+
+
+def test_a_surface_is_chosen_as_by_numpy() -> None:
+    """SPEC 7 of Scientific Python: an integer, a SeedSequence, a Generator or None."""
+
+    def heights(**rng: Any) -> Any:
+        return rough.random_surface((64, 64), (1.0, 1.0), rms_slope=0.01, **WAVES, **rng).heights
+
+    np.testing.assert_array_equal(heights(rng=4), SURFACE.heights)
+    np.testing.assert_array_equal(heights(rng=np.random.SeedSequence(4)), SURFACE.heights)
+    generator = np.random.default_rng(4)
+    np.testing.assert_array_equal(heights(rng=generator), SURFACE.heights)
+    assert (heights(rng=generator) != SURFACE.heights).any()  # which goes on from there
+    assert (heights() != heights()).any()
+    for wrong in (1.5, "4", True, np.random.RandomState(4)):
+        with pytest.raises(TypeError, match="rng must be an integer, a SeedSequence, a Generator"):
+            heights(rng=wrong)
+    with pytest.raises(ValueError, match="rng must be"):
+        heights(rng=-1)
+    with pytest.raises(TypeError, match="no argument seed; rng has the seed"):
+        heights(seed=4)
+    with pytest.raises(TypeError, match=r"no argument seeds$"):
+        heights(seeds=4)
 
 
 def test_the_corrected_area_of_a_disc() -> None:
@@ -236,7 +259,7 @@ def test_a_load_curve_with_hardness_is_a_history() -> None:
 
 def test_ensembles_are_studies_over_the_seed() -> None:
     def case(seed: int) -> dict[str, Any]:
-        surface = rough.random_surface((32, 32), (1.0, 1.0), rms_slope=0.01, seed=seed, **WAVES)
+        surface = rough.random_surface((32, 32), (1.0, 1.0), rms_slope=0.01, rng=seed, **WAVES)
         return {"shape": surface, "body": BODY, "load": 1e-3}
 
     outputs = {"area": rough.corrected_area, "patches": lambda s: rough.patches(s).size}
@@ -341,7 +364,7 @@ def test_bowls_planes_and_the_highest_wave_have_their_slopes_and_curvatures() ->
 
 def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> None:
     whole = rough.random_surface(
-        (256, 256), (1e-4, 1e-4), hurst=0.8, shortest=4e-6, longest=1e-5, rms_slope=0.05, seed=3
+        (256, 256), (1e-4, 1e-4), hurst=0.8, shortest=4e-6, longest=1e-5, rms_slope=0.05, rng=3
     )
     part = nacre.HeightMap(whole.heights[30:220, 40:250], whole.spacing)
     # Of the window alone the slope is that of the whole map's derivative, weighted alike.
@@ -416,7 +439,7 @@ def test_the_coefficient_of_rough_bodies_is_that_of_the_table() -> None:
     found = []
     for seed in range(1, 1 + int(row["seeds"])):
         surface = rough.random_surface(
-            grid.shape, grid.size, hurst=0.8, rms_slope=0.01, shortest=16, longest=256, seed=seed
+            grid.shape, grid.size, hurst=0.8, rms_slope=0.01, shortest=16, longest=256, rng=seed
         )
         solution = contact.solve(surface, load=float(row["pressure"]) * 0.01 * 1024**2)
         found.append(rough.area_coefficient(solution))

@@ -22,7 +22,7 @@ from support import ROOT, command, printed, python
 DOCS = ROOT / "docs"
 MODULES = (
     *(nacre.bearing, nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot),
-    *(nacre.rough, nacre.types),
+    *(nacre.rough, nacre.types, nacre.verify),
 )
 PAGES = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md")), *sorted(DOCS.glob("limits/*.md"))]
 FENCE = re.compile(

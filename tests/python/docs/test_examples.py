@@ -12,6 +12,8 @@ from support import ROOT, Capture, command, printed
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
+RECIPES = sorted((ROOT / "examples" / "recipes").glob("*.py"))
+
 
 def test_there_are_examples() -> None:
     assert len(EXAMPLES) >= 3
@@ -27,6 +29,28 @@ def test_an_example_asks_a_question_and_answers_it_with_numbers(
     output = printed(example, tmp_path)
     assert len(re.findall(r"\d+\.\d+", output)) >= 3
     assert "nan" not in output.lower()
+
+
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda path: path.stem)
+def test_a_recipe_says_its_task_and_checks_its_digits(recipe: Path, tmp_path: Path) -> None:
+    tree = ast.parse(recipe.read_text(encoding="utf-8"))
+    task = (ast.get_docstring(tree) or "").splitlines()
+    assert len(task) == 1
+    assert any(isinstance(node, ast.Assert) for node in tree.body)
+    imported = {
+        (node.module or "" if isinstance(node, ast.ImportFrom) else node.names[0].name)
+        for node in tree.body
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    }
+    assert {name.partition(".")[0] for name in imported} <= {"math", "nacre", "numpy"}
+    assert re.search(r"\d+\.?\d*", printed(recipe, tmp_path))
+
+
+def test_the_page_shows_all_recipes() -> None:
+    page = (ROOT / "docs" / "howto" / "recipes.md").read_text(encoding="utf-8")
+    shown = re.findall(r"literalinclude\} \.\./\.\./examples/recipes/(\w+)\.py", page)
+    assert sorted(shown) == [path.stem for path in RECIPES]
+    assert len(shown) == 10
 
 
 def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import csv
 import importlib
 import json
+import re
+import runpy
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -78,6 +81,45 @@ def test_files_follow_from_the_reference_numbers(monkeypatch: pytest.MonkeyPatch
     monkeypatch.syspath_prepend(str(DATA / "make"))
     for name, text in importlib.import_module("benchmark").contents():
         assert (SET / name).read_text(encoding="utf-8") == text, name
+
+
+def test_the_checksums_are_those_of_the_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(DATA / "make"))
+    sums = (SET / "SHA256SUMS").read_text(encoding="utf-8")
+    assert importlib.import_module("benchmark").checksums() == sums
+    listed = {line.partition("  ")[2] for line in sums.splitlines()}
+    assert {"README.md", "LICENSE", "CITATION.cff", "read.py", "schema/set.json"} <= listed
+
+
+def test_the_sets_follow_their_schema() -> None:
+    schema = json.loads((SET / "schema" / "set.json").read_text(encoding="utf-8"))
+    validator = jsonschema.Draft202012Validator(schema)
+    for path in SET.glob("*.json"):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        validator.validate(content)
+        content["cases"][0]["asked"]["more"] = {"value": "1", "scale": 1.0, "error": 1e-3}
+        assert not validator.is_valid(content)
+
+
+def test_the_reader_has_every_number(monkeypatch: pytest.MonkeyPatch, compare: Any) -> None:
+    tables = runpy.run_path(str(SET / "read.py"))["read"]()
+    rows = {
+        (name, str(row["case"]), str(row["quantity"])): (row["value"], row["scale"], row["error"])
+        for name, table in tables.items()
+        for row in table
+    }
+    assert rows == compare.known()
+    lines = (SET / "read.py").read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= 40
+    readme = (SET / "README.md").read_text(encoding="utf-8")
+    counts = re.findall(r"^\| `(\w+)\.json` \| (\d+) \| (\d+) \|", readme, flags=re.MULTILINE)
+    assert {name: (int(cases), int(numbers)) for name, cases, numbers in counts} == {
+        name: (len(set(table["case"])), len(table)) for name, table in tables.items()
+    }
+    total = sum(len(table) for table in tables.values())
+    cases = sum(len(set(table["case"])) for table in tables.values())
+    assert readme.split("\n\n")[1].startswith(f"{total} numbers")
+    assert f"{total} numbers of {cases} contacts" in (SET / "CITATION.cff").read_text("utf-8")
 
 
 def test_cases_say_what_is_needed_to_compute_them() -> None:

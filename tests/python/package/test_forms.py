@@ -123,13 +123,13 @@ def curve(**given: Any) -> Array:
 
 def random(**given: Any) -> Array:
     options = {"shape": (16, 16), "size": (1.0, 1.0)} | given
-    numbers = {"hurst": 0.8, "shortest": 0.2, "longest": 1.0, "rms_height": 1.0, "seed": 1}
+    numbers = {"hurst": 0.8, "shortest": 0.2, "longest": 1.0, "rms_height": 1.0, "rng": 1}
     return rough.random_surface(**options, **numbers).heights  # type: ignore[arg-type]
 
 
 def rough_curve(pressures: Any) -> Array:
     shape = rough.random_surface(
-        (16, 16), (1e-4, 1e-4), hurst=0.8, shortest=2e-5, longest=1e-4, rms_height=1e-8, seed=1
+        (16, 16), (1e-4, 1e-4), hurst=0.8, shortest=2e-5, longest=1e-4, rms_height=1e-8, rng=1
     )
     return np.asarray(quiet(rough.load_curve, shape, STEEL, pressures)["load"])
 

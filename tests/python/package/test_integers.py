@@ -42,7 +42,7 @@ def rolled(**given: Any) -> Any:
 
 
 def random(**given: Any) -> Any:
-    options: dict[str, Any] = {"shape": (16, 16), "size": (1.0, 1.0), "seed": 1} | given
+    options: dict[str, Any] = {"shape": (16, 16), "size": (1.0, 1.0), "rng": 1} | given
     numbers = {"hurst": 0.8, "shortest": 0.2, "longest": 1.0, "rms_height": 1.0}
     return rough.random_surface(**options, **numbers)  # type: ignore[arg-type]
 
@@ -102,7 +102,7 @@ INTEGERS: dict[str, tuple[int, Callable[[Any], Any]]] = {
     "assess(threads)": (1, lambda n: quiet(fatigue.assess, SOLUTION, depths=[1e-5], threads=n)),
     "pressure_distribution": (8, lambda n: rough.pressure_distribution(SOLUTION, n)),
     "random_surface(shape)": (16, lambda n: random(shape=(n, 16))),
-    "random_surface(seed)": (3, lambda n: random(seed=n)),
+    "random_surface(rng)": (3, lambda n: random(rng=n)),
     "count of balls": (9, lambda n: bearing.DeepGrooveBall(**BALLS | {"count": n})),
     "count of rollers": (14, lambda n: bearing.CylindricalRoller(**ROLLERS | {"count": n})),
     "count of tapered rollers": (
@@ -199,7 +199,7 @@ def test_whole_numbers_are_integers(name: str, kind: Callable[[int], Any]) -> No
 def test_other_things_are_no_integers(name: str) -> None:
     for wrong in NOT_WHOLE:
         if wrong is None and any(
-            word in name for word in ("threads", "max_", "cells", "influence")
+            word in name for word in ("threads", "max_", "cells", "influence", "rng")
         ):
             continue  # the default
         refused(INTEGERS[name][1], wrong)

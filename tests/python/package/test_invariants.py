@@ -298,11 +298,9 @@ def finer_grid(name: str) -> None:
         result, fine = getattr(result, "normal", result), getattr(fine, "normal", fine)
     stated = result.report.discretisation
     assert stated is not None
-    least = {"rolling": {"force", "power"}, "bearing": {"edge_pressure"}}
-    attributes = {"power": "dissipated"}
+    least = {"rolling": {"force", "dissipated"}, "bearing": {"edge_pressure"}}
     assert set(stated) >= least.get(name, {"peak_pressure", "approach"})
-    for name_of_error, error in stated.items():
-        quantity = attributes.get(name_of_error, name_of_error)
+    for quantity, error in stated.items():
         if hasattr(result, quantity):
             value = getattr(result, quantity)
             change = np.abs(np.subtract(getattr(fine, quantity), value))

@@ -304,7 +304,7 @@ def test_a_study_of_lines_has_loads_and_areas_per_length() -> None:
 
 def test_a_history_prints_0_where_a_force_is_rounding() -> None:
     """Forces of 0 are met to rounding of the largest force of the history."""
-    grid = nacre.Grid((16, 16), (2.4e-4, 2.4e-4))
+    grid = nacre.Grid((30, 30), (2.4e-4, 2.4e-4))
     steps: list[Any] = [{"force": (0.0, 0.0)}, {"force": (2.0, 0.0)}, {"force": (0.0, 0.0)}]
     bodies: list[Any] = [nacre.Sphere(5e-3), nacre.Elastic(210e9, 0.3), nacre.Elastic(115e9, 0.33)]
     loop = nacre.slide(*bodies, steps=steps, load=10.0, friction=0.3, grid=grid)

@@ -161,7 +161,9 @@ def test_text_shows_the_numbers_with_units() -> None:
         assert said in slid
     solution = solved("slid")
     stick, all_cells = solution.stick.sum(), (solution.pressure > 0).sum()
-    assert f"{stick} of {all_cells} cells stick" in slid
+    assert solution.report.discretisation is not None
+    error = np.ceil(solution.report.discretisation["stick_share"] * all_cells)
+    assert f"{stick} ± {error:.0f} of {all_cells} cells stick" in slid
     x, y = shift_of(solution)
     assert f"({x * 1e9:.4g} nm, {y * 1e9:.4g} nm)" in slid
     for said in ("creepage       (0.001, 0.0002)", "spin           3 /m", "towards -x"):

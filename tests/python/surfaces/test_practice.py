@@ -888,7 +888,7 @@ def test_rolling_with_little_friction_is_that_of_its_creepage(
 
 def test_a_load_at_the_limit_of_the_hardness_is_refused() -> None:
     shape = nacre.rough.random_surface(
-        (32, 32), (64e-6, 48e-6), hurst=0.8, rms_slope=0.08, shortest=8e-6, longest=48e-6, seed=2
+        (32, 32), (64e-6, 48e-6), hurst=0.8, rms_slope=0.08, shortest=8e-6, longest=48e-6, rng=2
     )
     hardness = 0.1 * STEEL.plane_strain_modulus
     bears = hardness * 64e-6 * 48e-6

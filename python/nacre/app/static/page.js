@@ -25,15 +25,20 @@ function question(stage) {
   return { card: form.dataset.card, values, stage, page: id, age };
 }
 
+// Where the program does not answer, it is asked again until it does, or the question is given up.
 async function post(path, body, signal) {
-  for (const delay of [...DELAYS, null]) {
+  for (let count = 0; ; count += 1) {
     try {
       const headers = { "Content-Type": "application/json" };
       const reply = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
       return reply.ok ? await reply.json() : { error: await reply.text() };
     } catch (error) {
       if (signal?.aborted) return { stopped: true };
-      if (delay === null) return { error: "the program no longer answers: start it again" };
+      if (count === DELAYS.length) {
+        tell(problem, "the program no longer answers: start it again");
+        show("failed");
+      }
+      const delay = DELAYS[Math.min(count, DELAYS.length - 1)];
       await new Promise((next) => setTimeout(next, delay));
     }
   }

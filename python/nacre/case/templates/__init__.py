@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib import resources
 
 KINDS = (
-    *("bearing", "ball-bearing", "contact", "roller", "line", "indentation", "cone", "rough"),
-    *("slide", "roll", "fatigue", "sweep"),
+    *("bearing", "ball-bearing", "pair", "contact", "roller", "line", "indentation", "cone"),
+    *("rough", "slide", "roll", "fatigue", "sweep"),
 )
 """Names of the templates, in the order of the list."""
 

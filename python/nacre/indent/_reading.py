@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import plain
-from nacre.indent import solve
 from nacre.results.verdict import DIGITS, Level, Verdict, number
 
 Array = npt.NDArray[np.float64]
@@ -19,7 +18,7 @@ Array = npt.NDArray[np.float64]
 GOOD, FAIR = 0.05, 0.20
 """Largest errors of a modulus of a good and of a fair indentation."""
 TOLERATED = 0.10
-"""Error of the modulus whose depth is told."""
+"""Error of the modulus up to whose depth a verdict tells."""
 DEPTHS, SHALLOWEST = 40, 1e-3
 """Number of depths, and the smallest over the largest."""
 
@@ -49,7 +48,9 @@ def apparent_modulus(solution: Any) -> Reading | None:
         return None
     film, depths = body.layers[0].material, largest * np.geomspace(SHALLOWEST, 1.0, DEPTHS)
     loads, bare = (
-        solve(one, solution.tip, counterbody=solution.counterbody, approach=depths).load
+        core.Indentation(one, solution.tip, solution.counterbody, None)
+        .at("stable", approach=depths)
+        .number("load")
         for one in (body, core.HalfSpace(film))
     )
     tip = solution.counterbody

@@ -1,0 +1,116 @@
+"""Results of a case and their report, for the command line and the page."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+import nacre
+from nacre.bearing import BearingSolution, Film, film_thickness
+from nacre.bearing.geometry import RINGS, Ring
+from nacre.case import Case, CaseError
+from nacre.indent.solution import solve as solve_indentation
+from nacre.results import report
+
+Results = dict[str, Any]
+Options = Mapping[str, Any]
+DEPTH_OPTIONS = ("body", "friction", "direction", "residual")
+"""Keywords of stresses that pictures over depth take, too."""
+
+
+def results_of(case: Case, arguments: Options, options: Options | None = None) -> Results:
+    """Return the results of a case by name, the solution first.
+
+    `options` are further keywords of what takes long: `progress`, `threads`.
+
+    Raises
+    ------
+    CaseError
+        If a result is refused; it names the table of the case.
+    """
+    return SOLVERS[case.kind](case, dict(arguments), dict(options or {}))
+
+
+@contextmanager
+def naming(case: Case, name: str) -> Iterator[None]:
+    """Raise errors of a calculation as a `CaseError` that names a table of the case."""
+    try:
+        yield
+    except (ArithmeticError, TypeError, ValueError) as error:
+        # The notes of an error name the step of a history.
+        words = ": ".join([name, *getattr(error, "__notes__", []), str(error)])
+        raise CaseError(f"{case.name}: {words}") from error
+
+
+def _contact(case: Case, arguments: Options, options: Options) -> Results:
+    name = case.friction or "solve"
+    with naming(case, name):
+        results = {"solution": getattr(nacre, name)(**arguments, **options)}
+    last = last_of(results["solution"])
+    if (keywords := case.stress()) is not None:
+        with naming(case, "stress"):
+            results["stress"] = last.stress_summary(**keywords, **options)
+    if (keywords := case.fatigue()) is not None:
+        with naming(case, "fatigue"):
+            results["fatigue"] = nacre.fatigue.assess(last, **keywords, **options)
+    return results
+
+
+def _bearing(case: Case, arguments: Options, options: Options) -> Results:
+    keywords = dict(arguments)
+    bearing, life, film = keywords.pop("bearing"), case.life(), case.film()
+    with naming(case, "bearing"):
+        results = {"bearing": bearing.solve(**keywords, **options)}
+        if life is not None:
+            results["life"] = results["bearing"].life(**life)
+    if film is not None:
+        with naming(case, "bearing.film"):
+            results["film"] = _film(results["bearing"], **film)
+    return results
+
+
+def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
+    """Return the film in the heaviest contact of a ring."""
+    heaviest = solution.loads[:, RINGS.index(ring)].argmax()
+    if (contact := solution.contact(int(heaviest), ring)) is None:
+        raise ValueError("no element is loaded, so that there is no film")
+    return film_thickness(contact, **keywords)
+
+
+def _indentation(case: Case, arguments: Options, options: Options) -> Results:
+    with naming(case, "indent"):
+        return {"indent": solve_indentation(**arguments)}
+
+
+SOLVERS: dict[str, Callable[[Case, Options, Options], Results]] = {
+    "contact": _contact,
+    "bearing": _bearing,
+    "indent": _indentation,
+}
+"""Functions of the kinds of cases."""
+
+
+def last_of(outcome: object) -> Any:
+    """Return a solution, the last one of a history."""
+    return outcome[-1] if isinstance(outcome, nacre.types.History) else outcome
+
+
+def report_of(case: Case, results: Results, text: str, name: str, files: report.Rows) -> str:
+    """Return the report of the results of a case, whose file is `text`.
+
+    Its files are those of `files_of`.
+    """
+    tables = {"stress": case.stress(), "fatigue": case.fatigue()}
+    sliding = {k: v for k, v in (tables["stress"] or {}).items() if k in DEPTH_OPTIONS}
+    rows = [("units of the case", case.units), *files, *report.input_rows(tables)]
+    return report.text(name, [*results.values()], text, rows, sliding)
+
+
+def files_of(case: Case) -> list[tuple[str, str]]:
+    """Return the measured files that a case names, with their SHA-256."""
+    return [
+        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
+        for path in case.measured()
+    ]
