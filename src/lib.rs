@@ -68,6 +68,7 @@ mod numerics;
 #[cfg(feature = "python")]
 mod python;
 pub mod stress;
+pub mod wear;
 
 pub use compliance::{convolution, ends, influence, response, traction};
 pub use model::{body, grid, hertz, material, surface};

@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, arguments, background, data, value,
-//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, fatigue, gradient, indent, paths.
+//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, wear, stress, fatigue, gradient, indent, paths.
 
 use pyo3::prelude::*;
 
@@ -23,6 +23,7 @@ mod shapes;
 mod solved;
 mod stress;
 mod value;
+mod wear;
 
 #[pymodule(name = "_core")]
 mod core {
@@ -65,6 +66,8 @@ mod core {
         PyStressPlan, checked_stress, layer_values, stress, stress_invariants, stress_plan,
         stress_summary, stress_under,
     };
+    #[pymodule_export]
+    use super::wear::{PyWearSteps, wear};
     use super::{indent, shapes};
     use pyo3::prelude::*;
 

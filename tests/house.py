@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 CHAIN = [
     *("error", "numerics", "model", "compliance", "contact"),
-    *("stress", "fatigue", "friction", "indent", "gradient", "data", "python"),
+    *("stress", "fatigue", "friction", "wear", "indent", "gradient", "data", "python"),
 ]
 """Modules; each imports only from those before it."""
 

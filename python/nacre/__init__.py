@@ -43,7 +43,7 @@ from nacre._core import (
 )
 from nacre._tools.units import display_units
 from nacre.cards import materials as materials
-from nacre.contact import Contact, roll, slide, solve
+from nacre.contact import Contact, roll, slide, solve, wear
 from nacre.contact.compliance import (
     Convolution,
     frequency_response,
@@ -107,6 +107,7 @@ __all__ = [
     "stress",
     "surface_compliance",
     "sweep",
+    "wear",
 ]
 
 

@@ -17,6 +17,7 @@ from nacre.contact.arguments import (
 )
 from nacre.contact.solution import Numbers
 from nacre.contact.stresses import StressFields, StressLimits, StressOptions
+from nacre.contact.wear import WearOptions
 
 __all__ = [
     "FREE",
@@ -48,6 +49,7 @@ __all__ = [
     "Sphere",
     "Spring",
     "StressPlan",
+    "WearSteps",
     "__version__",
     "at",
     "checked",
@@ -79,6 +81,7 @@ __all__ = [
     "stress_under",
     "surface_compliance",
     "vector",
+    "wear",
     "with_value",
 ]
 
@@ -705,6 +708,18 @@ def checked(kind: str, text: str) -> dict[str, Any]: ...
 def checked_report(
     text: str, grid: Grid, body: _Planned, counterbody: _Planned | None
 ) -> _Report: ...
+
+@final
+class WearSteps:
+    def __iter__(self) -> Self: ...
+    def __next__(
+        self,
+    ) -> tuple[
+        float, tuple[_Field, _Field], Solved, list[dict[str, Any]], float | None, bool, int
+    ]: ...
+    def thickness_error(self) -> float | None: ...
+
+def wear(shape: Shape, motion: Motion, wear: WearOptions, on: Plan | Setup) -> WearSteps: ...
 def creep_coefficients(
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None,

@@ -178,7 +178,7 @@ impl RollingDirection {
     }
 
     /// The axis along which it points.
-    pub(super) fn axis(self) -> usize {
+    pub(crate) fn axis(self) -> usize {
         usize::from(matches!(self, Self::PlusY | Self::MinusY))
     }
 

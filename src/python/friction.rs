@@ -247,7 +247,7 @@ pub(super) struct PyFrictionStep<'py> {
 
 impl PyFrictionStep<'_> {
     /// The step. Along z it moves where the motion says anything.
-    fn read(&self) -> PyResult<Step> {
+    pub(super) fn read(&self) -> PyResult<Step> {
         let motion = self.motion.read()?;
         Ok(Step {
             motion: (motion != Motion::default()).then_some(motion),
@@ -275,7 +275,7 @@ pub(super) struct PyRolling<'py> {
 
 impl PyRolling<'_> {
     /// Rolling of a shape, which says in which direction if it rolls in one alone.
-    fn read(&self, shape: &Shape) -> PyResult<Rolling> {
+    pub(super) fn read(&self, shape: &Shape) -> PyResult<Rolling> {
         let friction = self.friction.map(coefficient)?;
         let friction =
             friction.ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
@@ -308,6 +308,20 @@ pub(super) struct PyFrictionOptions<'py> {
     initial: Argument<'py>,
     progress: Argument<'py>,
     check: Argument<'py>,
+}
+
+impl PyFrictionOptions<'_> {
+    /// How tractions are found.
+    pub(super) fn read(&self) -> PyResult<FrictionOptions> {
+        let default = FrictionOptions::default();
+        let most = self.max_convolutions.count("max_convolutions", 1)?;
+        Ok(FrictionOptions {
+            tolerance: self.tolerance.real("tolerance")?,
+            max_convolutions: most.unwrap_or(default.max_convolutions),
+            coupling: self.coupling.flag("coupling")?,
+            ..default
+        })
+    }
 }
 
 /// Steps of sliding: one step, or those of a history.
@@ -366,14 +380,7 @@ fn friction_steps(
     let last: Option<Bound<'_, PyFrictionSolved>> =
         keywords.initial.of("initial", "a nacre.types.FrictionSolution")?;
     let last = last.map(|last| Arc::clone(&last.get().0));
-    let default = FrictionOptions::default();
-    let most = keywords.max_convolutions.count("max_convolutions", 1)?;
-    let mut options = FrictionOptions {
-        tolerance: keywords.tolerance.real("tolerance")?,
-        max_convolutions: most.unwrap_or(default.max_convolutions),
-        coupling: keywords.coupling.flag("coupling")?,
-        ..default
-    };
+    let mut options = keywords.read()?;
     let progress = keywords.progress.callable("progress")?;
     keywords.check.flag("check")?;
     let shape = shape_of(shape)?;
@@ -387,7 +394,7 @@ fn friction_steps(
 }
 
 /// A contact of the given bodies: on the given grid, on that of the step before, or on one that fits the shape.
-fn planned(
+pub(super) fn planned(
     py: Python<'_>,
     setup: &PySetup<'_>,
     shape: &Shape,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.progress import lasting
-from nacre._tools.typing import Algorithm, Along, Body, Field, Layers, Matrix, Planned
+from nacre._tools.typing import Algorithm, Along, AnyPath, Body, Field, Layers, Matrix, Planned
 from nacre.contact.arguments import (
     MOTION,
     STEP,
@@ -30,6 +30,16 @@ from nacre.contact.arguments import (
 )
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
+from nacre.contact.wear import (
+    Rate,
+    Scheme,
+    Sliding,
+    WearControl,
+    WearHistory,
+    Wearing,
+    WearProgress,
+    wear_history,
+)
 
 MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""
@@ -452,6 +462,141 @@ def roll(
     return _solve_steps(moves, shape, cells or 1, options)
 
 
+def wear(
+    shape: core.Shape,
+    body: Body,
+    counterbody: Body | None = None,
+    *,
+    grid: core.Grid | None = None,
+    max_cells: int | None = None,
+    threads: int | None = None,
+    load: float | None = None,
+    approach: float | None = None,
+    eccentricity: Along | None = None,
+    moment: Along | None = None,
+    tilt: Along | None = None,
+    rate: Rate,
+    counter_rate: Rate = 0.0,
+    sliding: float | None = None,
+    cycles: float | None = None,
+    slide: Mapping[str, Any] | None = None,
+    passes: float | None = None,
+    roll: Mapping[str, Any] | None = None,
+    slip: Matrix | None = None,
+    steps: int | npt.ArrayLike | Literal["auto"] = "auto",
+    step_tolerance: float = 1e-3,
+    scheme: Scheme = "trapezoidal",
+    initial: WearHistory | Matrix | None = None,
+    until: Literal["through"] | None = None,
+    store: AnyPath | None = None,
+    tolerance: float = 1e-8,
+    max_iterations: int | None = None,
+    progress: WearProgress | None = None,
+) -> WearHistory:
+    """Slide a shape over a body, and wear both by Archard's law, in one call.
+
+    An automatic grid grows with the contact. Steps are implicit: none is too long to be stable.
+
+    Parameters
+    ----------
+    shape : Shape
+        Shape that is pressed in.
+    body : HalfSpace, Elastic or Response
+        Body that it is pressed into.
+    counterbody : HalfSpace, Elastic or Response, optional
+        Body that carries the shape; rigid where there is none.
+    grid : Grid, optional
+        Cells of the pressure; by default those of `solve`, which grow.
+    max_cells, threads : optional
+        As `nacre.solve` explains.
+    load, approach, eccentricity, moment, tilt : optional
+        Motion along z, as `nacre.solve` explains.
+    rate : float or mapping
+        Specific wear rate κ of the body [m²/N], at least 0: one number, or one of each layer, by
+        number or name, and "substrate". 1 m²/N is 1e9 mm³/(N m). Archard's k/H is κ.
+    counter_rate : float or mapping, optional
+        That of the counterbody, or of the rigid shape.
+    sliding : float, optional
+        Sliding distance [m], everywhere the same. One of `sliding`, `cycles` and `passes` is given.
+    cycles : float, optional
+        Number of fretting cycles; `slide` says what a cycle is. The slip is that of the worn bodies
+        at the start of each step, in which it stays as it is.
+    slide : mapping, optional
+        Keywords of `nacre.slide`: `steps` of one cycle, which is made twice, and `friction`. The
+        slips of the second time count.
+    passes : float, optional
+        Number of passes of a wheel; `roll` says how it rolls. A pass takes ``κ ∫ p |slip|`` along
+        the rolling direction off the whole track, and steps are explicit.
+    roll : mapping, optional
+        Keywords of `nacre.roll`: `friction`, `creepage`, `spin`, `direction` and others.
+    slip : array_like, optional
+        Slip of each cell per metre of sliding ``(nx, ny)``, at least 0; 1 by default.
+    steps : int or array_like, optional
+        Number of equal steps, or their ends in ascending order, from above 0 to the whole distance.
+        By default as many as keep the error of each within `step_tolerance`.
+    step_tolerance : float, optional
+        Largest error of the pressure that a step may add, over the peak.
+    scheme : {"trapezoidal", "euler"}, optional
+        Steps of second order, which ring where they are too long and given; or of first order,
+        which never do.
+    initial : WearHistory or array_like, optional
+        History to go on from, by the distance that is given; or depth removed from the body before,
+        ``(nx, ny)`` [m].
+    until : "through", optional
+        Whether it ends where the first layer is through.
+    store : str or os.PathLike, optional
+        File ``.nc`` in which the history is kept after each step. Where it exists, the call goes on
+        from it.
+    progress : callable, optional
+        Function that is called with each `WearState`; returning False stops.
+    tolerance, max_iterations : optional
+        How each contact is solved, as `nacre.solve` explains.
+
+    Returns
+    -------
+    WearHistory
+        Worn contacts over the distance, and where layers are through.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, a layer is unknown or has no rate, or not exactly one of
+        `sliding`, `cycles` and `passes` is given.
+    ConvergenceError
+        If a contact did not converge. This and every other exception carries what is finished as
+        `history`.
+
+    Notes
+    -----
+    The rate is one of a model: measured rates scatter by factors of two and more. Layers are as
+    thick in the elastic contact as before they wore; `WearReport.thickness_error` says what that
+    costs.
+
+    Examples
+    --------
+    How far until the coat of a roller is through?
+
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> dlc = nacre.Elastic(young=300e9, poisson=0.25)
+    >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)])
+    >>> history = nacre.wear(
+    ...     nacre.Cylinder(10e-3), body, load=1e5, grid=nacre.Grid.line(64, 6e-4),
+    ...     rate={0: 1e-17, "substrate": 1e-15}, sliding=5e3, until="through",
+    ... )
+    >>> history.life.position[1] == 0.0 or abs(history.life.position[1]) < 1e-5
+    True
+    """
+    control = WearControl(
+        steps, step_tolerance, scheme, initial, until, store, tolerance, max_iterations, progress
+    )
+    setup = Setup(body, counterbody, grid or control.grid, max_cells, threads)
+    setup.check_end(shape, load, None)
+    motion = Motion(load, approach, eccentricity, moment, tilt)
+    extent = Sliding(sliding, cycles, slide, passes, roll, slip)
+    bodies = Wearing(body, counterbody, rate, counter_rate, grows=grid is None)
+    return wear_history(shape, motion, bodies, extent, control, setup)
+
+
 class Contact:
     """A body on a grid, planned once: influence coefficients and their transform.
 
@@ -824,6 +969,84 @@ class Contact:
         options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
         moves = core.roll(shape, rolling, options, self._plan)
         return _solve_steps(moves, shape, cells or 1, options)
+
+    def wear(
+        self,
+        shape: core.Shape,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        eccentricity: Along | None = None,
+        moment: Along | None = None,
+        tilt: Along | None = None,
+        rate: Rate,
+        counter_rate: Rate = 0.0,
+        sliding: float | None = None,
+        cycles: float | None = None,
+        slide: Mapping[str, Any] | None = None,
+        passes: float | None = None,
+        roll: Mapping[str, Any] | None = None,
+        slip: Matrix | None = None,
+        steps: int | npt.ArrayLike | Literal["auto"] = "auto",
+        step_tolerance: float = 1e-3,
+        scheme: Scheme = "trapezoidal",
+        initial: WearHistory | Matrix | None = None,
+        until: Literal["through"] | None = None,
+        store: AnyPath | None = None,
+        tolerance: float = 1e-8,
+        max_iterations: int | None = None,
+        progress: WearProgress | None = None,
+    ) -> WearHistory:
+        """Slide a shape over the body, and wear both by Archard's law, on the grid of the plan.
+
+        Parameters
+        ----------
+        shape : Shape
+            Shape that is pressed in.
+        load, approach, eccentricity, moment, tilt : optional
+            Motion along z, as `nacre.solve` explains.
+        rate, counter_rate, sliding, cycles, slide, passes, roll, slip : optional
+            What wears and how far, as `nacre.wear` explains.
+        steps, step_tolerance, scheme, initial, until, store, progress : optional
+            Steps, as `nacre.wear` explains.
+        tolerance, max_iterations : optional
+            How each contact is solved, as `nacre.solve` explains.
+
+        Returns
+        -------
+        WearHistory
+            Worn contacts over the distance, and where layers are through.
+
+        Raises
+        ------
+        ValueError
+            As `nacre.wear`.
+        ConvergenceError
+            If a contact did not converge.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
+        >>> history = contact.wear(nacre.Sphere(5e-3), load=10.0, rate=1e-16, sliding=1.0, steps=2)
+        >>> len(history)
+        3
+        """
+        control = WearControl(
+            steps,
+            step_tolerance,
+            scheme,
+            initial,
+            until,
+            store,
+            tolerance,
+            max_iterations,
+            progress,
+        )
+        motion = Motion(load, approach, eccentricity, moment, tilt)
+        extent = Sliding(sliding, cycles, slide, passes, roll, slip)
+        bodies = Wearing(self.body, self.counterbody, rate, counter_rate, grows=False)
+        return wear_history(shape, motion, bodies, extent, control, self._plan)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""

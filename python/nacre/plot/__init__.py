@@ -17,9 +17,11 @@ from nacre.plot.sections import compare, section
 from nacre.plot.stress import stress_depth, stress_section
 from nacre.plot.studies import chart, curve
 from nacre.plot.style import STYLE
+from nacre.plot.wear import animate_wear, wear
 
 __all__ = [
     "STYLE",
+    "animate_wear",
     "bearing",
     "bearing_pair",
     "chart",
@@ -46,4 +48,5 @@ __all__ = [
     "stress_depth",
     "stress_section",
     "view",
+    "wear",
 ]

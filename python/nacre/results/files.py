@@ -30,7 +30,7 @@ ARRAYS = [
     row.name
     for row in (*CONTACT, *WITH_FRICTION)
     if len(row.dims) > 1 and row.dims[0] != "axis" and not row.follows
-]
+] + ["packed"]
 """Names of what files hold as arrays."""
 
 
@@ -166,6 +166,7 @@ def load(path: AnyPath) -> Any:
     -------
     object
         Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
+        `WearHistory`, a
         `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
         `IndentSolution`, a `Fit` or an `OliverPharr` of `nacre.indent`, a `BearingSolution`,
         `BearingLife`, `PairSolution`, `PairLife`, `StressVolume`, `LifeRatio` or `Film` of
@@ -211,6 +212,8 @@ def _restored(text: str, arrays: Mapping[str, Array]) -> object:
     check_format(state.get("format"), state.get("nacre"), "it")
     kind = result_class(state.get("kind", "Solution"))
     with refusing(kind.__name__):
+        if "packed" in arrays and hasattr(kind, "_unpacked"):
+            return kind.from_dict(kind._unpacked(state, arrays))
         several = isinstance(state.get("steps"), list) and bool(state["steps"])
         for row in (row for row in kind._QUANTITIES if row.dims):  # numbers are no arrays
             if row.name in arrays and several:

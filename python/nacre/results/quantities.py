@@ -118,6 +118,20 @@ CONTACT = (
 )
 """Quantities of a normal contact, numbers first, in the order in which they are printed."""
 
+WEAR = (
+    Quantity("distance", "sliding distance, cycles or passes", "m", dims=("step",)),
+    Quantity("volume", "volume removed", "m³", "m²", ("step", "member")),
+    Quantity("deepest", "largest depth removed", "m", dims=("step", "member")),
+    Quantity("peak_pressure", "largest pressure of a cell", "Pa", dims=("step",)),
+    Quantity("contact_area", "area in contact", "m²", "m", ("step",)),
+    Quantity("approach", "approach of the origin", "m", dims=("step",)),
+    Quantity("load", "normal force", "N", "N/m", ("step",)),
+    Quantity("depth", "last depth removed from the body", "m", dims=CELLS),
+    Quantity("counter_depth", "last depth removed from the counterbody", "m", dims=CELLS),
+    Quantity("pressure", "last pressure", "Pa", dims=CELLS),
+)
+"""Quantities of a history of wear."""
+
 FRICTION = (
     Quantity("force", "force of the tractions on the body", "N", "N/m", AXIS, "force"),
     Quantity("torque", "torque of the tractions about the origin", "N m", "N", label="torque"),

@@ -90,7 +90,15 @@ MADE_BY_A_CALL: dict[str, Any] = {
     ),
 }
 NOT_KEPT = {"point contact", "line contact", "ellipse", "contact", "contact with everything"}
+WORN = nacre.wear(
+    nacre.Sphere(5e-3), STEEL, grid=nacre.Grid((32, 32), (3e-4, 3e-4)), load=10.0, rate=1e-16,
+    sliding=1.0, steps=1,
+)  # fmt: skip
 VALUES = MADE_BY_A_CALL | {
+    "wear history": WORN,
+    "wear state": WORN.states[-1],
+    "wear report": WORN.report,
+    "wear through": nacre.types.WearThrough(2e3, (0.0, 1e-4), 0, "DLC", "body"),
     "solution": SOLUTION,
     "response": nacre.Response(lambda alpha: 1e-12 / alpha, local=1e-13),
     "convolution": nacre.Convolution(THIRDS, threads=2),

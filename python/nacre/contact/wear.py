@@ -1,0 +1,923 @@
+"""Histories of wear: what sliding takes off both bodies, and when a layer is through."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+import numpy as np
+
+import nacre._core as core
+from nacre._tools.progress import check_progress, lasting
+from nacre._tools.typing import AnyPath, Body, Field, Matrix
+from nacre._tools.units import written
+from nacre.contact.arguments import (
+    MOTION,
+    STEP,
+    FrictionOptions,
+    FrictionStep,
+    Motion,
+    Rolling,
+    Setup,
+)
+from nacre.contact.solution import Solution
+from nacre.results import display, files, values
+from nacre.results.base import Result, same
+from nacre.results.quantities import WEAR
+from nacre.results.report import Picture, Sections, table, writer
+from nacre.results.svg import Axis, Curve, lines
+from nacre.results.tables import heading
+from nacre.results.verdict import Verdict, number
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+Rate = float | Mapping[str | int, float]
+"""Wear rate of a body, or of its layers by number, name and "substrate"."""
+Scheme = Literal["trapezoidal", "euler"]
+Unit = Literal["m", "cycles", "passes"]
+WearProgress = Callable[["WearState"], object]
+"""Function that is told each state of a history of wear."""
+MODEL = (
+    "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
+    "no change of friction, and layers as thick as before: `thickness_error` says what that costs"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Wearing:
+    """Bodies and their wear rates."""
+
+    body: Body
+    counterbody: Body | None
+    rate: Rate
+    counter_rate: Rate
+    grows: bool
+    """Whether the grid grows with the contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sliding:
+    """What slides how far: one of three distances, and where it slips."""
+
+    sliding: float | None
+    cycles: float | None
+    slide: Mapping[str, Any] | None
+    passes: float | None
+    roll: Mapping[str, Any] | None
+    slip: Matrix | None
+
+    def __post_init__(self) -> None:
+        """Raise a `ValueError` unless one distance is given, with what belongs to it."""
+        names = ("sliding", "cycles", "passes")
+        if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
+            found = " and ".join(known) or "none"
+            raise ValueError(f"one of sliding, cycles and passes must be given, got {found}")
+        for name, one in (("slide", "cycles"), ("roll", "passes")):
+            if (getattr(self, name) is None) != (getattr(self, one) is None):
+                raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
+        if self.slip is not None and self.sliding is None:
+            raise ValueError("slip must be given with sliding: slide and roll have their own")
+
+    @property
+    def unit(self) -> Unit:
+        """Unit of the distance."""
+        return "cycles" if self.cycles is not None else "m" if self.passes is None else "passes"
+
+    @property
+    def distance(self) -> float:
+        """The distance."""
+        known = (self.sliding, self.cycles, self.passes)
+        return next(one for one in known if one is not None)
+
+    @property
+    def friction(self) -> FrictionOptions | None:
+        """How tractions are found."""
+        keywords = self.slide if self.roll is None else self.roll
+        if keywords is None:
+            return None
+        options = {"tolerance": 1e-8, "max_convolutions": 4000, "coupling": True}
+        own = {name: keywords.get(name, value) for name, value in options.items()}
+        return FrictionOptions(**own, initial=None, progress=None, check=True)
+
+    @property
+    def cycle(self) -> list[FrictionStep] | None:
+        """Steps of one cycle."""
+        if self.slide is None:
+            return None
+        rest = self._rest(self.slide, ("steps", "friction"))
+        steps = [{**step} for step in rest.get("steps", ())]
+        if not steps or rest.get("friction") is None:
+            raise ValueError("slide must have friction, and steps of one cycle")
+        if wrong := {key for step in steps for key in step} - {*STEP} | {
+            key for step in steps for key in step if key in MOTION
+        }:
+            raise ValueError(f"steps of slide must not have {', '.join(sorted(wrong))}")
+        steps[0].setdefault("friction", rest["friction"])
+        return [FrictionStep.of(step) for step in steps]
+
+    @property
+    def rolling(self) -> Rolling | None:
+        """Rolling of one pass."""
+        if self.roll is None:
+            return None
+        names = ("friction", "creepage", "force", "spin", "direction", "order")
+        rest = self._rest(self.roll, names)
+        default = {"creepage": None, "force": None, "spin": 0.0, "direction": None, "order": 2}
+        keywords: dict[str, Any] = {**default, "friction": None, **rest}
+        return Rolling(self.motion or Motion(), cells=None, **keywords)
+
+    motion: Motion | None = None
+    """Motion along z, for rolling."""
+
+    @staticmethod
+    def _rest(keywords: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
+        """Return those keywords that are no options, which must be among the names."""
+        options = ("tolerance", "max_convolutions", "coupling")
+        rest = {key: value for key, value in keywords.items() if key not in options}
+        if wrong := set(rest) - set(names):
+            raise ValueError(f"slide and roll must not have {', '.join(sorted(wrong))}")
+        return rest
+
+
+@dataclass(frozen=True, eq=False)
+class WearControl:
+    """Steps of a history of wear, and where it begins and ends."""
+
+    steps: Any
+    step_tolerance: float
+    scheme: Scheme
+    initial: Any
+    until: Literal["through"] | None
+    store: AnyPath | None
+    tolerance: float
+    max_iterations: int | None
+    progress: WearProgress | None
+
+    def __post_init__(self) -> None:
+        """Raise a `ValueError` unless it ends in one of the ways that there are."""
+        if self.until not in (None, "through"):
+            raise ValueError(f'until must be None or "through", got {self.until!r}')
+        check_progress(self.progress)
+
+    @property
+    def history(self) -> WearHistory | None:
+        """History to go on from: that of the store, if there is one."""
+        if self.store is not None and Path(self.store).is_file():
+            if not isinstance(stored := files.load(self.store), WearHistory):
+                raise ValueError(f"store must be a history of wear, got a {type(stored).__name__}")
+            return stored
+        return self.initial if isinstance(self.initial, WearHistory) else None
+
+    @property
+    def grid(self) -> core.Grid | None:
+        """Grid of the history to go on from."""
+        return history.states[-1].solution.grid if (history := self.history) else None
+
+    def depths(self, history: WearHistory | None) -> tuple[Any, Any] | None:
+        """Return the depths removed from both bodies before."""
+        if history:
+            return history.states[-1].depth, history.states[-1].counter_depth
+        if self.initial is None or isinstance(self.initial, WearHistory):
+            return None
+        depth = np.asarray(self.initial, dtype=np.float64)
+        return depth, np.zeros(depth.shape)
+
+    def ends(self, distance: float) -> list[float] | None:
+        """Return the ends of the steps; None where they are chosen."""
+        if isinstance(self.steps, str):
+            if self.steps != "auto":
+                raise ValueError(
+                    f'steps must be "auto", a number or their ends, got {self.steps!r}'
+                )
+            return None
+        ends = np.asarray(self.steps, dtype=np.float64)
+        if ends.ndim == 0:
+            count = core.integer("steps", self.steps)
+            if count < 1:
+                raise ValueError(f"steps must be at least 1, got {count}")
+            ends = distance * np.arange(1, count + 1) / count
+        if ends.size and not math.isclose(ends[-1], distance, rel_tol=1e-12):
+            raise ValueError(
+                f"steps must end at {distance:g}, the whole distance, got {ends[-1]:g}"
+            )
+        return [float(end) for end in ends] if distance > 0 else []
+
+
+@dataclass(frozen=True, eq=False)
+class WearOptions:
+    """What wears how far, as the compiled module reads it."""
+
+    rate: list[float]
+    counter_rate: list[float]
+    distance: float
+    slip: Matrix | None
+    cycle: list[FrictionStep] | None
+    rolling: Rolling | None
+    friction: FrictionOptions | None
+    steps: list[float] | None
+    step_tolerance: float
+    scheme: str
+    until_through: bool
+    initial: tuple[Any, Any] | None
+    tolerance: float
+    max_iterations: int | None
+    grows: bool
+
+
+@dataclass(frozen=True, repr=False)
+class WearThrough(Result):
+    """A layer is worn through at one place.
+
+    Examples
+    --------
+    >>> nacre.types.WearThrough(2e3, (0.0, 1e-4), 0, "DLC", "body").distance
+    2000.0
+    """
+
+    distance: float
+    """Sliding distance [m], cycles or passes until then."""
+    position: tuple[float, float]
+    """Centre of the cell [m]."""
+    number: int
+    """Number of the layer, from the surface down."""
+    layer: str
+    """Name of the layer, or "layer" and its number."""
+    body: Literal["body", "counterbody"]
+    """Whose layer it is."""
+
+    def __repr__(self) -> str:
+        """Return layer, distance and place in a line."""
+        at = ", ".join(written(x, "m") for x in self.position)
+        return (
+            f"<WearThrough: {self.layer} of the {self.body} after {self.distance:.4g}, at ({at})>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class WearReport(Result):
+    """How a history of wear came about.
+
+    Examples
+    --------
+    >>> nacre.types.WearReport(3, 1e-4, None, 0, True, (), 0.5).steps
+    3
+    """
+
+    steps: int
+    """Number of steps."""
+    step_error: float | None
+    """Sum of the estimated errors of the pressure that the steps add, relative to the peak.
+
+    Errors of earlier steps fade; None where the steps were given.
+    """
+    thickness_error: float | None
+    """Estimated error of the last pressure, relative to the peak, as the worn layer is as thick as
+    before; None without a layer that wears."""
+    regrids: int
+    """Number of times that the grid grew."""
+    converged: bool
+    """Whether it reached its end."""
+    warnings: tuple[str, ...]
+    """What the user should know."""
+    seconds: float
+    """Time that it took [s]."""
+
+    def __repr__(self) -> str:
+        """Return steps and errors in a line."""
+        return (
+            f"<WearReport: {self.steps} steps, step error {self.step_error}, {self.seconds:.1f} s>"
+        )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class WearState(Result):
+    """A worn contact.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
+    >>> history.states[-1].depth.shape == history.states[-1].solution.pressure.shape
+    True
+    """
+
+    distance: float
+    """Sliding distance [m], cycles or passes."""
+    depth: Field
+    """Depth that is removed from the body, ``(nx, ny)`` [m]."""
+    counter_depth: Field
+    """Depth that is removed from the counterbody, ``(nx, ny)`` [m]."""
+    solution: Solution
+    """The contact; its gap has the wear in it."""
+    step_error: float | None
+    """Estimated error of the pressure that the step has added, relative to the peak."""
+    rings: bool
+    """Whether pressures rise and fall from step to step, since the steps are too long."""
+
+    @property
+    def volume(self) -> tuple[float, float]:
+        """Volume removed from body and counterbody [m³]; per length [m²] in line contact."""
+        area = math.prod(self.solution.grid.spacing)
+        return float(self.depth.sum()) * area, float(self.counter_depth.sum()) * area
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all is equal."""
+        return isinstance(other, WearState) and same(self._state(), other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return distance and deepest wear in a line."""
+        deepest = written(float(self.depth.max()), "m")
+        return f"<WearState after {self.distance:.4g}: {deepest} deep, {self.solution!r}>"
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        with values.refusing(cls.__name__):
+            solution = Solution.from_dict(values.heading("Solution") | state["solution"])
+            depths = {}
+            for name in ("depth", "counter_depth"):
+                depths[name] = np.array(state[name], dtype=np.float64)
+                depths[name].setflags(write=False)
+                if depths[name].shape != solution.grid.shape:
+                    raise ValueError(
+                        f"{name} must have the shape of the grid, got {depths[name].shape}"
+                    )
+            return cls(**state | depths | {"solution": solution})
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class WearHistory(Result):
+    """A history of wear: `nacre.wear` returns it.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
+    >>> round(history.volume[-1][0] / (1e-16 * 1.0 * 10.0), 10)
+    1.0
+    """
+
+    _TITLE = "wear of a contact"
+    _QUANTITIES = WEAR
+
+    states: tuple[WearState, ...]
+    """Worn contacts, the first before any sliding."""
+    events: tuple[WearThrough, ...]
+    """Layers that are worn through, each at its first place; a step ends at each."""
+    unit: Unit
+    """Unit of the distance."""
+    report: WearReport
+    """How it came about."""
+    inputs: dict[str, str]
+    """Inputs in words."""
+
+    @property
+    def distance(self) -> Field:
+        """Sliding distance [m], cycles or passes, from 0, ``(n + 1,)``."""
+        return self._numbers(lambda state: state.distance)
+
+    @property
+    def volume(self) -> Field:
+        """Volume removed from body and counterbody [m³], ``(n + 1, 2)``; [m²] in line contact."""
+        return self._numbers(lambda state: state.volume)
+
+    @property
+    def peak_pressure(self) -> Field:
+        """Largest pressure [Pa], ``(n + 1,)``."""
+        return self._numbers(lambda state: state.solution.peak_pressure)
+
+    @property
+    def contact_area(self) -> Field:
+        """Area in contact [m²], ``(n + 1,)``; [m] in line contact."""
+        return self._numbers(lambda state: state.solution.contact_area)
+
+    @property
+    def approach(self) -> Field:
+        """Approach of the origin [m], ``(n + 1,)``."""
+        return self._numbers(lambda state: state.solution.approach)
+
+    @property
+    def load(self) -> Field:
+        """Normal force [N], ``(n + 1,)``; [N/m] in line contact."""
+        return self._numbers(lambda state: state.solution.load)
+
+    @property
+    def deepest(self) -> Field:
+        """Largest depth removed from body and counterbody [m], ``(n + 1, 2)``."""
+        return self._numbers(lambda state: (state.depth.max(), state.counter_depth.max()))
+
+    @property
+    def life(self) -> WearThrough | None:
+        """First layer that is through; None where none is."""
+        return self.events[0] if self.events else None
+
+    @property
+    def worn_volume(self) -> float:
+        """Volume removed from both bodies at the end [m³]; [m²] in line contact."""
+        return float(self.volume[-1].sum())
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What limits the validity, and was warned of."""
+        return self.report.warnings
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: whether a layer is through, after which distance and where."""
+        end = _distance(float(self.distance[-1]), self.unit)
+        if (life := self.life) is None:
+            deepest = number(float(self.deepest[-1].max()), "m")
+            lasting_words = f"No layer is through after {end}: {deepest} worn at most."
+            return Verdict(
+                "good" if self.report.converged else "unknown", lasting_words, (), None, None, None
+            )
+        axes = "y" if self.states[0].solution.grid.is_line else "xy"
+        places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
+        words = (
+            f"{life.layer} of the {life.body}: through after {_distance(life.distance, self.unit)} "
+            f"at {', '.join(places)}."
+        )
+        return Verdict("bad", words, (), None, life.layer, None)
+
+    def _numbers(self, of: Callable[[WearState], Any]) -> Field:
+        return np.array([of(state) for state in self.states])
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self.states)
+
+    def __iter__(self) -> Iterator[WearState]:
+        """Iterate over the states."""
+        return iter(self.states)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all is equal."""
+        if not isinstance(other, WearHistory):
+            return False
+        rest = [{**one._state(), "states": len(one)} for one in (self, other)]
+        return same(*rest) and self.states == other.states
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Dataset of the numbers over ``step`` and of the last fields.
+
+        It needs ``nacre-contact[files]``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Distance, volumes, peak, area, approach and load over step; depths and pressure of the
+            last state on x and y.
+        """
+        state, packed = _packed(self.to_dict())
+        last = self.states[-1]
+        columns: dict[str, Any] = {
+            row.name: (row.dims, getattr(self, row.name))
+            for row in WEAR
+            if row.dims[:1] == ("step",)
+        }
+        columns |= {
+            "depth": (("x", "y"), last.depth),
+            "counter_depth": (("x", "y"), last.counter_depth),
+            "pressure": (("x", "y"), last.solution.pressure),
+            PACKED: (("number",), packed),
+        }
+        grid = last.solution.grid
+        coordinates = {"x": grid.x, "y": grid.y, "member": ["body", "counterbody"]}
+        units = [(row, self._si(row)) for row in WEAR]
+        return files.dataset(self._TITLE, units, columns, coordinates, state)
+
+    def _si(self, row: Any) -> str:
+        """Return the SI unit of a quantity of this history."""
+        if row.name == "distance":
+            return self.unit if self.unit == "m" else ""
+        return row.si(line=self.states[0].solution.grid.is_line)  # type: ignore[no-any-return]
+
+    @classmethod
+    def _unpacked(cls, state: dict[str, Any], arrays: Mapping[str, Field]) -> dict[str, Any]:
+        """Return the state with the arrays of its file in their places."""
+        numbers = iter_arrays(arrays[PACKED])
+        return _filled(state, numbers)  # type: ignore[no-any-return]
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        with values.refusing(cls.__name__):
+            parts = {
+                name: tuple(
+                    kind.from_dict(values.heading(kind.__name__) | one) for one in state[name]
+                )
+                for name, kind in (("states", WearState), ("events", WearThrough))
+            }
+            report = WearReport.from_dict(values.heading("WearReport") | state["report"])
+            if not parts["states"]:
+                raise ValueError("states must hold one at least")
+            return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **parts)  # type: ignore[arg-type]
+
+    def _state(self) -> dict[str, Any]:
+        return {
+            "states": [
+                state._state() | {"solution": _bare(state.solution)} for state in self.states
+            ],
+            "events": [event._state() for event in self.events],
+            "unit": self.unit,
+            "report": self.report._state(),
+            "inputs": dict(self.inputs),
+        }
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw sections of the worn depth through its deepest place, over the distance.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw into; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Axes of the picture.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
+        >>> history.plot().get_xlabel()
+        'x [µm]'
+        """
+        from nacre import plot
+
+        return plot.wear(self, axes)
+
+    def animate(self, path: str | os.PathLike[str], *, frames_per_second: float = 5.0) -> Path:
+        """Write sections of pressure and worn depth, a picture for each state, as a film.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write, ``.gif``, or ``.mp4`` where ffmpeg is installed.
+        frames_per_second : float, optional
+            States in a second, above 0.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another, or the number is not above 0.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> ball = nacre.Sphere(5e-3)
+        >>> history = nacre.wear(ball, steel, load=10.0, rate=1e-16, sliding=1.0, steps=2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     history.animate(f"{folder}/wear.gif").stat().st_size > 0
+        True
+        """
+        from nacre import plot
+
+        return plot.animate_wear(self, path, frames_per_second)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+            `nacre.load`, ``.csv`` the numbers of each state, ``.png``, ``.pdf`` and ``.svg`` the
+            picture that `plot` draws, ``.html`` a report on a page to print and to sign.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        ValueError
+            If the ending is another.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     nacre.load(history.save(f"{folder}/wear.nc")) == history
+        True
+        """
+        comments = {"verdict": self.verdict.words}
+        writers = files.tabular(self, self._table(), **comments)
+        return files.save(path, writers | files.pictures(self.plot) | writer(self))
+
+    def _table(self) -> list[list[Any]]:
+        """Return the numbers of each state, after their headings."""
+        heads, columns = ["step"], [np.arange(len(self.states))]
+        for row in (row for row in WEAR if row.dims[:1] == ("step",)):
+            numbers = np.asarray(getattr(self, row.name))
+            for part, name in enumerate(("body", "counterbody") if numbers.ndim == 2 else ("",)):
+                heads.append(heading(row, self, name))
+                columns.append(numbers[:, part] if numbers.ndim == 2 else numbers)
+        return [heads, *(list(row) for row in zip(*(c.tolist() for c in columns), strict=True))]
+
+    def _sections(self) -> Sections:
+        """Return what stands in a report."""
+        axis = Axis("distance", self.unit if self.unit == "m" else "")
+        pictures = [
+            Picture(
+                f"{words} over the distance.",
+                lines([Curve(self.distance, numbers)], (axis, Axis(words.lower(), unit))),
+            )
+            for words, numbers, unit in (
+                ("Deepest wear", self.deepest.sum(axis=1), "m"),
+                ("Peak pressure", self.peak_pressure, "Pa"),
+            )
+        ]
+        return Sections(
+            self._TITLE,
+            tuple(self.inputs.items()),
+            self._rows(),
+            pictures=pictures,
+            tables=[table("Steps", self._table())],
+            model=[("model", MODEL)],
+            warnings=self.warnings,
+        )
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+        line = self.states[0].solution.grid.is_line
+        report, last = self.report, self.states[-1]
+        volumes = [written(volume, "m²" if line else "m³") for volume in self.volume[-1]]
+        error = report.step_error
+        rows = [
+            ("distance", _distance(last.distance, self.unit)),
+            ("worn volume", f"{volumes[0]} of the body, {volumes[1]} of the counterbody"),
+            ("deepest", written(float(self.deepest[-1].max()), "m")),
+            ("peak pressure", _fromto(self.peak_pressure, "Pa")),
+            ("contact area", _fromto(self.contact_area, "m" if line else "m²")),
+            *[
+                ("through", repr(event)[1:-1].removeprefix("WearThrough: "))
+                for event in self.events
+            ],
+            (
+                "steps",
+                f"{report.steps}" + ("" if error is None else f", error {error:.1g} of the peak"),
+            ),
+        ]
+        if report.thickness_error is not None:
+            rows.append(
+                ("thickness", f"as before wear, error {report.thickness_error:.1g} of the peak")
+            )
+        return [*rows, ("ended", "at its end" if report.converged else "stopped")]
+
+    def __repr__(self) -> str:
+        """Return the verdict in a line."""
+        return f"<WearHistory of {len(self.states)} states: {self.verdict.words}>"
+
+    def __str__(self) -> str:
+        """Return the verdict and a table."""
+        return f"{self.verdict}\n\n" + display.text(self._rows(), self.warnings)
+
+    def _repr_html_(self) -> str:
+        return display.markup(self._rows(), self.warnings, verdict=self.verdict.sentences)
+
+
+PACKED = "packed"
+"""Name of the variable that holds all arrays of a history of wear, one after the other."""
+
+
+def _bare(solution: Solution) -> dict[str, Any]:
+    state = solution.to_dict()
+    return {key: value for key, value in state.items() if key not in values.heading("Solution")}
+
+
+def _packed(state: Any) -> tuple[Any, Field]:
+    """Return a state with the shapes of its arrays in their places, and the numbers of all."""
+    parts: list[Field] = []
+
+    def shapes(value: Any) -> Any:
+        if isinstance(value, np.ndarray):
+            parts.append(np.ravel(value).astype(np.float64))
+            return {"shape": list(value.shape)}
+        if isinstance(value, dict):
+            return {key: shapes(item) for key, item in value.items()}
+        return [shapes(item) for item in value] if isinstance(value, list | tuple) else value
+
+    plain = shapes(state)
+    return plain, np.concatenate(parts)
+
+
+def iter_arrays(numbers: Field) -> Callable[[Sequence[int]], Field]:
+    """Return a function that gives the next array of a shape out of these numbers."""
+    place = 0
+
+    def take(shape: Sequence[int]) -> Field:
+        nonlocal place
+        count = math.prod(shape)
+        part = numbers[place : place + count]
+        place += count
+        return part.reshape(tuple(shape))
+
+    return take
+
+
+def _filled(value: Any, take: Callable[[Sequence[int]], Field]) -> Any:
+    if isinstance(value, dict):
+        if value.keys() == {"shape"} and isinstance(value["shape"], list):
+            return take(value["shape"])
+        return {key: _filled(item, take) for key, item in value.items()}
+    return [_filled(item, take) for item in value] if isinstance(value, list) else value
+
+
+def _distance(distance: float, unit: str) -> str:
+    if unit != "m":
+        return f"{distance:.4g} {unit}"
+    kilometres = abs(distance) >= 1e3
+    return f"{distance / 1e3:.4g} km" if kilometres else f"{distance:.4g} m"
+
+
+def _fromto(numbers: Field, unit: str) -> str:
+    return f"{written(float(numbers[0]), unit)} to {written(float(numbers[-1]), unit)}"
+
+
+def rates(name: str, rate: Any, body: Body | None) -> list[float]:
+    """Return the rates of the layers of a body and of its substrate, or one for all."""
+    if isinstance(rate, int | float | np.number) and not isinstance(rate, bool):
+        return [float(rate)]
+    if not isinstance(body, core.HalfSpace):
+        raise ValueError(f"{name} must be a number for a body without layers, got {rate!r}")
+    by_layer: Any = core.layer_values(body, name, rate)
+    count = len(body.layers) + 1
+    by_layer = [*by_layer, *[None] * (count - len(by_layer))]
+    names = [*(_layer_name(body, k) for k in range(len(body.layers))), "substrate"]
+    elastic = not isinstance(body.substrate, core.Rigid | core.Free)
+    missing = [one for one, value in zip(names, by_layer, strict=True) if value is None]
+    if not elastic and missing == ["substrate"]:
+        by_layer[-1], missing = 0.0, []
+    if missing:
+        raise ValueError(f"{name} must hold a rate for {', '.join(missing)}, got {rate!r}")
+    return [float(value) for value in by_layer]
+
+
+def _layer_name(body: Body | None, number: int) -> str:
+    layers = body.layers if isinstance(body, core.HalfSpace) else ()
+    name = getattr(layers[number].material, "name", None) if number < len(layers) else None
+    return name or f"layer {number}"
+
+
+def wear_history(
+    shape: core.Shape,
+    motion: Motion,
+    bodies: Wearing,
+    sliding: Sliding,
+    control: WearControl,
+    on: Setup | core.Plan,
+) -> WearHistory:
+    """Return the history of wear of a shape, after that to go on from."""
+    start = time.perf_counter()
+    before = control.history
+    stored = control.store is not None and before is not None and before is not control.initial
+    sliding = dataclasses.replace(sliding, motion=motion)
+    inputs = _inputs(shape, motion, bodies, sliding)
+    if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
+        raise ValueError("initial must be a history of the same body, in the same unit of distance")
+    if stored and before and before.inputs != inputs:
+        raise ValueError(f"store holds a history of other inputs: {before.inputs}, not {inputs}")
+    states = list(before.states) if before else []
+    events = list(before.events) if before else []
+    offset = states[-1].distance if states else 0.0
+    ends = control.ends(sliding.distance)
+    distance = sliding.distance
+    if stored:
+        distance = max(distance - offset, 0.0)
+        ends = None if ends is None else [end - offset for end in ends if end > offset]
+    options = WearOptions(
+        rate=rates("rate", bodies.rate, bodies.body),
+        counter_rate=rates("counter_rate", bodies.counter_rate, bodies.counterbody),
+        distance=distance,
+        slip=sliding.slip,
+        cycle=sliding.cycle,
+        rolling=sliding.rolling,
+        friction=sliding.friction,
+        steps=ends,
+        step_tolerance=control.step_tolerance,
+        scheme=control.scheme,
+        until_through=control.until is not None,
+        initial=control.depths(before),
+        tolerance=control.tolerance,
+        max_iterations=control.max_iterations,
+        grows=bodies.grows,
+    )
+    regrids, earlier = 0, before.report if before else None
+    members = (bodies.body, bodies.counterbody)
+
+    def history(*, converged: bool, thickness: float | None = None) -> WearHistory:
+        known = [state.step_error for state in states if state.step_error is not None]
+        report = WearReport(
+            steps=len(states) - 1,
+            step_error=sum(known) if known else None,
+            thickness_error=thickness,
+            regrids=regrids + (earlier.regrids if earlier else 0),
+            converged=converged,
+            warnings=_notes(states, events, thickness),
+            seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
+        )
+        return WearHistory(tuple(states), tuple(events), sliding.unit, report, inputs)
+
+    converged = False
+    try:
+        steps = core.wear(shape, motion, options, on)
+        with lasting("wear", control.progress) as tell:
+            for distance, depths, solved, through, error, rings, grown in steps:
+                regrids = grown
+                if before and distance == 0.0:
+                    continue
+                state = WearState(
+                    offset + distance, *depths, Solution._of(solved, shape), error, rings
+                )
+                states.append(state)
+                events += [_event(one, offset, members) for one in through]
+                if control.store is not None:
+                    history(converged=False).save(control.store)
+                if control.progress is not None:
+                    if control.progress(state) is False:
+                        break
+                elif tell is not None and options.distance > 0:
+                    tell(min(distance / options.distance, 1.0))
+            else:
+                converged = True
+        thickness = steps.thickness_error() if converged else None
+    except BaseException as error:
+        if states:
+            error.history = history(converged=False)  # type: ignore[attr-defined]
+        raise
+    whole = history(converged=converged, thickness=thickness)
+    if control.store is not None:
+        whole.save(control.store)
+    for note in whole.warnings:
+        warnings.warn(note, core.NacreWarning, stacklevel=3)
+    return whole
+
+
+def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
+    kind: Literal["body", "counterbody"] = "body" if event["member"] == "body" else "counterbody"
+    layer = _layer_name(members[kind == "counterbody"], event["layer"])
+    x, y = event["position"]
+    return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
+
+
+def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> dict[str, str]:
+    """Return the inputs in words."""
+    named = {
+        "shape": shape,
+        "body": bodies.body,
+        "counterbody": bodies.counterbody or "rigid",
+        **{name: value for name in MOTION if (value := getattr(motion, name)) is not None},
+        "rate": bodies.rate,
+        "counter_rate": bodies.counter_rate,
+        "slide": sliding.slide,
+        "roll": sliding.roll,
+    }
+    return {name: str(value) for name, value in named.items() if value is not None}
+
+
+def _notes(
+    states: Sequence[WearState], events: Sequence[WearThrough], thickness: float | None
+) -> tuple[str, ...]:
+    """Return what the user should know."""
+    notes = [text for text in states[-1].solution.report.warnings]
+    if any(state.rings for state in states):
+        notes.append(
+            "pressures of cells rise and fall from step to step: take shorter steps, or "
+            'scheme="euler"'
+        )
+    if events:
+        notes.append(
+            "a layer is through, and the elastic contact still has it: what follows is a bound"
+        )
+    elif thickness is not None and thickness > MOST_THINNING:
+        notes.append(
+            "the worn layer counts as thick as before: the pressure errs by some "
+            f"{100 * thickness:.0f} %"
+        )
+    return tuple(dict.fromkeys(notes))
+
+
+MOST_THINNING = 0.05
+"""Error of the pressure by layers of constant thickness from which on there is a warning."""

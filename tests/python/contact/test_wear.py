@@ -1,0 +1,117 @@
+"""Histories of wear at the face of Python: arguments, events, files, pictures, refusals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+DLC = nacre.Elastic(young=300e9, poisson=0.25)
+COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=2e-6)])
+ROLLER = nacre.Cylinder(10e-3)
+GRID = nacre.Grid.line(64, 6e-4)
+LINE: dict[str, Any] = {"load": 1e5, "grid": GRID, "rate": {0: 1e-17, "substrate": 1e-15}}
+
+
+def worn(**keywords: Any) -> nacre.types.WearHistory:
+    """Return a short history of a coated roller."""
+    return nacre.wear(ROLLER, COATED, **{**LINE, "sliding": 100.0, "steps": 2, **keywords})
+
+
+def test_worn_volume_is_that_of_the_law() -> None:
+    history = worn(counter_rate=3e-18)
+    due = np.outer(history.distance, [1e-17, 3e-18]) * 1e5
+    # Sums of 64 cells.
+    np.testing.assert_allclose(history.volume, due, rtol=1e-12)
+    assert history.life is None
+    assert history.verdict.words.startswith("No layer is through")
+
+
+def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
+    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+        history = worn(sliding=5e4, steps="auto", until="through")
+    life = history.life
+    assert life is not None
+    assert (life.layer, life.body) == ("layer 0", "body")
+    assert abs(life.position[1]) < GRID.spacing[1]
+    assert history.distance[-1] == life.distance
+    assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
+    assert "layer 0 of the body: through after" in history.verdict.words
+
+
+def test_a_history_goes_on_and_comes_back_from_files(tmp_path: Path) -> None:
+    whole = worn(steps=4, scheme="euler")
+    half = worn(sliding=50.0, scheme="euler")
+    rest = worn(sliding=50.0, scheme="euler", initial=half)
+    np.testing.assert_allclose(rest.distance, whole.distance, rtol=1e-14)
+    # Solves to 1e-8, in whose energy the pressure counts squared.
+    np.testing.assert_allclose(rest.peak_pressure, whole.peak_pressure, rtol=1e-4)
+    assert nacre.load(whole.save(tmp_path / "wear.nc")) == whole
+    assert nacre.types.WearHistory.from_dict(whole.to_dict()) == whole
+    for ending in (".csv", ".html", ".png"):
+        assert whole.save(tmp_path / f"wear{ending}").stat().st_size > 0
+    assert whole.animate(tmp_path / "wear.gif").stat().st_size > 0
+
+
+def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
+    store = tmp_path / "store.nc"
+    stopped = worn(steps=4, store=store, progress=lambda state: state.distance < 40)
+    assert not stopped.report.converged
+    assert len(stopped) == 3
+    went_on = worn(steps=4, store=store)
+    np.testing.assert_allclose(went_on.distance, [0, 25, 50, 75, 100], rtol=1e-14)
+    assert nacre.load(store) == went_on
+
+
+def test_fretting_wears_where_it_slips() -> None:
+    grid = nacre.Grid((32, 32), (3e-4, 3e-4))
+    contact = nacre.Contact(STEEL, grid, STEEL)
+    cycle = {"friction": 0.6, "steps": [{"force": (one, None)} for one in (3.0, -3.0)]}
+    ball = nacre.Sphere(5e-3)
+    history = contact.wear(ball, load=10.0, rate=1e-14, cycles=100.0, slide=cycle, steps=1)
+    loop = contact.slide(ball, load=10.0, **{**cycle, "steps": cycle["steps"] * 2})  # type: ignore[arg-type]
+    assert isinstance(loop, nacre.types.History)
+    slip = sum(np.hypot(*step.slip) for step in loop[2:])
+    worn_depth = history.states[-1].depth
+    assert worn_depth[16, 16] < 1e-6 * worn_depth.max()
+    assert np.corrcoef(worn_depth.ravel(), (slip * loop[0].pressure).ravel())[0, 1] > 0.99
+
+
+def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
+    grid = nacre.Grid((32, 32), (3e-4, 3e-4))
+    contact = nacre.Contact(STEEL, grid, STEEL)
+    roll = {"friction": 0.3, "creepage": (1e-3, None), "direction": "+x"}
+    ball = nacre.Sphere(5e-3)
+    history = contact.wear(ball, load=10.0, rate=1e-15, passes=1.0, roll=roll, steps=1)
+    wheel = contact.roll(ball, load=10.0, **roll)  # type: ignore[arg-type]
+    track = (np.hypot(*wheel.slip) * wheel.pressure).sum(axis=0) * grid.spacing[0] * 1e-15
+    np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        ({"rate": -1.0}, "rate must be finite and at least 0, got -1"),
+        ({"rate": {"TiN": 1e-17}}, "TiN"),
+        ({"rate": {0: 1e-17}}, "rate must hold a rate for substrate"),
+        ({"sliding": None}, "one of sliding, cycles and passes must be given, got none"),
+        ({"cycles": 2.0}, "got sliding and cycles"),
+        ({"sliding": -1.0, "steps": "auto"}, "sliding must be finite and at least 0, got -1"),
+        ({"slip": np.zeros((1, 64))}, "slip must be above 0 somewhere"),
+        ({"steps": [50.0, 20.0, 100.0]}, "steps must be finite, above 0 and increasing"),
+        ({"steps": [50.0]}, "steps must end at 100"),
+        ({"steps": "few"}, 'steps must be "auto"'),
+        ({"scheme": "explicit"}, "scheme must be"),
+        ({"until": "worn"}, "until must be"),
+        ({"initial": np.full((1, 64), -1.0)}, "initial"),
+        ({"load": None}, "load or approach must be given"),
+    ],
+)
+def test_wrong_arguments_are_refused(keywords: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        worn(**keywords)

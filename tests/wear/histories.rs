@@ -1,0 +1,317 @@
+//! Histories of wear: the worn volume, steps that are chosen, layers that are worn through, grids that grow, and what is refused.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nacre::contact::choose_grid;
+use nacre::wear::{Slip, Wear, WearScheme, WearSession, WearState, WearSteps};
+use nacre::{
+    Contact, Cylinder, Elastic, Grid, HalfSpace, Hardness, Layer, Member, Motion, Options,
+    Paraboloid, Result, Setup,
+};
+use ndarray::Array2;
+
+use super::waves::states;
+use crate::support::checks::{apart, largest};
+
+const RADIUS: f64 = 1e3;
+
+/// A coat three times stiffer than its body.
+fn coated() -> Result<HalfSpace> {
+    HalfSpace::new(Elastic::new(1.0, 0.3)?, [Layer::new(Elastic::new(3.0, 0.3)?, 1e-4)?])
+}
+
+fn line() -> Result<Arc<Contact>> {
+    Ok(Arc::new(Contact::plan(coated()?, Grid::line(96, 3.0)?, Setup::default())?))
+}
+
+/// Half-width 1 of Hertz: W = π E*/4R.
+fn load() -> Motion {
+    Motion::load(PI / (4.0 * 0.91 * RADIUS))
+}
+
+fn ends(count: usize, end: f64) -> WearSteps {
+    WearSteps::Ends((1..=count).map(|k| end * k as f64 / count as f64).collect())
+}
+
+fn run(plan: &Arc<Contact>, wear: Wear) -> Result<Vec<WearState>> {
+    let cylinder = Cylinder::new(RADIUS)?;
+    states(WearSession::new(Arc::clone(plan), cylinder, load(), wear, false)?)
+}
+
+/// Σ w dA = κ s W of each body, whatever the steps and the rule.
+#[test]
+fn worn_volumes_are_those_of_the_law() -> Result<()> {
+    let plan = line()?;
+    let force = load().load.unwrap_or(0.0);
+    for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
+        for count in [1, 7] {
+            let steps = ends(count, 0.03);
+            let rates = [vec![1.0, 1.0], vec![0.25]];
+            let states = run(&plan, Wear { steps, scheme, ..Wear::sliding(rates, 0.03) })?;
+            for (state, k) in states[1..].iter().zip(1..) {
+                let due = force * 0.03 * f64::from(k) / count as f64;
+                near!(state.depth[0].sum() * plan.grid().cell_area(), due, 1e-12, count);
+                near!(state.depth[1].sum() * plan.grid().cell_area(), 0.25 * due, 1e-12, count);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A rate of 0 leaves every bit of the solve.
+#[test]
+fn without_wear_it_is_the_solve() -> Result<()> {
+    let plan = line()?;
+    let solution = plan.solve(&Cylinder::new(RADIUS)?, &load(), &Options::default())?;
+    for state in run(&plan, Wear::sliding([vec![0.0], vec![0.0]], 1.0))? {
+        assert_eq!(state.solution.pressure, solution.pressure);
+        assert_eq!(state.solution.gap(), solution.gap());
+        assert_eq!(state.solution.approach.to_bits(), solution.approach.to_bits());
+    }
+    Ok(())
+}
+
+/// The state after a step solves the plain contact of the worn shape: its gap is h + w + u − δ, 0 in contact.
+#[test]
+fn worn_contacts_are_contacts_of_the_worn_shape() -> Result<()> {
+    let plan = line()?;
+    let states =
+        run(&plan, Wear { steps: ends(3, 0.03), ..Wear::sliding([vec![1.0], vec![0.5]], 0.03) })?;
+    let state = &states[3];
+    let solution = &state.solution;
+    let worn = &state.depth[0] + &state.depth[1];
+    let (y, deep) = (plan.grid().y(), largest(&solution.displacement));
+    let due = Array2::from_shape_fn(worn.dim(), |(i, j)| {
+        let shape = RADIUS - (RADIUS * RADIUS - y[j] * y[j]).sqrt();
+        shape + worn[[i, j]] + solution.displacement[[i, j]] - solution.approach
+    });
+    // Heights of a circle of radius 1000 round at 1e-13.
+    below!(apart(&solution.gap(), &due), 1e-12 + 1e-12 * deep);
+    for (g, p) in due.iter().zip(&solution.pressure) {
+        assert!(*g > -1e-7 * deep && (*p <= 0.0 || *g < 1e-6 * deep), "{g:e}");
+    }
+    Ok(())
+}
+
+/// Chosen steps against ten times as many: half-width and peak within 2e-3 of the start's, which is twice the tolerance of a step.
+#[test]
+#[ignore = "slow"]
+fn chosen_steps_keep_their_error() -> Result<()> {
+    let end = 0.1;
+    let grid = Grid::new([64, 64], [4.0, 4.0])?;
+    let cylinder =
+        Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, Grid::line(128, 4.0)?, Setup::default())?);
+    let ball = Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, grid, Setup::default())?);
+    // Hertz's W of a contact radius of 1: 4 E*/3R.
+    let cases = [(&cylinder, load()), (&ball, Motion::load(4.0 / (3.0 * 0.91 * RADIUS)))];
+    for (plan, motion) in cases {
+        for scheme in [WearScheme::Trapezoidal, WearScheme::Euler] {
+            let shape = Paraboloid::new(RADIUS, RADIUS)?;
+            let history =
+                |wear| states(WearSession::new(Arc::clone(plan), shape, motion, wear, false)?);
+            let wear = Wear { scheme, ..Wear::sliding([vec![1.0], vec![0.0]], end) };
+            let chosen = history(wear.clone())?;
+            let steps = WearSteps::Ends(
+                (chosen.windows(2))
+                    .flat_map(|pair| {
+                        let [from, to] = [pair[0].distance, pair[1].distance];
+                        (1..=10).map(move |k| from + 0.1 * f64::from(k) * (to - from))
+                    })
+                    .collect(),
+            );
+            let fine = history(Wear { steps, scheme: WearScheme::Trapezoidal, ..wear })?;
+            let peak = chosen[0].solution.peak_pressure();
+            for (k, state) in chosen.iter().enumerate() {
+                let other = &fine[10 * k].solution;
+                below!(
+                    (state.solution.peak_pressure() - other.peak_pressure()).abs(),
+                    2e-3 * peak,
+                    k,
+                    scheme
+                );
+                let [width, due] = [&state.solution, other].map(|s| s.contact_extent()[1][1]);
+                // The edge of a worn contact lies on a cell's.
+                below!((width - due).abs(), 2e-3 * due + plan.grid().spacing()[1], k, scheme);
+            }
+            let last = chosen.last().expect("a state");
+            let bound: f64 = chosen.iter().filter_map(|state| state.step_error).fold(0.0, f64::max);
+            below!(bound, 1e-3 + 1e-15);
+            near!(last.distance, end, 1e-15);
+        }
+    }
+    Ok(())
+}
+
+/// In the long run wear alone makes the shape: a³ → 3 R κsW/2 of a cylinder, which falls from above, and the pressure is uniform.
+#[test]
+#[ignore = "slow"]
+fn long_runs_end_on_their_closed_forms() -> Result<()> {
+    let plan =
+        Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, Grid::line(256, 12.0)?, Setup::default())?);
+    let force = load().load.unwrap_or(0.0);
+    let mut before = f64::INFINITY;
+    // κs in units of what elasticity gives per pressure, 1/E*: 10 to 100 half-widths of Hertz.
+    for distance in [10.0, 30.0, 100.0] {
+        let wear =
+            Wear { scheme: WearScheme::Euler, ..Wear::sliding([vec![1.0], vec![0.0]], distance) };
+        let states = run(&plan, wear)?;
+        let solution = &states.last().expect("a state").solution;
+        let half = 0.5 * solution.contact_area();
+        let excess = half.powi(3) / (1.5 * RADIUS * distance * force) - 1.0;
+        // Elasticity adds u/w to the depth, some 1/κsE*: a cell is 0.05 of 3 to 7.
+        assert!(excess > -0.03 && excess < before, "{excess} {distance}");
+        before = excess;
+        let uniform = solution.load() / solution.contact_area();
+        let middle = solution.pressure[[0, 128]];
+        below!((middle / uniform - 1.0).abs(), 2.0 / distance, distance);
+    }
+    below!(before, 0.05);
+    Ok(())
+}
+
+/// A coat is through at the same place and distance, to 1 %, with ten times as many steps; and below it the other rate holds.
+#[test]
+fn coats_are_through_where_finer_steps_say() -> Result<()> {
+    let plan = line()?;
+    let rates = [vec![1.0, 30.0], vec![0.0]];
+    let wear = |steps| Wear { steps, until_through: true, ..Wear::sliding(rates.clone(), 1.0) };
+    let auto = run(&plan, wear(WearSteps::Auto { end: 1.0, tolerance: 1e-3 }))?;
+    let through = auto.last().expect("a state").through[0];
+    let fine = run(&plan, wear(ends((10.0 * auto.len() as f64 / through.distance) as usize, 1.0)))?;
+    let due = fine.last().expect("a state").through[0];
+    near!(through.distance, due.distance, 0.01);
+    assert_eq!((through.layer, through.member), (0, Member::Body));
+    below!(
+        (through.position[1].abs() - due.position[1].abs()).abs(),
+        1.01 * plan.grid().spacing()[1]
+    );
+    let state = auto.last().expect("a state");
+    near!(largest(&state.depth[0]), 1e-4, 1e-5);
+    // Given steps are divided at the same moment, and the history goes on with both rates.
+    let beyond = Wear {
+        steps: ends(6, 2.0 * due.distance),
+        until_through: false,
+        ..wear(WearSteps::Ends(Vec::new()))
+    };
+    let states = run(&plan, beyond)?;
+    let event = states.iter().find(|state| !state.through.is_empty()).expect("it is through");
+    near!(event.distance, due.distance, 0.02);
+    let last = states.last().expect("a state");
+    assert_eq!(states.len(), 8);
+    let volume = last.depth[0].sum() * plan.grid().cell_area();
+    let force = load().load.unwrap_or(0.0);
+    assert!(volume > 1.2 * force * last.distance, "the substrate wears faster: {volume}");
+    Ok(())
+}
+
+/// The roller turns to its worn side: under a force off its middle, the tilt is found and force and moment hold.
+#[test]
+fn moments_hold_while_it_wears() -> Result<()> {
+    let plan = line()?;
+    let motion = Motion { eccentricity: [None, Some(0.1)], ..load() };
+    let wear = Wear { steps: ends(5, 0.1), ..Wear::sliding([vec![1.0], vec![0.0]], 0.1) };
+    let shape = Cylinder::new(RADIUS)?;
+    for state in states(WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?)? {
+        near!(state.solution.eccentricity()[1], 0.1, 1e-9);
+    }
+    Ok(())
+}
+
+/// An automatic grid grows with the contact; the volume is kept to rounding.
+#[test]
+fn grids_grow_with_the_contact() -> Result<()> {
+    let (body, shape) = (Elastic::new(1.0, 0.3)?.into(), Paraboloid::new(RADIUS, RADIUS)?);
+    let motion = Motion::load(4.0 / (3.0 * 0.91 * RADIUS));
+    let options = Options { cells: Some(4096), ..Options::default() };
+    let grid = choose_grid(&shape, &body, &Setup::default(), &motion, &options)?;
+    let plan = Arc::new(Contact::plan(body, grid, Setup::default())?);
+    let wear = Wear { steps: ends(8, 16.0), ..Wear::sliding([vec![1.0], vec![0.0]], 16.0) };
+    let wear = Wear { scheme: WearScheme::Euler, ..wear };
+    let states = states(WearSession::new(plan, shape, motion, wear, true)?)?;
+    let last = states.last().expect("a state");
+    assert!(last.regrids > 0 && last.solution.grid().size()[0] > 1.4 * grid.size()[0]);
+    let volume = last.depth[0].sum() * last.solution.grid().cell_area();
+    near!(volume, 16.0 * motion.load.unwrap_or(0.0), 1e-12);
+    Ok(())
+}
+
+/// Thinner layers change the pressure; the estimate is that of the contact with a coat that is thinner by the depth.
+#[test]
+fn frozen_thickness_has_its_estimate() -> Result<()> {
+    let plan = line()?;
+    let even = Array2::from_elem([1, 96], 2e-5);
+    let wear = Wear {
+        initial: Some([even, Array2::zeros([1, 96])]),
+        steps: WearSteps::Ends(Vec::new()),
+        ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
+    };
+    let mut session =
+        WearSession::new(Arc::clone(&plan), Cylinder::new(RADIUS)?, load(), wear, false)?;
+    let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
+    let state = session.advance(go_on)?.expect("the first state");
+    let error = session.thickness_error(go_on)?.expect("a layer wears");
+    let thin =
+        HalfSpace::new(Elastic::new(1.0, 0.3)?, [Layer::new(Elastic::new(3.0, 0.3)?, 8e-5)?])?;
+    let thin = Contact::plan(thin, *plan.grid(), Setup::default())?;
+    let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &Options::default())?;
+    let due = apart(&exact.pressure, &state.solution.pressure) / state.solution.peak_pressure();
+    // Both solves to 1e-8, of whose pressure the root counts.
+    near!(error, due, 0.01);
+    Ok(())
+}
+
+#[test]
+fn wrong_input_is_refused() -> Result<()> {
+    let plan = line()?;
+    let message = |wear: Wear| {
+        let session =
+            WearSession::new(Arc::clone(&plan), Cylinder::new(RADIUS)?, load(), wear, false);
+        Ok::<_, nacre::Error>(session.err().map_or_else(String::new, |error| error.to_string()))
+    };
+    let plain = || Wear::sliding([vec![1.0], vec![0.0]], 1.0);
+    let shape = plan.grid().shape();
+    let one = |value: f64| Array2::from_elem(shape, value);
+    for (wear, due) in [
+        (Wear::sliding([vec![-1.0], vec![0.0]], 1.0), "rate must be finite and at least 0, got -1"),
+        (
+            Wear::sliding([vec![1.0; 3], vec![0.0]], 1.0),
+            "rate must be as many as layers, and one for the substrate, got 3",
+        ),
+        (
+            Wear::sliding([vec![1.0], vec![f64::NAN]], 1.0),
+            "counter_rate must be finite and at least 0, got NaN",
+        ),
+        (
+            Wear::sliding([vec![1.0], vec![0.0]], -2.0),
+            "sliding must be finite and at least 0, got -2",
+        ),
+        (Wear { slip: Slip::Cells(one(0.0)), ..plain() }, "slip must be above 0 somewhere"),
+        (Wear { slip: Slip::Cells(one(-1.0)), ..plain() }, "slip must"),
+        (
+            Wear { slip: Slip::Cells(Array2::zeros([2, 2])), ..plain() },
+            "slip: expected shape [1, 96], got [2, 2]",
+        ),
+        (
+            Wear { steps: WearSteps::Ends(vec![1.0, 0.5]), ..plain() },
+            "steps must be finite, above 0 and increasing, got 0.5",
+        ),
+        (
+            Wear { steps: WearSteps::Auto { end: 1.0, tolerance: 2.0 }, ..plain() },
+            "step_tolerance must",
+        ),
+        (Wear { initial: Some([one(-1.0), one(0.0)]), ..plain() }, "initial must"),
+        (
+            Wear {
+                options: Options { hardness: Some(Hardness::Uniform(1.0)), ..Options::default() },
+                ..plain()
+            },
+            "wear has neither hardness nor compliance: leave them out",
+        ),
+    ] {
+        let found = message(wear)?;
+        assert!(found.starts_with(due), "{found:?}, due {due:?}");
+    }
+    Ok(())
+}
