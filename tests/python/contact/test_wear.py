@@ -71,10 +71,13 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
 def test_fretting_wears_where_it_slips() -> None:
     grid = nacre.Grid((32, 32), (3e-4, 3e-4))
     contact = nacre.Contact(STEEL, grid, STEEL)
-    cycle = {"friction": 0.6, "steps": [{"force": (one, None)} for one in (3.0, -3.0)]}
+    cycle: dict[str, Any] = {
+        "friction": 0.6,
+        "steps": [{"force": (one, None)} for one in (3.0, -3.0)],
+    }
     ball = nacre.Sphere(5e-3)
     history = contact.wear(ball, load=10.0, rate=1e-14, cycles=100.0, slide=cycle, steps=1)
-    loop = contact.slide(ball, load=10.0, **{**cycle, "steps": cycle["steps"] * 2})  # type: ignore[arg-type]
+    loop = contact.slide(ball, load=10.0, **cycle | {"steps": cycle["steps"] * 2})
     assert isinstance(loop, nacre.types.History)
     slip = sum(np.hypot(*step.slip) for step in loop[2:])
     worn_depth = history.states[-1].depth
@@ -85,10 +88,10 @@ def test_fretting_wears_where_it_slips() -> None:
 def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     grid = nacre.Grid((32, 32), (3e-4, 3e-4))
     contact = nacre.Contact(STEEL, grid, STEEL)
-    roll = {"friction": 0.3, "creepage": (1e-3, None), "direction": "+x"}
+    roll: dict[str, Any] = {"friction": 0.3, "creepage": (1e-3, None), "direction": "+x"}
     ball = nacre.Sphere(5e-3)
     history = contact.wear(ball, load=10.0, rate=1e-15, passes=1.0, roll=roll, steps=1)
-    wheel = contact.roll(ball, load=10.0, **roll)  # type: ignore[arg-type]
+    wheel = contact.roll(ball, load=10.0, **roll)
     track = (np.hypot(*wheel.slip) * wheel.pressure).sum(axis=0) * grid.spacing[0] * 1e-15
     np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
 
