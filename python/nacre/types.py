@@ -6,7 +6,7 @@ from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.gradient import Direction, Gradient
 from nacre.contact.solution import Report
 from nacre.contact.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
-from nacre.contact.wear import WearHistory, WearReport, WearState, WearThrough
+from nacre.contact.wear_solution import WearHistory, WearReport, WearState, WearThrough
 from nacre.fatigue import FatigueSummary, InterfaceFatigue, LayerFatigue, ShakedownMap
 from nacre.friction import CreepCoefficients
 from nacre.results.verdict import Verdict

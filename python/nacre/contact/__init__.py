@@ -30,7 +30,7 @@ from nacre.contact.arguments import (
 )
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
-from nacre.contact.wear import (
+from nacre.contact.wear_solution import (
     Rate,
     Scheme,
     Sliding,

@@ -22,7 +22,7 @@ with extra("plot"):
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre.contact.wear import WearHistory, WearState
+    from nacre.contact.wear_solution import WearHistory, WearState
 
 Array = npt.NDArray[np.float64]
 MOST_SECTIONS = 8
