@@ -167,6 +167,15 @@ impl Solution {
         }
     }
 
+    /// Leaves the springs away; the gap has `depth` for what they gave.
+    pub(crate) fn release_springs(&mut self, depth: Array2<f64>) {
+        if self.compliance.take().is_some()
+            && let Gap::Computed { deflection, .. } = &mut self.gap
+        {
+            *deflection = Some(depth);
+        }
+    }
+
     /// Displacement of the bodies and deflection of the springs together \[m\].
     pub(crate) fn total_displacement(&self) -> Array2<f64> {
         let springs = self.compliance.as_ref().and_then(|c| c.on(self.grid()).ok());

@@ -59,6 +59,8 @@ pub struct WearSession<S> {
     through: [usize; 2],
     ended: bool,
     last: Option<WearState>,
+    /// Pressure that wears at the start of the next step, where it is not that of the last solution.
+    start: Option<Array2<f64>>,
     /// Change of the pressure in the step before.
     change: Option<Array2<f64>>,
 }
@@ -68,6 +70,8 @@ struct Trial {
     length: f64,
     depth: [Array2<f64>; 2],
     solution: Solution,
+    /// Pressure that wears at the end: [`worn_by`].
+    pressure: Array2<f64>,
     error: Option<f64>,
 }
 
@@ -133,6 +137,7 @@ impl<S: Surface> WearSession<S> {
             through,
             ended: false,
             last: None,
+            start: None,
             change: None,
         })
     }
@@ -234,10 +239,7 @@ impl<S: Surface> WearSession<S> {
         if solution.report.termination == Termination::Stopped {
             return Ok(None);
         }
-        // What springs gave is worn off.
-        let mut solution = solution.require_converged(options.tolerance)?;
-        solution.compliance = None;
-        Ok(Some(solution))
+        solution.require_converged(options.tolerance).map(Some)
     }
 
     /// The state after `last`.
@@ -271,6 +273,7 @@ impl<S: Surface> WearSession<S> {
                         < RINGING
                 });
             self.change = through.is_empty().then_some(change);
+            self.start = Some(trial.pressure);
             return Ok(Some(WearState {
                 distance,
                 depth: trial.depth,
@@ -301,11 +304,11 @@ impl<S: Surface> WearSession<S> {
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
         let WearSteps::Auto { tolerance, .. } = self.wear.steps else {
-            let trial = self.trial(last, left, progress)?;
+            let trial = self.trial(last, self.start.as_ref(), left, progress)?;
             return trial.map_or(Ok(None), |trial| self.until_through(last, trial, progress));
         };
         if self.rates.iter().all(Rates::vanish) {
-            return self.trial(last, left, progress);
+            return self.trial(last, self.start.as_ref(), left, progress);
         }
         let mut length = self.length.unwrap_or_else(|| self.first_length(last)).min(left);
         loop {
@@ -349,14 +352,14 @@ impl<S: Surface> WearSession<S> {
         length: f64,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        let Some(whole) = self.trial(last, length, progress)? else {
+        let Some(whole) = self.trial(last, self.start.as_ref(), length, progress)? else {
             return Ok(None);
         };
-        let Some(half) = self.trial(last, 0.5 * length, progress)? else {
+        let Some(half) = self.trial(last, self.start.as_ref(), 0.5 * length, progress)? else {
             return Ok(None);
         };
         let middle = WearState { depth: half.depth, solution: half.solution, ..last.clone() };
-        let Some(end) = self.trial(&middle, 0.5 * length, progress)? else {
+        let Some(end) = self.trial(&middle, Some(&half.pressure), 0.5 * length, progress)? else {
             return Ok(None);
         };
         let peak = end.solution.peak_pressure();
@@ -403,7 +406,7 @@ impl<S: Surface> WearSession<S> {
             let length = a + (b - a) * lacks / (lacks + beyond);
             let next = match trial.error {
                 Some(_) => self.halved(last, length, progress)?,
-                None => self.trial(last, length, progress)?,
+                None => self.trial(last, self.start.as_ref(), length, progress)?,
             };
             let Some(next) = next else { return Ok(None) };
             trial = next;
@@ -445,22 +448,24 @@ impl<S: Surface> WearSession<S> {
         events
     }
 
-    /// One step from `last`, of this `length`.
+    /// One step from `last`, of this `length`; `start` is the pressure that wears there, if not that of its solution.
     fn trial(
         &self,
         last: &WearState,
+        start: Option<&Array2<f64>>,
         length: f64,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
         let shape = self.plan.grid().shape();
         let unchanged = || {
             let (depth, solution) = (last.depth.clone(), last.solution.clone());
-            Some(Trial { length, depth, solution, error: None })
+            let pressure = solution.pressure.clone();
+            Some(Trial { length, depth, solution, pressure, error: None })
         };
         if self.rates.iter().all(Rates::vanish) {
             return Ok(unchanged());
         }
-        let before = &last.solution.pressure;
+        let before = start.unwrap_or(&last.solution.pressure);
         let (track, slip) = match &self.wear.slip {
             Slip::Everywhere => (None, Array2::ones(shape)),
             Slip::Cells(slip) => (None, slip.clone()),
@@ -498,12 +503,16 @@ impl<S: Surface> WearSession<S> {
             let total = &rates[0] + &rates[1];
             let springs = &total * &per_pressure;
             let removed = total * &first;
-            let soft = springs.iter().any(|c| *c > 0.0).then_some(springs);
+            let soft = springs.iter().any(|c| *c > 0.0).then(|| springs.clone());
             let (depth, initial) = (&last.depth, Some(&last.solution));
-            let Some(solution) = self.solved(depth, &removed, soft, initial, progress)? else {
+            let Some(mut solution) = self.solved(depth, &removed, soft, initial, progress)? else {
                 return Ok(None);
             };
-            let work = &per_pressure * &solution.pressure + &first;
+            let one_cell = self.plan.convolution().self_influence();
+            let pressure = worn_by(&solution, &springs, one_cell);
+            // What springs gave is worn off.
+            solution.release_springs(springs * &pressure);
+            let work = &per_pressure * &pressure + &first;
             let mut changed = 0.0_f64;
             let mut next = rates.clone();
             for (k, next) in next.iter_mut().enumerate() {
@@ -516,7 +525,7 @@ impl<S: Surface> WearSession<S> {
             }
             if changed <= SETTLED || round == ROUNDS {
                 let depth = [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work));
-                return Ok(Some(Trial { length, depth, solution, error: None }));
+                return Ok(Some(Trial { length, depth, solution, pressure, error: None }));
             }
             rates = next;
         }
@@ -563,7 +572,7 @@ impl<S: Surface> WearSession<S> {
         self.plan = Arc::new(Contact::plan(self.plan.body().clone(), grid, setup)?);
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
         let solution = self.solved(&depth, &Array2::zeros(grid.shape()), None, None, progress)?;
-        self.change = None;
+        (self.change, self.start) = (None, None);
         Ok(solution.map(|solution| WearState {
             depth,
             solution,
@@ -585,6 +594,26 @@ fn thinned(body: &HalfSpace, depth: f64) -> Result<Body> {
         }
     }
     HalfSpace::new(body.substrate(), layers).map(Body::from)
+}
+
+/// Pressure by which a step wears. It is that of the solution, but where springs are softer than the contact as a whole, a
+/// residual within the tolerance is a large part of what they give, c p: there the gap is closed, p ← [p − g/(c + K₀)]₊, with
+/// the displacement K₀ of a cell under its own unit pressure. Springs that are alike stay as they are: the worn volume is
+/// κ s W as exactly as the pressure carries the load.
+fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Array2<f64> {
+    let (mut given, mut squares) = (0.0, 0.0);
+    Zip::from(&solution.pressure).and(springs).for_each(|p, c| {
+        given += c * p * p;
+        squares += p * p;
+    });
+    let softest = springs.fold(0.0_f64, |most, c| most.max(*c));
+    if softest * squares <= given + one_cell * squares {
+        return solution.pressure.clone();
+    }
+    Zip::from(&solution.pressure).and(springs).and(&solution.gap()).map_collect(|p, c, g| {
+        let is_soft = *c * squares > given + one_cell * squares;
+        if is_soft { (p - g / (c + one_cell)).max(0.0) } else { *p }
+    })
 }
 
 /// Size of the slip of each cell.
