@@ -146,7 +146,7 @@ impl<S: Surface> WearSession<S> {
     /// iteration, breaks.
     ///
     /// # Errors
-    /// Those of the solves, [`Error::NotConverged`] among them.
+    /// Those of the solves, [`Error::NotConverged`](crate::Error::NotConverged) among them.
     pub fn advance(&mut self, progress: &mut Progress) -> Result<Option<WearState>> {
         if self.ended {
             return Ok(None);
