@@ -127,6 +127,8 @@ pub struct WearState {
     pub step_error: Option<f64>,
     /// Whether pressures of cells rise and fall from step to step, as the trapezoidal rule makes them where steps are too long.
     pub rings: bool,
+    /// Whether the end is where a layer is through, if one is: the search for that distance may end before it is there.
+    pub settled: bool,
     /// Number of times that the grid has grown.
     pub regrids: usize,
 }

@@ -715,7 +715,13 @@ class WearSteps:
     def __next__(
         self,
     ) -> tuple[
-        float, tuple[_Field, _Field], Solved, list[dict[str, Any]], float | None, bool, int
+        float,
+        tuple[_Field, _Field],
+        Solved,
+        list[dict[str, Any]],
+        float | None,
+        tuple[bool, bool],
+        int,
     ]: ...
     def thickness_error(self) -> float | None: ...
 

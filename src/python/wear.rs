@@ -80,14 +80,14 @@ impl PyWear<'_> {
 #[pyclass(name = "WearSteps", module = "nacre._core", frozen)]
 pub(super) struct PyWearSteps(Arc<Mutex<WearSession<Shape>>>);
 
-/// Depths, solution, layers that are through, error of the step, whether it rings, and how often the grid has grown.
+/// Depths, solution, layers that are through, error of the step, whether it rings and is settled, and how often the grid has grown.
 type State<'py> = (
     f64,
     [Bound<'py, PyArray2<f64>>; 2],
     PySolved,
     Plain<Vec<WearThrough>>,
     Option<f64>,
-    bool,
+    [bool; 2],
     usize,
 );
 
@@ -120,7 +120,7 @@ impl PyWearSteps {
             state.solution.into(),
             Plain(state.through),
             state.step_error,
-            state.rings,
+            [state.rings, state.settled],
             state.regrids,
         )))
     }

@@ -73,6 +73,8 @@ struct Trial {
     /// Pressure that wears at the end: [`worn_by`].
     pressure: Array2<f64>,
     error: Option<f64>,
+    /// Whether the search for the distance at which a layer is through came to its end.
+    settled: bool,
 }
 
 impl<S: Surface> WearSession<S> {
@@ -175,6 +177,7 @@ impl<S: Surface> WearSession<S> {
             through: Vec::new(),
             step_error: None,
             rings: false,
+            settled: true,
             regrids: 0,
         }))
     }
@@ -281,6 +284,7 @@ impl<S: Surface> WearSession<S> {
                 through,
                 step_error: trial.error,
                 rings,
+                settled: trial.settled,
                 regrids: last.regrids,
             }));
         }
@@ -389,7 +393,7 @@ impl<S: Surface> WearSession<S> {
         for _ in 0..TRIALS {
             let part = self.part_of_layer(last, &trial.depth);
             if part <= 1.0 + MOMENT && (most.is_none() || part >= 1.0 - MOMENT) {
-                break;
+                return Ok(Some(trial));
             }
             let is_beyond = part > 1.0;
             if is_beyond {
@@ -411,7 +415,7 @@ impl<S: Surface> WearSession<S> {
             let Some(next) = next else { return Ok(None) };
             trial = next;
         }
-        Ok(Some(trial))
+        Ok(Some(Trial { settled: false, ..trial }))
     }
 
     /// Largest part of what was left of the next layer that a step has taken off a cell; 1 where it is just through.
@@ -460,7 +464,7 @@ impl<S: Surface> WearSession<S> {
         let unchanged = || {
             let (depth, solution) = (last.depth.clone(), last.solution.clone());
             let pressure = solution.pressure.clone();
-            Some(Trial { length, depth, solution, pressure, error: None })
+            Some(Trial { length, depth, solution, pressure, error: None, settled: true })
         };
         if self.rates.iter().all(Rates::vanish) {
             return Ok(unchanged());
@@ -525,7 +529,14 @@ impl<S: Surface> WearSession<S> {
             }
             if changed <= SETTLED || round == ROUNDS {
                 let depth = [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work));
-                return Ok(Some(Trial { length, depth, solution, pressure, error: None }));
+                return Ok(Some(Trial {
+                    length,
+                    depth,
+                    solution,
+                    pressure,
+                    error: None,
+                    settled: true,
+                }));
             }
             rates = next;
         }

@@ -46,12 +46,13 @@ fn worn_volumes_are_those_of_the_law() -> Result<()> {
     let plan = line()?;
     let force = load().load.unwrap_or(0.0);
     for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
-        for count in [1, 7] {
-            let steps = ends(count, 0.03);
+        // Steps of 1e9 are far beyond what elasticity gives; the first one ends where the coat is through.
+        for (count, end) in [(1, 0.03), (7, 0.03), (1, 1e9), (3, 1e9)] {
+            let steps = ends(count, end);
             let rates = [vec![1.0, 1.0], vec![0.25]];
-            let states = run(&plan, Wear { steps, scheme, ..Wear::sliding(rates, 0.03) })?;
-            for (state, k) in states[1..].iter().zip(1..) {
-                let due = force * 0.03 * f64::from(k) / count as f64;
+            let states = run(&plan, Wear { steps, scheme, ..Wear::sliding(rates, end) })?;
+            for state in &states[1..] {
+                let due = force * state.distance;
                 near!(state.depth[0].sum() * plan.grid().cell_area(), due, 1e-12, count);
                 near!(state.depth[1].sum() * plan.grid().cell_area(), 0.25 * due, 1e-12, count);
             }

@@ -7,6 +7,7 @@ import math
 import os
 import time
 import warnings
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -794,11 +795,15 @@ def wear_history(
     before = control.history
     stored = control.store is not None and before is not None and before is not control.initial
     sliding = dataclasses.replace(sliding, motion=motion)
-    inputs = _inputs(shape, motion, bodies, sliding)
+    inputs = _inputs(shape, motion, bodies, sliding) | {"scheme": control.scheme}
     if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
         raise ValueError("initial must be a history of the same body, in the same unit of distance")
-    if stored and before and before.inputs != inputs:
-        raise ValueError(f"store holds a history of other inputs: {before.inputs}, not {inputs}")
+    if before and not bodies.grows and on.grid != (grid := before.states[-1].solution.grid):
+        name = "store" if stored else "initial"
+        raise ValueError(f"{name} must be a history on the same grid, {on.grid!r}, got {grid!r}")
+    if stored and before and (name := _other(before.inputs, inputs)):
+        was, now = (one.get(name, "none") for one in (before.inputs, inputs))
+        raise ValueError(f"store must be a history of the same {name}, {now}, got {was}")
     states = list(before.states) if before else []
     events = list(before.events) if before else []
     offset = states[-1].distance if states else 0.0
@@ -825,6 +830,7 @@ def wear_history(
         grows=bodies.grows,
     )
     regrids, earlier = 0, before.report if before else None
+    settled = earlier is None or NOT_SETTLED not in earlier.warnings
     members = (bodies.body, bodies.counterbody)
 
     def history(*, converged: bool, thickness: float | None = None) -> WearHistory:
@@ -835,7 +841,7 @@ def wear_history(
             thickness_error=thickness,
             regrids=regrids + (earlier.regrids if earlier else 0),
             converged=converged,
-            warnings=_notes(states, events, thickness),
+            warnings=_notes(states, events, thickness, settled=settled),
             seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
         )
         return WearHistory(tuple(states), tuple(events), sliding.unit, report, inputs)
@@ -844,8 +850,9 @@ def wear_history(
     try:
         steps = core.wear(shape, motion, options, on)
         with lasting("wear", control.progress) as tell:
-            for distance, depths, solved, through, error, rings, grown in steps:
-                regrids = grown
+            for distance, depths, solved, through, error, signs, grown in steps:
+                rings, at_event = signs
+                regrids, settled = grown, settled and at_event
                 if before and distance == 0.0:
                     continue
                 state = WearState(
@@ -893,12 +900,33 @@ def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> di
         "counter_rate": bodies.counter_rate,
         "slide": sliding.slide,
         "roll": sliding.roll,
+        "slip": None if sliding.slip is None else _cells(sliding.slip),
+        "distance": f"{sliding.distance!r} {sliding.unit}",
     }
     return {name: str(value) for name, value in named.items() if value is not None}
 
 
+def _cells(values: Matrix) -> str:
+    """Return range and check sum of values of cells."""
+    cells = np.ascontiguousarray(values, dtype=np.float64)
+    if not cells.size:
+        return "of no cells"
+    check = f"CRC {zlib.crc32(cells.tobytes()):08x}"
+    return f"{cells.min():g} to {cells.max():g} in {cells.shape}, {check}"
+
+
+def _other(before: Mapping[str, str], now: Mapping[str, str]) -> str | None:
+    """Return the first name whose words differ; None where all are alike."""
+    names = (*now, *before)
+    return next((name for name in names if before.get(name) != now.get(name)), None)
+
+
 def _notes(
-    states: Sequence[WearState], events: Sequence[WearThrough], thickness: float | None
+    states: Sequence[WearState],
+    events: Sequence[WearThrough],
+    thickness: float | None,
+    *,
+    settled: bool,
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
@@ -907,6 +935,8 @@ def _notes(
             "pressures of cells rise and fall from step to step: take shorter steps, or "
             'scheme="euler"'
         )
+    if not settled:
+        notes.append(NOT_SETTLED)
     if events:
         notes.append(
             "a layer is through, and the elastic contact still has it: what follows is a bound"
@@ -919,5 +949,10 @@ def _notes(
     return tuple(dict.fromkeys(notes))
 
 
+NOT_SETTLED = (
+    "the distance at which a layer is through did not settle, and a step ends near it: take "
+    "shorter steps"
+)
+"""Warning of a search for an event that ended before it was there."""
 MOST_THINNING = 0.05
 """Error of the pressure by layers of constant thickness from which on there is a warning."""

@@ -68,6 +68,29 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
     assert nacre.load(store) == went_on
 
 
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        ({"grid": nacre.Grid.line(64, 7e-4)}, "store must be a history on the same grid"),
+        ({"slip": np.full((1, 64), 0.5)}, "store must be a history of the same slip"),
+        ({"scheme": "trapezoidal"}, "store must be a history of the same scheme"),
+        ({"sliding": 200.0}, "same distance, 200.0 m, got 100.0 m"),
+    ],
+)
+def test_a_store_of_something_else_is_refused(
+    tmp_path: Path, keywords: dict[str, Any], message: str
+) -> None:
+    same: dict[str, Any] = {"store": tmp_path / "store.nc", "scheme": "euler"}
+    worn(**same)
+    with pytest.raises(ValueError, match=message):
+        worn(**{**same, **keywords})
+
+
+def test_a_history_on_another_grid_is_refused() -> None:
+    with pytest.raises(ValueError, match="initial must be a history on the same grid"):
+        worn(initial=worn(), grid=nacre.Grid.line(64, 7e-4))
+
+
 def test_fretting_wears_where_it_slips() -> None:
     grid = nacre.Grid((32, 32), (3e-4, 3e-4))
     contact = nacre.Contact(STEEL, grid, STEEL)
