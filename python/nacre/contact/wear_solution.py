@@ -801,9 +801,9 @@ def wear_history(
     if before and not bodies.grows and on.grid != (grid := before.states[-1].solution.grid):
         name = "store" if stored else "initial"
         raise ValueError(f"{name} must be a history on the same grid, {on.grid!r}, got {grid!r}")
-    if stored and before and (name := _other(before.inputs, inputs)):
-        was, now = (one.get(name, "none") for one in (before.inputs, inputs))
-        raise ValueError(f"store must be a history of the same {name}, {now}, got {was}")
+    if stored and before and (other := _other(before.inputs, inputs)):
+        was, now = (one.get(other, "none") for one in (before.inputs, inputs))
+        raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
     states = list(before.states) if before else []
     events = list(before.events) if before else []
     offset = states[-1].distance if states else 0.0
