@@ -281,8 +281,10 @@ class WearReport(Result):
     Errors of earlier steps fade; None where the steps were given.
     """
     thickness_error: float | None
-    """Estimated error of the last pressure, relative to the peak, as the worn layer is as thick as
-    before; None without a layer that wears."""
+    """Estimated error of the last pressure that the frozen thickness costs, relative to the peak.
+
+    None without a layer that wears.
+    """
     regrids: int
     """Number of times that the grid grew."""
     converged: bool
@@ -364,8 +366,8 @@ class WearHistory(Result):
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
-    >>> round(history.volume[-1][0] / (1e-16 * 1.0 * 10.0), 10)
-    1.0
+    >>> print(f"{history.volume[-1][0]:.6g} m³")
+    1e-15 m³
     """
 
     _TITLE = "wear of a contact"
@@ -548,6 +550,11 @@ class WearHistory(Result):
         -------
         matplotlib.axes.Axes
             Axes of the picture.
+
+        Raises
+        ------
+        TypeError
+            If `axes` are not axes.
 
         Examples
         --------
