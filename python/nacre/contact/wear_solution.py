@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 import os
 import time
@@ -35,7 +36,7 @@ from nacre.results.quantities import WEAR
 from nacre.results.report import Picture, Sections, table, writer
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.tables import heading
-from nacre.results.verdict import Verdict, number
+from nacre.results.verdict import Level, Verdict, number
 
 if TYPE_CHECKING:
     import xarray
@@ -240,7 +241,7 @@ class WearThrough(Result):
 
     Examples
     --------
-    >>> nacre.types.WearThrough(2e3, (0.0, 1e-4), 0, "DLC", "body").distance
+    >>> nacre.types.WearThrough(2e3, (0.0, 1e-4), 0, "layers[0] DLC", "body").distance
     2000.0
     """
 
@@ -251,7 +252,7 @@ class WearThrough(Result):
     number: int
     """Number of the layer, from the surface down."""
     layer: str
-    """Name of the layer, or "layer" and its number."""
+    """Number and name of the layer, "layers[0] DLC"."""
     body: Literal["body", "counterbody"]
     """Whose layer it is."""
 
@@ -439,11 +440,13 @@ class WearHistory(Result):
         """Verdict: whether a layer is through, after which distance and where."""
         end = _distance(float(self.distance[-1]), self.unit)
         if (life := self.life) is None:
+            report = self.states[0].solution.report
+            has_layers = any(map(_layers, (report.body, report.counterbody)))
             deepest = number(float(self.deepest[-1].max()), "m")
-            lasting_words = f"No layer is through after {end}: {deepest} worn at most."
-            return Verdict(
-                "good" if self.report.converged else "unknown", lasting_words, (), None, None, None
-            )
+            words = f"{'No layer is through' if has_layers else 'Worn'} after {end}"
+            words += f": {deepest} {'worn ' if has_layers else ''}at most."
+            level: Level = "good" if has_layers and self.report.converged else "unknown"
+            return Verdict(level, words, (), None, None, None)
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
         words = (
@@ -773,7 +776,7 @@ def rates(name: str, rate: Any, body: Body | None) -> list[float]:
     by_layer: Any = core.layer_values(body, name, rate)
     count = len(body.layers) + 1
     by_layer = [*by_layer, *[None] * (count - len(by_layer))]
-    names = [*(_layer_name(body, k) for k in range(len(body.layers))), "substrate"]
+    names = [*_layers(body), "substrate"]
     elastic = not isinstance(body.substrate, core.Rigid | core.Free)
     missing = [one for one, value in zip(names, by_layer, strict=True) if value is None]
     if not elastic and missing == ["substrate"]:
@@ -783,10 +786,10 @@ def rates(name: str, rate: Any, body: Body | None) -> list[float]:
     return [float(value) for value in by_layer]
 
 
-def _layer_name(body: Body | None, number: int) -> str:
+def _layers(body: object) -> list[str]:
+    """Return numbers and names of the layers of a body."""
     layers = body.layers if isinstance(body, core.HalfSpace) else ()
-    name = getattr(layers[number].material, "name", None) if number < len(layers) else None
-    return name or f"layer {number}"
+    return [display.layer_name(number, layer.name) for number, layer in enumerate(layers)]
 
 
 def wear_history(
@@ -805,9 +808,10 @@ def wear_history(
     inputs = _inputs(shape, motion, bodies, sliding) | {"scheme": control.scheme}
     if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
         raise ValueError("initial must be a history of the same body, in the same unit of distance")
-    if before and not bodies.grows and on.grid != (grid := before.states[-1].solution.grid):
+    own = on.grid if isinstance(on, Setup) else on.grid()
+    if before and not bodies.grows and own != (grid := before.states[-1].solution.grid):
         name = "store" if stored else "initial"
-        raise ValueError(f"{name} must be a history on the same grid, {on.grid!r}, got {grid!r}")
+        raise ValueError(f"{name} must be a history on the same grid, {own!r}, got {grid!r}")
     if stored and before and (other := _other(before.inputs, inputs)):
         was, now = (one.get(other, "none") for one in (before.inputs, inputs))
         raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
@@ -891,7 +895,7 @@ def wear_history(
 
 def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
     kind: Literal["body", "counterbody"] = "body" if event["member"] == "body" else "counterbody"
-    layer = _layer_name(members[kind == "counterbody"], event["layer"])
+    layer = _layers(members[kind == "counterbody"])[event["layer"]]
     x, y = event["position"]
     return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
 
@@ -907,19 +911,19 @@ def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> di
         "counter_rate": bodies.counter_rate,
         "slide": sliding.slide,
         "roll": sliding.roll,
-        "slip": None if sliding.slip is None else _cells(sliding.slip),
+        "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
         "distance": f"{sliding.distance!r} {sliding.unit}",
     }
-    return {name: str(value) for name, value in named.items() if value is not None}
+    return {name: _words(value) for name, value in named.items() if value is not None}
 
 
-def _cells(values: Matrix) -> str:
-    """Return range and check sum of values of cells."""
-    cells = np.ascontiguousarray(values, dtype=np.float64)
-    if not cells.size:
-        return "of no cells"
-    check = f"CRC {zlib.crc32(cells.tobytes()):08x}"
-    return f"{cells.min():g} to {cells.max():g} in {cells.shape}, {check}"
+def _words(value: Any) -> str:
+    """Return a value in words, with the check sum of what they leave out of arrays."""
+    text = str(value)
+    if "..." not in text:
+        return text
+    plain = json.dumps(values.encode(value, digest=True))
+    return f"{text}, CRC {zlib.crc32(plain.encode()):08x}"
 
 
 def _other(before: Mapping[str, str], now: Mapping[str, str]) -> str | None:

@@ -12,7 +12,7 @@ import nacre
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Elastic(young=300e9, poisson=0.25)
-COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=2e-6)])
+COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=2e-6, name="DLC")])
 ROLLER = nacre.Cylinder(10e-3)
 GRID = nacre.Grid.line(64, 6e-4)
 LINE: dict[str, Any] = {"load": 1e5, "grid": GRID, "rate": {0: 1e-17, "substrate": 1e-15}}
@@ -37,11 +37,11 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
         history = worn(sliding=5e4, steps="auto", until="through")
     life = history.life
     assert life is not None
-    assert (life.layer, life.body) == ("layer 0", "body")
+    assert (life.layer, life.body) == ("layers[0] DLC", "body")
     assert abs(life.position[1]) < GRID.spacing[1]
     assert history.distance[-1] == life.distance
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
-    assert "layer 0 of the body: through after" in history.verdict.words
+    assert "layers[0] DLC of the body: through after" in history.verdict.words
 
 
 def test_a_history_goes_on_and_comes_back_from_files(tmp_path: Path) -> None:
@@ -141,3 +141,27 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
 def test_wrong_arguments_are_refused(keywords: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         worn(**keywords)
+
+
+def test_the_verdict_on_bodies_without_layers_is_unknown() -> None:
+    history = nacre.wear(ROLLER, STEEL, load=1e5, grid=GRID, rate=1e-17, sliding=1.0, steps=1)
+    assert history.verdict.level == "unknown"
+    assert history.verdict.words.startswith("Worn after 1 m: ")
+    assert worn().verdict.level == "good"
+
+
+def test_a_store_of_another_measured_surface_is_refused(tmp_path: Path) -> None:
+    """The maps differ where their printed form leaves their heights out."""
+    y = np.arange(64.0) - 31.5
+    heights = -2e-9 * np.hypot(y[:, None], y) ** 2
+    other = heights.copy()
+    other[32, 32] += 1e-9
+    keywords: dict[str, Any] = {"load": 0.1, "rate": 1e-16, "sliding": 1e-3, "steps": 1}
+    store = tmp_path / "store.nc"
+    steel = nacre.Contact(STEEL, nacre.Grid((64, 64), (64e-6, 64e-6)))
+    map_of_heights = nacre.HeightMap(heights, (1e-6, 1e-6))
+    history = steel.wear(map_of_heights, store=store, **keywords)
+    assert steel.wear(map_of_heights, store=store, **keywords).states == history.states
+    assert len(steel.wear(map_of_heights, initial=history, **keywords)) == 3
+    with pytest.raises(ValueError, match="store must be a history of the same shape"):
+        steel.wear(nacre.HeightMap(other, (1e-6, 1e-6)), store=store, **keywords)
