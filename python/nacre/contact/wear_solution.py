@@ -513,7 +513,7 @@ class WearHistory(Result):
     @classmethod
     def _unpacked(cls, state: dict[str, Any], arrays: Mapping[str, Field]) -> dict[str, Any]:
         """Return the state with the arrays of its file in their places."""
-        numbers = iter_arrays(arrays[PACKED])
+        numbers = _arrays(arrays[PACKED])
         return _filled(state, numbers)  # type: ignore[no-any-return]
 
     @classmethod
@@ -734,7 +734,7 @@ def _packed(state: Any) -> tuple[Any, Field]:
     return plain, np.concatenate(parts)
 
 
-def iter_arrays(numbers: Field) -> Callable[[Sequence[int]], Field]:
+def _arrays(numbers: Field) -> Callable[[Sequence[int]], Field]:
     """Return a function that gives the next array of a shape out of these numbers."""
     place = 0
 
