@@ -154,6 +154,8 @@ def _generator(rng: object) -> np.random.Generator:
         raise TypeError(
             f"rng must be an integer, a SeedSequence, a Generator or None, got {rng!r}"
         ) from error
+    if seed < 0:
+        raise ValueError(f"rng must be at least 0, got {seed}")
     return np.random.default_rng(seed)
 
 

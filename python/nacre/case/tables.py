@@ -169,16 +169,17 @@ def parameter_texts(thing: object) -> dict[str, str]:
 
     Without docstrings, as of ``python -OO``, all are empty.
     """
-    if thing.__doc__ is None:
-        return defaultdict(str)
-    text = inspect.cleandoc(thing.__doc__)
     section = re.search(
-        r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE
+        r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)",
+        inspect.cleandoc(thing.__doc__ or ""),
+        re.DOTALL | re.MULTILINE,
     )
+    if section is None:
+        return defaultdict(str)
     descriptions: dict[str, str] = {}
     for names, lines in re.findall(
         r"^(\w+(?:, \w+)*) : .*\n((?:[ \t]+.*(?:\n|\Z)|\n)+)",
-        section[1] if section else "",
+        section[1],
         re.MULTILINE,
     ):
         descriptions |= dict.fromkeys(names.split(", "), " ".join(lines.split()))

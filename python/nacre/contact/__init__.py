@@ -120,7 +120,7 @@ def solve(
         (`Solution.indentation`). By default they do not yield.
     compliance : float or array_like, optional
         Compliance c of springs between the surfaces [m/Pa], at least 0, of all cells or of each,
-        ``(nx, ny)``: the gap has c p in it, ``g = h + u + c p - δ - s_x x - s_y y``. It is that of
+        ``(nx, ny)``: the gap has c p in it, ``g = h + u + c p − δ − s_x x − s_y y``. It is that of
         an elastic bed or of a layer of soft asperities. Values of cells need a grid. By default
         there are none.
     tolerance : float, optional

@@ -96,12 +96,15 @@ def test_what_interrupts_it_carries_what_was_finished(error: type[BaseException]
     assert all(solution.report.converged for solution in finished)
 
 
-def test_stiffness_of_a_copy_without_its_plan_has_the_same_bits() -> None:
-    """A copy from data plans the free ends anew."""
+def test_stiffness_of_a_copy_without_its_plan_is_the_same_to_rounding() -> None:
+    """A copy from data plans the free ends anew, and coefficients as far as its contact alone."""
     body = nacre.HalfSpace(nacre.Elastic(210e9, 0.3), ends=(-9e-5, None))
     solution = nacre.solve(BALL, body, load=10.0, grid=nacre.Grid((40, 32), (3e-4, 2e-4)))
     copy = nacre.Solution.from_dict(solution.to_dict())
-    np.testing.assert_array_equal(copy.stiffness(), solution.stiffness())
+    stiffness = solution.stiffness()
+    # Entries over the geometric mean of their diagonals; some hundred roundings of solves.
+    scale = np.sqrt(np.outer(stiffness.diagonal(), stiffness.diagonal()))
+    np.testing.assert_allclose(copy.stiffness() / scale, stiffness / scale, atol=1e-13)
 
 
 def test_stiffness_is_a_symmetric_array() -> None:

@@ -122,6 +122,7 @@ OTHERS = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore:.* have no estimate of their discretisation error")
 @pytest.mark.parametrize("grid", OTHERS, ids=["size", "centre", "cells", "period"])
 @pytest.mark.parametrize("hardness", [None, 2e9])
 def test_another_grid_is_refused(grid: nacre.Grid, hardness: float | None) -> None:
@@ -162,6 +163,7 @@ def test_the_command_line_starts_from_another_shape(tmp_path: Path, capsys: Capt
     assert solved("--initial", saved, radius=2e-2) == pytest.approx(expected, rel=CLOSE)
 
 
+@pytest.mark.filterwarnings("ignore:.* have no estimate of their discretisation error")
 def test_a_stopped_step_can_be_gone_on_with() -> None:
     contact = nacre.Contact(STEEL, GRID, STEEL)
     held: dict[str, Any] = {"load": 20.0, "friction": 0.3}
@@ -182,8 +184,13 @@ def test_a_stopped_step_can_be_gone_on_with() -> None:
         rest = contact.slide(BALL, steps[number:], **held, initial=stopped[-1])
         for one, other in zip(rest, whole[number:], strict=True):
             assert one.report.converged
-            assert one.traction.tobytes() == other.traction.tobytes()
-            assert one.shift == other.shift
+            if number:
+                assert one.traction.tobytes() == other.traction.tobytes()
+                assert one.shift == other.shift
+            # A first step that is not gone on with starts from half the cells: equal to its tolerance.
+            largest, error = np.abs(other.traction).max(), one.report.tolerance
+            np.testing.assert_allclose(one.traction, other.traction, atol=error * largest)
+            np.testing.assert_allclose(one.shift, other.shift, rtol=error)
 
 
 # Numbers of any size.
