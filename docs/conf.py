@@ -7,6 +7,7 @@ import tomllib
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 sys.path.insert(
     0, str(Path(__file__).parent / "extensions")
@@ -61,9 +62,6 @@ html_static_path = ["_static"]
 html_css_files = ["nacre.css"]
 html_show_sphinx = False
 html_theme_options = {
-    "source_repository": PROJECT_URL,
-    "source_branch": "main",
-    "source_directory": "docs/",
     "light_css_variables": {
         "color-brand-primary": "#0072B2",
         "color-brand-content": "#0072B2",
@@ -73,6 +71,13 @@ html_theme_options = {
         "color-brand-content": "#56B4E9",
     },
 }
+# Pages link to their source once there is a repository.
+if not str(urlsplit(PROJECT_URL).hostname).endswith(".invalid"):
+    html_theme_options |= {
+        "source_repository": PROJECT_URL,
+        "source_branch": "main",
+        "source_directory": "docs/",
+    }
 copybutton_prompt_text = ">>> |$ "
 copybutton_prompt_is_regexp = False
 
