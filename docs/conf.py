@@ -61,7 +61,7 @@ html_title = f"nacre {release}"
 html_static_path = ["_static"]
 html_css_files = ["nacre.css"]
 html_show_sphinx = False
-html_theme_options = {
+html_theme_options: dict[str, Any] = {
     "light_css_variables": {
         "color-brand-primary": "#0072B2",
         "color-brand-content": "#0072B2",
