@@ -159,11 +159,11 @@ impl Solution {
         compliance: Compliance,
         springs: Array2<f64>,
     ) {
-        let given = springs * &self.pressure;
-        self.displacement -= &given;
+        let deflections = springs * &self.pressure;
+        self.displacement -= &deflections;
         self.compliance = Some(compliance);
         if let Gap::Computed { deflection, .. } = &mut self.gap {
-            *deflection = Some(given);
+            *deflection = Some(deflections);
         }
     }
 
@@ -427,7 +427,7 @@ impl Gap {
             }
             Self::Known(gap) => return gap.clone(),
         };
-        let total = deflection.as_ref().map(|given| displacement + given);
+        let total = deflection.as_ref().map(|deflection| displacement + deflection);
         let displacement = total.as_ref().unwrap_or(displacement);
         let mut gap = Array2::zeros(undeformed.dim());
         let (columns, [x, y]) = (undeformed.ncols(), &freedoms.columns);

@@ -81,8 +81,8 @@ class Sliding:
         """Raise a `ValueError` unless one distance is given, with what belongs to it."""
         names = ("sliding", "cycles", "passes")
         if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
-            found = " and ".join(known) or "none"
-            raise ValueError(f"one of sliding, cycles and passes must be given, got {found}")
+            several = " and ".join(known) or "none"
+            raise ValueError(f"one of sliding, cycles and passes must be given, got {several}")
         for name, one in (("slide", "cycles"), ("roll", "passes")):
             if (getattr(self, name) is None) != (getattr(self, one) is None):
                 raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
