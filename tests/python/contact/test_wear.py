@@ -74,6 +74,7 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
         ({"grid": nacre.Grid.line(64, 7e-4)}, "store must be a history on the same grid"),
         ({"slip": np.full((1, 64), 0.5)}, "store must be a history of the same slip"),
         ({"scheme": "trapezoidal"}, "store must be a history of the same scheme"),
+        ({"thickness": "first order"}, "store must be a history of the same thickness"),
         ({"sliding": 200.0}, "same distance, 200.0 m, got 100.0 m"),
     ],
 )
@@ -133,6 +134,7 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
         ({"steps": [50.0]}, "steps must end at 100"),
         ({"steps": "few"}, 'steps must be "auto"'),
         ({"scheme": "explicit"}, "scheme must be"),
+        ({"thickness": "thin"}, 'thickness must be "frozen" or "first order", got "thin"'),
         ({"until": "worn"}, "until must be"),
         ({"initial": np.full((1, 64), -1.0)}, "initial"),
         ({"load": None}, "load or approach must be given"),
@@ -165,3 +167,54 @@ def test_a_store_of_another_measured_surface_is_refused(tmp_path: Path) -> None:
     assert len(steel.wear(map_of_heights, initial=history, **keywords)) == 3
     with pytest.raises(ValueError, match="store must be a history of the same shape"):
         steel.wear(nacre.HeightMap(other, (1e-6, 1e-6)), store=store, **keywords)
+
+
+def test_first_order_thins_the_coat_and_says_how_far_it_holds() -> None:
+    """A soft, thick coat; warnings come beyond 40 % of it, and where it is through."""
+    rubber = nacre.Elastic(young=1e9, poisson=0.4)
+    body = nacre.HalfSpace(STEEL, layers=[nacre.Layer(rubber, thickness=20e-6, name="rubber")])
+    contact = nacre.Contact(body, nacre.Grid.line(64, 2e-3))
+    keywords: dict[str, Any] = {"load": 1e4, "rate": 1e-15, "steps": 4}
+    frozen = contact.wear(ROLLER, sliding=100.0, **keywords)
+    first = contact.wear(ROLLER, sliding=100.0, thickness="first order", **keywords)
+    # A thinner soft coat gives less: the contact is smaller, and the pressure higher.
+    assert first.peak_pressure[-1] > frozen.peak_pressure[-1]
+    np.testing.assert_allclose(first.volume, frozen.volume, rtol=1e-12)
+    assert first.report.thickness_error is not None
+    assert frozen.report.thickness_error is not None
+    assert first.report.thickness_error < 0.1 * frozen.report.thickness_error
+    assert "thinner to first order in the depth" in str(first)
+    assert "as thick as before" in str(frozen)
+    keywords |= {"thickness": "first order"}
+    with pytest.warns(nacre.NacreWarning, match="layers count to first order, and .* of one is"):
+        contact.wear(ROLLER, sliding=100.0 * 0.5 * 20e-6 / first.deepest[-1, 0], **keywords)
+    with pytest.warns(nacre.NacreWarning, match="lacks it there to first order only"):
+        contact.wear(ROLLER, sliding=1e5, until="through", **keywords)
+
+
+def test_an_event_that_does_not_settle_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Unsettled:
+        def __init__(self, *arguments: Any) -> None:
+            self.steps = steps(*arguments)
+
+        def __iter__(self) -> Any:
+            for *rest, (rings, _), grown in self.steps:
+                yield (*rest, (rings, False), grown)
+
+        def thickness_error(self) -> float | None:
+            return self.steps.thickness_error()
+
+    steps = nacre._core.wear
+    monkeypatch.setattr(nacre._core, "wear", Unsettled)
+    with pytest.warns(nacre.NacreWarning, match="did not settle, and a step ends near it"):
+        history = worn()
+    assert any("did not settle" in note for note in history.warnings)
+
+
+def test_a_history_says_why_it_has_no_gradient() -> None:
+    history = worn()
+    with pytest.raises(AttributeError, match="a history of wear has no gradient: take differences"):
+        history.gradient("life")  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="object has no attribute 'gradients'"):
+        history.gradients  # type: ignore[attr-defined]  # noqa: B018
+    assert history.states[-1].solution.gradient("approach")["load"] > 0
