@@ -530,14 +530,16 @@ impl<S: Surface> WearSession<S> {
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
-        let mut least = [0.0, 1.0];
+        let mut least = [0.0, 1.0 - self.part_of_layer(&begun.state.depth)];
         let mut most: Option<[f64; 2]> = None;
         let mut was_beyond = None;
+        let mut nearest: Option<(f64, Trial)> = None;
         for _ in 0..TRIALS {
-            let part = self.part_of_layer(begun.state, &trial.depth);
+            let part = self.part_of_layer(&trial.depth);
             if part <= 1.0 + MOMENT && (most.is_none() || part >= 1.0 - MOMENT) {
                 return Ok(Some(trial));
             }
+            let off = (part - 1.0).abs();
             let is_beyond = part > 1.0;
             if is_beyond {
                 most = Some([trial.length, part - 1.0]);
@@ -556,21 +558,24 @@ impl<S: Surface> WearSession<S> {
                 None => self.trial(begun, length, trial.solution.pressure.clone(), progress)?,
             };
             let Some(next) = next else { return Ok(None) };
+            // The depth jumps, by what a pressure is known to: the nearest trial counts.
+            if nearest.as_ref().is_none_or(|(least, _)| off < *least) {
+                nearest = Some((off, trial));
+            }
             trial = next;
         }
-        Ok(Some(Trial { settled: false, ..trial }))
+        let (off, trial) = nearest.unwrap_or((f64::INFINITY, trial));
+        Ok(Some(Trial { settled: off <= THROUGH, ..trial }))
     }
 
-    /// Largest part of what was left of the next layer that a step has taken off a cell; 1 where it is just through.
-    fn part_of_layer(&self, last: &WearState, depth: &[Array2<f64>; 2]) -> f64 {
+    /// Largest depth of a cell over that of the bottom of the next layer; 1 where it is just through.
+    fn part_of_layer(&self, depth: &[Array2<f64>; 2]) -> f64 {
         let mut most = 0.0_f64;
         for (k, depth) in depth.iter().enumerate() {
             let Some(bottom) = self.rates[k].bottoms.get(self.through[k]) else {
                 continue;
             };
-            Zip::from(&last.depth[k]).and(depth).for_each(|before, after| {
-                most = most.max((after - before) / (bottom - before));
-            });
+            most = depth.fold(most, |most, depth| most.max(depth / bottom));
         }
         most
     }

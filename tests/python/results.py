@@ -142,11 +142,24 @@ LISTED: dict[str, Callable[[], Any]] = {
     "unloading": unloaded,
     "tried": lambda: Tried((1.0, -2.0), 1e-9 / 3, 3, "x", ("a", "b"), False),
 }
+WEAR: dict[str, Callable[[], nacre.types.WearHistory]] = {
+    "worn": lambda: CONTACT.wear(BALL, load=10.0, rate=1e-15, sliding=10.0, steps=2),
+    "line worn": lambda: nacre.wear(
+        *(ROD, COATED),
+        **{"load": 1e4, "grid": nacre.Grid.line(64, 2e-4), "counter_rate": 1e-16},
+        rate={0: 1e-15, "substrate": 1e-14},
+        sliding=1e3,
+        steps=3,
+    ),
+}
 FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}
 
 
 @functools.cache
 def solved(kind: str) -> Any:
     """Return the result of a kind; what it warns of is saved with it."""
-    makers: dict[str, Callable[[], Any]] = {**NORMAL, **FRICTION, **INDENT, **FITS, **LISTED}
+    makers: dict[str, Callable[[], Any]] = {
+        **{**NORMAL, **FRICTION, **WEAR},
+        **{**INDENT, **FITS, **LISTED},
+    }
     return quiet(makers[kind])

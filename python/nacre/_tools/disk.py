@@ -28,6 +28,8 @@ STATE = "nacre_solution"
 """Attribute that holds the rest of the state, as JSON."""
 PICTURES = (".png", ".pdf", ".svg")
 """Endings of pictures."""
+FILMS = (".gif", ".mp4")
+"""Endings of films."""
 RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"
 """Marks of a result that `nacre.load` reads, and of a study."""
 MARK, SEAL = 16, 48

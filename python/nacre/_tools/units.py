@@ -317,9 +317,9 @@ class Scale:
             not dimension
             or largest == 0
             or not math.isfinite(largest)
-            or dimension.startswith(("1", "kg"))
+            or dimension.startswith(("1", "kg", "m²/N"))
         ):
-            return cls(1.0, own)  # nobody writes k1/m or kkg
+            return cls(1.0, own)  # nobody writes k1/m, kkg or nm²/N
         # A prefix has the power of the unit behind it: mm² are 1e-6 m², mJ/m² are 1e-3 J/m².
         power = POWERS[FACTORS.findall(dimension)[0][2]]
         low, high = (bound**power for bound in READABLE)
@@ -358,6 +358,20 @@ def written(value: float, unit: str, digits: int = 4) -> str:
     """
     scale = Scale.of(value, unit)
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
+
+
+def travelled(distance: float, unit: str) -> str:
+    """Return a sliding distance, in kilometres where it is long, or a number of cycles or passes.
+
+    >>> travelled(2500.0, "m"), travelled(2500.0, "cycles")
+    ('2.5 km', '2500 cycles')
+    """
+    if unit != "m":
+        return f"{distance:.4g} {unit}"
+    kilometres = system().unit("m")[0] * abs(distance) / 1e3
+    if kilometres < 1 or system().imperial:
+        return written(distance, "m")
+    return f"{kilometres:.4g} km"
 
 
 def plain(value: float, digits: int) -> str:

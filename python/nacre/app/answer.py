@@ -29,6 +29,8 @@ STAGES = ("draft", "full", "stress")
 """Stages of an answer, each of which names the next."""
 ROLLER_CELLS, FEWEST_CELLS = 16384, 4096
 """Largest number of cells of a draft: of rollers; and of others, the fewest that nacre takes."""
+DRAFT = {"step_tolerance": 1e-2}
+"""How exact the steps of a draft of wear are, where the case says nothing."""
 EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
@@ -171,6 +173,28 @@ def _bare(case: Case, arguments: Answer, going: Going) -> Any:
         return None
 
 
+def _wear(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+    """Return the answer on wear: the worn contact beside the new one, and the depth removed."""
+    if stage == "draft":
+        arguments = DRAFT | arguments
+        arguments |= {} if "grid" in arguments else {"max_cells": FEWEST_CELLS}
+    try:
+        history = nacre.wear(**arguments, progress=lambda _: going())
+    except nacre.ConvergenceError as error:
+        _check(going)
+        raise CaseError(f"no history was found: {error}") from error
+    _check(going)
+    new, worn = (history.states[k].solution for k in (0, -1))
+    parts: Answer = {
+        "peak": ("last peak pressure", display.number(worn.peak_pressure, "Pa", DIGITS)),
+        "rows": _rows(history._rows()),
+        "picture-1": _pressures(worn, new, ("worn", "new")),
+        "picture-2": _figure(*history._depth_picture()),
+        "warnings": list(history.warnings),
+    }
+    return _answer(parts | _judged(history.verdict), "full" if stage == "draft" else None)
+
+
 def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
     """Return the answer on a bearing; the last stage compares it with aligned rings."""
     bearing = arguments.pop("bearing")
@@ -235,7 +259,7 @@ def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Ans
     return _answer(parts, "full" if stage == "draft" else None)
 
 
-SOLVERS = {"contact": _contact, "bearing": _bearing, "indent": _indentation}
+SOLVERS = {"contact": _contact, "wear": _wear, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
@@ -306,12 +330,12 @@ def _section(solution: Any, axis: int | None = None) -> tuple[int, Any, Any]:
     return axis, places, np.take(pressure, peak[1 - axis], axis=1 - axis)[cells]
 
 
-def _pressures(solution: Any, bare: Any) -> str:
-    """Return the picture of the pressure along the longer side of a contact."""
+def _pressures(solution: Any, other: Any, names: tuple[str, str] = ("coated", "bare")) -> str:
+    """Return the picture of the pressure along the longer side of a contact, and of another."""
     axis, x, pressure = _section(solution)
-    curves = [Curve(x, pressure, "" if bare is None else "coated")]
-    if bare is not None:
-        curves.append(Curve(*_section(bare, axis)[1:], "bare", "dashed"))
+    curves = [Curve(x, pressure, "" if other is None else names[0])]
+    if other is not None:
+        curves.append(Curve(*_section(other, axis)[1:], names[1], "dashed"))
     drawing = lines(curves, (Axis("xy"[axis], "m"), Axis("pressure", "Pa")))
     return _figure("Pressure through the largest.", drawing)
 

@@ -20,7 +20,7 @@ from nacre.case import Case, CaseError, templates
 from nacre.case.bearing import UNITS
 from nacre.case.reference import place
 from nacre.case.results import files_of
-from nacre.results.quantities import INPUTS
+from nacre.results.quantities import BY_LAYER, INPUTS
 
 Data = dict[str, Any]
 
@@ -48,7 +48,7 @@ MARGIN = 3.0
 """Width of the grid of a line contact over that of the contact on the softest of its materials."""
 
 
-DIMENSION = re.compile(r"\s*\[(N m|N/m|Pa|m|N)\]")
+DIMENSION = re.compile(r"\s*\[(N m|N/m|m²/N|Pa|m|N)\]")
 """A unit in a text of the schema."""
 
 
@@ -149,6 +149,7 @@ def check_size(data: Data) -> None:
     bodies += [body for one in singles for body in _bodies(one)]
     steps = [indent.get(name, 0) for name in ("load", "approach", "radius")]
     steps.append(data.get("slide", {}).get("steps", 0))
+    steps.append(worn := data.get("wear", {}).get("steps", 0))
     shapes = [grid.get("shape", [0]), bearing.get("solve", {}).get("cells", [0])]
     shapes += [data.get("shape", {}).get("shape", [0]), [grid.get("cells", 0)]]
     shapes.append([data.get("solve", {}).get("max_cells", 0)])
@@ -159,7 +160,13 @@ def check_size(data: Data) -> None:
             max(one.get("count", 0) * one.get("rows", 1) for one in singles),
             MOST_ELEMENTS,
         ),
-        "steps": (max(len(one) if isinstance(one, list) else 0 for one in steps), MOST_STEPS),
+        "steps": (
+            max(
+                worn if isinstance(worn, int) else 0,
+                *(len(one) if isinstance(one, list) else 0 for one in steps),
+            ),
+            MOST_STEPS,
+        ),
     }
     for name, (size, most) in sizes.items():
         if size > most:
@@ -214,15 +221,20 @@ def _merged(data: Data, changes: Data) -> Data:
 
 
 def own_card(path: Any) -> Card:
-    """Return the card of a case file; what it measures is read here, once."""
+    """Return the card of a case file; what it measures is read here, once.
+
+    The page writes no file: neither that of a study, nor that of a history.
+    """
     case = Case.read(path)
     data: Data = {key: value for key, value in case.data.items() if key != "sweep"}
+    if "wear" in data:
+        data["wear"] = {key: value for key, value in data["wear"].items() if key != "store"}
     is_measured, measured = bool(case.measured()), NONE
     if is_measured:
         shape = case.arguments()["shape"]
         measured = Measured({"shape": shape}, {"shape": data["shape"]}, files_of(case))
         data["shape"] = {"kind": "sphere", "radius": 1.0}  # whose place the measured one takes
-    if case.kind == "contact" and "grid" not in data and not is_measured:
+    if case.kind in ("contact", "wear") and "grid" not in data and not is_measured:
         data["solve"] = {"max_cells": MOST_CELLS} | data["solve"]
     check_size(data)
     others = (one for one in _others(data, ()) if one.path.partition(".")[0] not in measured.tables)
@@ -254,7 +266,8 @@ def _field(data: Data, path: str, value: float | None) -> Field:
     names = [key for key in keys if isinstance(key, str)]
     node = place(data, keys).node
     text = " ".join(str(node.get("description", "")).split())
-    last = names[-2] if names[-1] in "xyz" and len(names) > 1 else names[-1]
+    is_part = len(names) > 1 and (names[-1] in "xyz" or names[-2] in BY_LAYER)
+    last = names[-2] if is_part else names[-1]
     dimension = (DIMENSION.findall(text) or [UNITS.get(".".join(names[-2:]))])[0]
     dimension = dimension or UNITS.get(last) or INPUTS.get(last, "")
     unit = System(str(data.get("units", "SI"))).unit(dimension)[1] if dimension else ""

@@ -1,8 +1,9 @@
 """Case files: a contact, an indentation or a bearing, and a study of it, in TOML.
 
-There is a table for each argument of `nacre.solve`, one for `Solution.stress_summary` and one for
-`nacre.fatigue.assess`; a file with the tables ``tip`` and ``indent`` is an indentation instead,
-for `nacre.indent.solve`, and one with the table ``bearing`` is a bearing of `nacre.bearing`.
+There is a table for each argument of `nacre.solve`, and for `Solution.stress_summary`,
+`nacre.fatigue.assess`, `nacre.slide`, `nacre.roll` and `nacre.wear`; a file with the tables ``tip``
+and ``indent`` is an indentation instead, for `nacre.indent.solve`, and one with the table
+``bearing`` is a bearing of `nacre.bearing`.
 Materials have names. ``nacre schema`` prints the reference of all tables and keys::
 
     units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
@@ -139,29 +140,34 @@ class Case:
 
     @property
     def kind(self) -> CaseKind:
-        """What the case is: a contact, an indentation or a bearing."""
+        """What the case is: a contact, its wear, an indentation or a bearing."""
         if isinstance(self._table, BearingCase):
             return "bearing"
+        if isinstance(self._table, CaseTable) and self._table.wear:
+            return "wear"
         return "indent" if self.is_indentation else "contact"
 
     @property
     def friction(self) -> str | None:
-        """Name of the table of friction, "slide" or "roll"; None without one."""
-        if not isinstance(self._table, CaseTable):
+        """Name of the table of friction, "slide" or "roll"; None without one, and of wear."""
+        if not isinstance(self._table, CaseTable) or self._table.history == "wear":
             return None
-        return "slide" if self._table.slide else "roll" if self._table.roll else None
+        return self._table.history
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments that the case describes.
 
-        They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`; those of
-        an indentation are of `nacre.indent.solve`, and those of a bearing the bearing and the
-        keywords of its ``solve``.
+        They are those of `nacre.solve`, or of `nacre.wear`, or with friction of `nacre.slide` or
+        `nacre.roll`; those of an indentation are of `nacre.indent.solve`, and those of a bearing
+        the bearing and the keywords of its ``solve``.
         """
         table = self._table
         try:
             if isinstance(table, CaseTable):
-                return table.arguments(self.folder)
+                arguments = table.arguments(self.folder)
+                if (store := arguments.get("store")) is not None:
+                    arguments["store"] = self._inside("wear.store", store)
+                return arguments
             assert isinstance(table, IndentCase | BearingCase)
             return table.arguments()
         except WrongValue as error:
@@ -219,7 +225,8 @@ class Case:
         sweep = self._table.sweep
         if sweep is None:
             raise CaseError(f"{self.name}: sweep: this table is missing")
-        self.arguments()  # the case as it stands must be one
+        if "store" in self.arguments():  # the case as it stands must be one
+            raise CaseError(f"{self.name}: wear.store: must not be given beside a study")
         for key in sweep.parameters:
             self._check_key(key)
             if (
@@ -250,7 +257,7 @@ class Case:
                 f"{self.name}: sweep.parameters: must make at most {MOST_VALUES} cases, got {count}"
             )
         if store is None and sweep.store is not None:
-            store = self._inside(sweep.store)
+            store = self._inside("sweep.store", sweep.store)
         if store is not None:
             arguments["store"] = store
         if isinstance(self._table, CaseTable) and self._table.stress is not None:
@@ -259,17 +266,18 @@ class Case:
             arguments["fatigue"] = fatigue
         return arguments
 
-    def _inside(self, store: str) -> Path:
+    def _inside(self, key: str, store: str) -> Path:
         """Return the path of a store, which must be in the folder of the case, as its journal."""
         path, folder = self.folder / store, self.folder.resolve()
         try:
             ends = [one.resolve() for one in (path, path.with_suffix(".journal"))]
         except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
-            raise CaseError(f"{self.name}: sweep.store: {error}") from error
+            raise CaseError(f"{self.name}: {key}: {error}") from error
         if not all(end.is_relative_to(folder) for end in ends):
+            hint = "; nacre sweep --store takes a file anywhere" if key == "sweep.store" else ""
             raise CaseError(
-                f"{self.name}: sweep.store: must be in the folder of the case, got "
-                f"{_short_repr(store)}; nacre sweep --store takes a file anywhere"
+                f"{self.name}: {key}: must be in the folder of the case, got "
+                f"{_short_repr(store)}{hint}"
             )
         return path
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,7 +13,7 @@ import typer
 from typer.core import TyperCommand
 
 import nacre
-from nacre._tools.disk import PICTURES, check_folder, replacing
+from nacre._tools.disk import FILMS, PICTURES, check_folder, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import printable, system
 from nacre.bearing.pair import NAMES
@@ -25,7 +25,7 @@ from nacre.case.results import Results, files_of, last_of, naming, report_of, re
 from nacre.indent.solution import IndentSolution
 from nacre.results import files, tables
 from nacre.results.display import SLIGHT, aligned, column, shown_in
-from nacre.results.quantities import BEARING, ERROR
+from nacre.results.quantities import BEARING, ERROR, WEAR
 from nacre.results.table_results import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
@@ -58,6 +58,9 @@ Units = Annotated[
     ),
 ]
 ARTICLES = {"bearing": "a bearing", "indent": "an indentation"}
+SAVED = {"contact": {".nc", ".vtr", ".csv", ".html", *PICTURES}}
+SAVED["wear"] = SAVED["contact"] | {*FILMS}
+"""Endings of the files of contacts and of their wear."""
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
@@ -104,22 +107,24 @@ def solve(
         typer.Option(
             metavar="FILE",
             callback=_in_folder,
-            help="File to write: .nc, .vtr, .csv, a picture, or .html, a report. May be repeated.",
+            help="File to write: .nc, .vtr, .csv, a picture, or .html, a report; of wear .gif, "
+            "too. May be repeated.",
         ),
     ] = None,
     initial: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation.",
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation. "
+            "Or a history of wear to go on from.",
         ),
     ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Solve the contact, indentation or bearing of a case file."""
+    """Solve the contact, wear, indentation or bearing of a case file."""
     case_file = _read_case(case, units)
-    if case_file.kind != "contact":
+    if case_file.kind not in SAVED:
         if initial is not None:
             raise CaseError(f"{case}: --initial must not be given for {ARTICLES[case_file.kind]}")
         solve_case = _solve_bearing if case_file.kind == "bearing" else _solve_indentation
@@ -133,13 +138,14 @@ def solve(
         except (OSError, ValueError) as error:
             raise typer.BadParameter(str(error), param_hint="'--initial'") from error
     for path in save or []:
-        _check_ending(path)
+        _check_ending(path, SAVED[case_file.kind])
     try:
         check_direction(arguments, **(case_file.stress() or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
+    solve_case = _solve_wear if case_file.kind == "wear" else _solve
     with nacre.display_units(case_file.units):
-        _solve(case, case_file, arguments, save or [], as_json)
+        solve_case(case, case_file, arguments, save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:
@@ -155,7 +161,7 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
             raise CaseError(
                 f"{case}: --save of a bearing must end in .nc, .csv, .html or as a picture"
             )
-        _check_ending(path)
+        _check_ending(path, SAVED["contact"])
     with warnings.catch_warnings(), alive():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         results = results_of(case_file, case_file.arguments())
@@ -244,6 +250,31 @@ def _solve(
         else:
             # The fields of ParaView's file are those of the last step.
             (solution if path.suffix.lower() == ".vtr" else outcome).save(path)
+
+
+def _solve_wear(
+    case: Path, case_file: Case, arguments: dict[str, object], save: list[Path], as_json: bool
+) -> None:
+    """Wear a contact, save and print its history in the units that are set."""
+    with warnings.catch_warnings(), alive():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed history has them
+        results = results_of(case_file, arguments)
+    history = results["wear"]
+    summaries = {name: one for name, one in results.items() if one is not history}
+    if as_json:
+        numbers = _worn(history) | {"units": case_file.units}
+        extremes = {name: one.to_dict() for name, one in summaries.items()}
+        print(json.dumps(_plain(numbers | extremes | _verdicts(results)), indent=2))
+    else:
+        print(history, *summaries.values(), sep="\n\n")
+    for path in save:
+        ending = path.suffix.lower()
+        if ending == ".html":
+            _save_report(path, results, case, case_file)
+        elif ending in FILMS:
+            history.animate(path)
+        else:
+            (history.states[-1].solution if ending == ".vtr" else history).save(path)
 
 
 @app.command(cls=Command)
@@ -401,6 +432,18 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     }
 
 
+def _worn(history: nacre.types.WearHistory) -> dict[str, object]:
+    """Return the numbers of each state of a history of wear, its events and its report."""
+    rows = [row for row in WEAR if row.dims[:1] == ("step",)]
+    return {row.name: getattr(history, row.name).tolist() for row in rows} | {
+        "unit": history.unit,
+        "life": None if history.life is None else history.life.distance,
+        "events": [event._state() for event in history.events],
+        "report": history.report._state(),
+        "inputs": history.inputs,
+    }
+
+
 def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
@@ -441,8 +484,7 @@ def _plain(data: object) -> object:
     return data
 
 
-def _check_ending(path: Path) -> None:
-    endings = {".nc", ".vtr", ".csv", ".html", *PICTURES}
+def _check_ending(path: Path, endings: Collection[str]) -> None:
     if path.suffix.lower() not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")

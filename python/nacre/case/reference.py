@@ -22,7 +22,7 @@ Node = dict[str, Any]
 
 WIDTH = 88
 """Width of the text of the reference."""
-UNIT = re.compile(r"\s*(\[(?:N m|N/m|Pa|m|N)\])")
+UNIT = re.compile(r"\s*(\[(?:N m|N/m|m²/N|Pa|m|N)\])")
 INTRODUCTION = (
     "A case file is TOML. Numbers are in the units that the key units names, SI by default; N, m, "
     "Pa below stand for its force, length and stress."
@@ -72,6 +72,8 @@ def words(node: Node) -> str:
         return alternatives(dict.fromkeys(map(words, inner)))
     if "$ref" in node:
         return "a table"
+    if "const" in node:
+        return json.dumps(node["const"])
     if "enum" in node:
         return alternatives(map(json.dumps, node["enum"]))
     if node.get("type") == "array":
@@ -132,6 +134,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[slide.shift]` and `[slide.force]`", definitions["Along"]
     yield "`[roll]`", definitions["Roll"]
     yield "`[roll.creepage]` and `[roll.force]`", definitions["Rolling"]
+    yield "`[wear]`", definitions["Wear"]
     yield "`[stress]`", definitions["Stress"]
     yield "`[fatigue]`", definitions["Fatigue"]
     for one in tables(definitions["Fatigue"]["properties"]["criteria"]["items"]):

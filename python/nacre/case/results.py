@@ -48,7 +48,12 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
     name = case.friction or "solve"
     with naming(case, name):
         results = {"solution": getattr(nacre, name)(**arguments, **options)}
-    last = last_of(results["solution"])
+    return results | _of_last(case, last_of(results["solution"]), options)
+
+
+def _of_last(case: Case, last: Any, options: Options) -> Results:
+    """Return the stresses and the fatigue of a contact that the case asks for."""
+    results = {}
     if (keywords := case.stress()) is not None:
         with naming(case, "stress"):
             results["stress"] = last.stress_summary(**keywords, **options)
@@ -56,6 +61,12 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
         with naming(case, "fatigue"):
             results["fatigue"] = nacre.fatigue.assess(last, **keywords, **options)
     return results
+
+
+def _wear(case: Case, arguments: Options, options: Options) -> Results:
+    with naming(case, "wear"):
+        history = nacre.wear(**arguments, **options)
+    return {"wear": history} | _of_last(case, history.states[-1].solution, options)
 
 
 def _bearing(case: Case, arguments: Options, options: Options) -> Results:
@@ -86,6 +97,7 @@ def _indentation(case: Case, arguments: Options, options: Options) -> Results:
 
 SOLVERS: dict[str, Callable[[Case, Options, Options], Results]] = {
     "contact": _contact,
+    "wear": _wear,
     "bearing": _bearing,
     "indent": _indentation,
 }
@@ -103,7 +115,8 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
     Its files are those of `files_of`.
     """
     tables = {"stress": case.stress(), "fatigue": case.fatigue()}
-    sliding = {k: v for k, v in (tables["stress"] or {}).items() if k in DEPTH_OPTIONS}
+    of_stress = {} if case.kind == "wear" else tables["stress"] or {}
+    sliding = {k: v for k, v in of_stress.items() if k in DEPTH_OPTIONS}
     rows = [("units of the case", case.units), *files, *report.input_rows(tables)]
     return report.text(name, [*results.values()], text, rows, sliding)
 

@@ -40,6 +40,7 @@ from nacre.case.tables import (
     parameter_texts,
     with_words,
 )
+from nacre.case.wear import Wear, rates
 from nacre.studies.outputs import OUTPUTS
 
 CONSTANTS = parameter_texts(nacre.Elastic)
@@ -387,6 +388,7 @@ class CaseTable(Bodies):
         "solve",
         "slide",
         "roll",
+        "wear",
     )
 
     shape: AnyShape = Field(description="Shape that is pressed in.")
@@ -394,6 +396,9 @@ class CaseTable(Bodies):
     solve: Solve = Field(description="What presses, and how the contact is solved.")
     slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
     roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
+    wear: Wear | None = Field(
+        None, description="Wear by sliding, by the cycles of slide, or by the passes of roll."
+    )
     stress: Stress | None = Field(
         None, description="Stresses below the surface; the table may be empty."
     )
@@ -409,19 +414,48 @@ class CaseTable(Bodies):
         if self.grid is not None:
             with at("grid"):
                 keywords["grid"] = self.grid.make()
-        return keywords | self.solve.keywords() | self._friction()
+        return keywords | self.solve.keywords() | self._of_history()
 
-    def _friction(self) -> dict[str, object]:
-        """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
-        motion = self.slide or self.roll
-        if motion is None:
+    @property
+    def history(self) -> Literal["wear", "slide", "roll"] | None:
+        """Name of the table of a history, which is that of its function; None without one."""
+        return "wear" if self.wear else "slide" if self.slide else "roll" if self.roll else None
+
+    def _of_history(self) -> dict[str, object]:
+        """Return the arguments of wear and friction beside those of `nacre.solve`."""
+        if (name := self.history) is None:
             return {}
-        name = "roll" if self.slide is None else "slide"
         if self.slide is not None and self.roll is not None:
             raise WrongValue("roll", "must not be given beside the table slide")
         parameters = inspect.signature(getattr(nacre, name)).parameters
         if others := sorted(self.solve.model_fields_set - parameters.keys()):
             raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
+        return self._wear() if self.wear else self._friction(name)
+
+    def _wear(self) -> dict[str, object]:
+        """Return the arguments of `nacre.wear` beside those of `nacre.solve`."""
+        assert self.wear is not None
+        keywords = self.wear.keywords()
+        for key, body in (("rate", self.body), ("counter_rate", self.counterbody)):
+            if key in keywords:
+                with at(f"wear.{key}"):
+                    keywords[key] = rates(keywords[key], self._names(body))
+        motions = (("slide", self.slide), ("roll", self.roll))
+        return keywords | {name: one.keywords() for name, one in motions if one is not None}
+
+    @staticmethod
+    def _names(body: Body | None) -> list[list[str]]:
+        """Return the names of the layers of a body and of its substrate, the first their own."""
+        if body is None:
+            return []
+        parts = [(str(k), layer.name, layer.material) for k, layer in enumerate(body.layers)]
+        parts.append(("substrate", None, body.substrate))
+        return [[name for name in part if isinstance(name, str)] for part in parts]
+
+    def _friction(self, name: str) -> dict[str, object]:
+        """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
+        motion = self.slide or self.roll
+        assert motion is not None
         for place, table in (("stress", self.stress), ("fatigue", self.fatigue)):
             if table is not None and table.friction:
                 raise WrongValue(

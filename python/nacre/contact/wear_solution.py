@@ -19,7 +19,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Field, Matrix
-from nacre._tools.units import written
+from nacre._tools.units import symbol, travelled, written
 from nacre.contact.arguments import (
     MOTION,
     STEP,
@@ -32,8 +32,8 @@ from nacre.contact.arguments import (
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
-from nacre.results.quantities import WEAR
-from nacre.results.report import Picture, Sections, table, writer
+from nacre.results.quantities import INPUTS, WEAR
+from nacre.results.report import Picture, Sections, contact_pictures, table, writer
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.tables import heading
 from nacre.results.verdict import Level, Verdict, number
@@ -47,8 +47,6 @@ Rate = float | Mapping[str | int, float]
 Scheme = Literal["trapezoidal", "euler"]
 Thickness = Literal["frozen", "first order"]
 Unit = Literal["m", "cycles", "passes"]
-WearProgress = Callable[["WearState"], object]
-"""Function that is told each state of a history of wear."""
 MODEL = (
     "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
     "no change of friction, and layers {}: `thickness_error` says what that costs"
@@ -266,10 +264,13 @@ class WearThrough(Result):
 
     def __repr__(self) -> str:
         """Return layer, distance and place in a line."""
+        return f"<WearThrough: {self._words(None)}>"
+
+    def _words(self, unit: Unit | None) -> str:
+        """Return layer, distance in the unit of a history, and place."""
         at = ", ".join(written(x, "m") for x in self.position)
-        return (
-            f"<WearThrough: {self.layer} of the {self.body} after {self.distance:.4g}, at ({at})>"
-        )
+        distance = travelled(self.distance, unit) if unit else f"{self.distance:.4g}"
+        return f"{self.layer} of the {self.body} after {distance}, at ({at})"
 
 
 @dataclass(frozen=True, repr=False)
@@ -368,6 +369,10 @@ class WearState(Result):
             return cls(**state | depths | {"solution": solution})
 
 
+WearProgress = Callable[[WearState], object]
+"""Function that is told each state of a history of wear."""
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class WearHistory(Result):
     """A history of wear: `nacre.wear` returns it.
@@ -447,7 +452,7 @@ class WearHistory(Result):
     @property
     def verdict(self) -> Verdict:
         """Verdict: whether a layer is through, after which distance and where."""
-        end = _distance(float(self.distance[-1]), self.unit)
+        end = travelled(float(self.distance[-1]), self.unit)
         if (life := self.life) is None:
             report = self.states[0].solution.report
             has_layers = any(map(_layers, (report.body, report.counterbody)))
@@ -459,7 +464,7 @@ class WearHistory(Result):
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
         words = (
-            f"{life.layer} of the {life.body}: through after {_distance(life.distance, self.unit)} "
+            f"{life.layer} of the {life.body}: through after {travelled(life.distance, self.unit)} "
             f"at {', '.join(places)}."
         )
         return Verdict("bad", words, (), None, life.layer, None)
@@ -684,15 +689,31 @@ class WearHistory(Result):
                 ("Peak pressure", self.peak_pressure, "Pa"),
             )
         ]
+        pictures += [*contact_pictures(self.states[-1].solution), self._depth_picture()]
         return Sections(
             self._TITLE,
-            tuple(self.inputs.items()),
+            [(name, self._input(name, text)) for name, text in self.inputs.items()],
             self._rows(),
             pictures=pictures,
             tables=[table("Steps", self._table())],
             model=[("model", MODEL.format(THICKNESSES[self._thickness]))],
             warnings=self.warnings,
         )
+
+    def _depth_picture(self) -> Picture:
+        """Return the picture of the last depth of both bodies together, through its deepest."""
+        last = self.states[-1]
+        grid, depth = last.solution.grid, last.depth + last.counter_depth
+        i, j = np.unravel_index(int(depth.argmax()), depth.shape)
+        curve = Curve(grid.y, depth[i]) if grid.is_line else Curve(grid.x, depth[:, j])
+        axes = Axis("y" if grid.is_line else "x", "m"), Axis("depth removed", "m")
+        return Picture("Depth removed in the end, through the deepest.", lines([curve], axes))
+
+    def _input(self, name: str, text: str) -> str:
+        """Return an input in words with its unit."""
+        if name == "sliding":
+            return travelled(float(text), "m")
+        return f"{text} {symbol(INPUTS[name])}" if name in ("rate", "counter_rate") else text
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
@@ -701,15 +722,12 @@ class WearHistory(Result):
         volumes = [written(volume, "m²" if line else "m³") for volume in self.volume[-1]]
         error = report.step_error
         rows = [
-            ("distance", _distance(last.distance, self.unit)),
+            ("distance", travelled(last.distance, self.unit)),
             ("worn volume", f"{volumes[0]} of the body, {volumes[1]} of the counterbody"),
             ("deepest", written(float(self.deepest[-1].max()), "m")),
             ("peak pressure", _fromto(self.peak_pressure, "Pa")),
             ("contact area", _fromto(self.contact_area, "m" if line else "m²")),
-            *[
-                ("through", repr(event)[1:-1].removeprefix("WearThrough: "))
-                for event in self.events
-            ],
+            *[("through", event._words(self.unit)) for event in self.events],
             (
                 "steps",
                 f"{report.steps}" + ("" if error is None else f", error {error:.1g} of the peak"),
@@ -777,13 +795,6 @@ def _filled(value: Any, take: Callable[[Sequence[int]], Field]) -> Any:
             return take(value["shape"])
         return {key: _filled(item, take) for key, item in value.items()}
     return [_filled(item, take) for item in value] if isinstance(value, list) else value
-
-
-def _distance(distance: float, unit: str) -> str:
-    if unit != "m":
-        return f"{distance:.4g} {unit}"
-    kilometres = abs(distance) >= 1e3
-    return f"{distance / 1e3:.4g} km" if kilometres else f"{distance:.4g} m"
 
 
 def _fromto(numbers: Field, unit: str) -> str:
@@ -939,7 +950,7 @@ def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> di
         "slide": sliding.slide,
         "roll": sliding.roll,
         "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
-        "distance": f"{sliding.distance!r} {sliding.unit}",
+        "sliding" if sliding.unit == "m" else sliding.unit: float(sliding.distance),
     }
     return {name: _words(value) for name, value in named.items() if value is not None}
 
@@ -977,7 +988,7 @@ def _notes(
     if not settled:
         notes.append(NOT_SETTLED)
     part, frozen = _worn_part(states[-1]), model == "frozen"
-    if events:
+    if events and events[0].distance < states[-1].distance:
         rest = "still has it" if frozen else "lacks it there to first order only"
         notes.append(f"a layer is through, and the elastic contact {rest}: what follows is a bound")
     elif frozen and error is not None and error > MOST_THINNING:

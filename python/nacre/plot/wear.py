@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from nacre._tools.disk import replacing
+from nacre._tools.disk import FILMS, replacing
 from nacre._tools.extras import extra
-from nacre._tools.units import Scale
+from nacre._tools.units import Scale, travelled
 from nacre.plot.style import COLOURMAP, checked_axes, new_axes, styled
 
 with extra("plot"):
@@ -73,7 +73,7 @@ def wear(history: WearHistory, axes: Axes | None = None) -> Axes:
     with styled():
         axes = checked_axes(axes) or new_axes(0.75, 0.45)
         for state, (x, depth), colour in zip(states, sections, colours, strict=True):
-            label = f"{state.distance:.3g} {history.unit}"
+            label = travelled(state.distance, history.unit)
             axes.plot(along.factor * x, deep.factor * depth, color=colour, label=label)
         axis = "y" if states[0].solution.grid.is_line else "x"
         axes.set_xlabel(f"{axis} [{along.unit}]")
@@ -118,7 +118,7 @@ def animate_wear(
     '.gif'
     """
     path = Path(path)
-    if path.suffix.lower() not in (".gif", ".mp4"):
+    if path.suffix.lower() not in FILMS:
         raise ValueError(f"path must end in .gif or .mp4, got {str(path)!r}")
     if not frames_per_second > 0:
         raise ValueError(f"frames_per_second must be above 0, got {frames_per_second!r}")
@@ -143,7 +143,7 @@ def animate_wear(
         def draw(number: int) -> list[object]:
             for curve, (x, values), scale in zip(curves, both[number], scales, strict=True):
                 curve.set_data(along.factor * x, scale.factor * values)
-            panels[0].set_title(f"{states[number].distance:.4g} {history.unit}")
+            panels[0].set_title(travelled(states[number].distance, history.unit))
             return list(curves)
 
         film = FuncAnimation(figure, draw, frames=len(states))  # type: ignore[arg-type]

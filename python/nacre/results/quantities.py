@@ -131,6 +131,12 @@ WEAR = (
     Quantity("pressure", "last pressure", "Pa", dims=CELLS),
 )
 """Quantities of a history of wear."""
+WORN = (
+    Quantity("life", "distance after which the first layer is through", "m"),
+    Quantity("worn_volume", "volume removed from both bodies", "m³", "m²"),
+    *(replace(row, dims=()) for row in WEAR if row.dims[:1] == ("step",) and row.name != "volume"),
+)
+"""Numbers of a history of wear: those of its end."""
 
 FRICTION = (
     Quantity("force", "force of the tractions on the body", "N", "N/m", AXIS, "force"),
@@ -439,8 +445,13 @@ PARAMETERS = {
     "displacement": "m",
     "yield_stress": "Pa",
     "shear_yield": "Pa",
+    "rate": "m²/N",
+    "counter_rate": "m²/N",
+    "sliding": "m",
 }
 """SI units of parameters of studies and fits, by the last part of their names."""
+BY_LAYER = ("rate", "counter_rate")
+"""Parameters that may have a number for each layer, by its name."""
 LENGTHS = (
     *(
         "amplitude",
@@ -469,20 +480,25 @@ INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
 def parameter_unit(path: str, units: Mapping[str, str]) -> str:
     """Return the SI unit of the number at a path: that of its name in `units` or `PARAMETERS`.
 
-    A component is of the quantity above it.
+    A component is of the quantity above it, and so is the rate of a layer.
 
     >>> parameter_unit("body.layers[0].thickness", {}), parameter_unit("bearing.solve.tilt.y", {})
     ('m', 'rad')
     """
     *_, outer, name = ["", *path.split(".")]
-    quantity = outer if name in ("x", "y", "z") else name
+    quantity = outer if name in ("x", "y", "z") or outer in BY_LAYER else name
     return units.get(quantity, PARAMETERS[quantity]) if quantity in PARAMETERS else ""
 
 
 def units(
-    *, line: bool = False, rolls: bool = False, indents: bool = False, bears: bool = False
+    *,
+    line: bool = False,
+    rolls: bool = False,
+    indents: bool = False,
+    bears: bool = False,
+    wears: bool = False,
 ) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
     contact = (*FRICTION, *CONTACT, *STRESS, *ASSESSMENT)
-    rows = INDENT if indents else BEARING if bears else contact
+    rows = INDENT if indents else BEARING if bears else WORN if wears else contact
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

@@ -20,7 +20,7 @@ from nacre._tools.arguments import keywords_of
 from nacre._tools.extras import extra
 from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import case_progress
-from nacre.contact import roll, slide, solve
+from nacre.contact import roll, slide, solve, wear
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
 from nacre.studies.dataset import assemble, failure_lines, layout
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     import xarray
 
     from nacre.contact.friction import FrictionSolution
+    from nacre.contact.wear_solution import WearHistory
 
 Case = Mapping[str, object] | Callable[..., Mapping[str, object]]
 
@@ -51,6 +52,8 @@ ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
+WEAR = frozenset(inspect.signature(wear).parameters) - {"store", "progress"}
+"""Arguments of wear in a study, which has a store of its own."""
 NOTES = frozenset(("progress", "check"))
 """Keywords of what a solve says, which studies say themselves."""
 STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads", "yield_stress", "strength"}
@@ -82,9 +85,10 @@ def sweep(
         Function that takes the parameters by name and returns the arguments of `nacre.solve` as a
         dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
         arguments, some of which the parameters replace. Arguments of `nacre.slide` or `nacre.roll`
-        make contacts with friction; of a history, the last step counts. Arguments of
-        `nacre.indent.solve`, with a tip, make indentations; a ``bearing`` of `nacre.bearing` and
-        the keywords of its ``solve`` make bearings.
+        make contacts with friction; of a history, the last step counts. Those of `nacre.wear`, with
+        a ``rate``, make histories of wear. Arguments of `nacre.indent.solve`, with a tip, make
+        indentations; a ``bearing`` of `nacre.bearing` and the keywords of its ``solve`` make
+        bearings.
     parameters : mapping
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
@@ -105,6 +109,10 @@ def sweep(
         ``"fatigue_safety_factor"``, NaN without a yield stress or criteria. With friction,
         attributes of `FrictionSolution` are outputs, too: ``"force"``, ``"torque"``, ``"shift"``,
         ``"twist"``, ``"creepage"``, ``"dissipated"``.
+        Outputs of wear are ``"life"``, the distance or the number of cycles or passes after which
+        the first layer is through, NaN where none is until the end; ``"worn_volume"``, of both
+        bodies together; and ``"deepest"``, ``"peak_pressure"``, ``"contact_area"``,
+        ``"approach"``, ``"load"`` and ``"distance"``, at the end.
         Outputs of an indentation are numbers of `nacre.indent.IndentSolution`, by default load,
         approach, radius, stiffness and central pressure; ``"pull_off_load"`` is NaN without
         adhesion. Outputs of a bearing are numbers of `nacre.bearing.BearingSolution`, by default
@@ -298,11 +306,18 @@ def _describe(
                 f"got {sorted(unknown)}"
             )
         return {"threads": 1, **arguments}, None
+    if "rate" in arguments:
+        if others := arguments.keys() - WEAR:
+            raise TypeError(
+                f"case must give arguments of nacre.wear without store and progress beside a rate, "
+                f"got {sorted(others)}"
+            )
+        return {"threads": 1, **arguments}, None
     unknown = set(arguments) - ARGUMENTS
     frictionless = unknown and not {"friction", "steps"} & unknown
     if frictionless or (unknown - SLIDE and unknown - ROLL):
         raise TypeError(
-            f"case must give arguments of nacre.solve, nacre.slide, nacre.roll or "
+            f"case must give arguments of nacre.solve, nacre.slide, nacre.roll, nacre.wear or "
             f"nacre.indent.solve, got {sorted(unknown)}"
         )
     return {"threads": 1, **arguments}, None
@@ -379,7 +394,8 @@ def _case_kind(case: Case, points: Sequence[Mapping[str, object]]) -> CaseKind:
             with suppress(ValueError, ArithmeticError):
                 names = {*_arguments(case, point)}
                 break
-    return "indent" if "tip" in names else "bearing" if "bearing" in names else "contact"
+    kinds: dict[str, CaseKind] = {"tip": "indent", "bearing": "bearing", "rate": "wear"}
+    return next((kind for name, kind in kinds.items() if name in names), "contact")
 
 
 def _readable(point: Mapping[str, object]) -> dict[str, object]:
@@ -470,13 +486,15 @@ def _solve(
                 "warnings": list(contacts.warnings),
                 "kinds": ["steep"] * len(contacts.warnings),
             }
-            return {"values": plain(contacts, outputs), "indents": True} | notes
+            return {"values": plain(contacts, outputs, "indent"), "indents": True} | notes
         if "bearing" in arguments:
             keywords = {**arguments}
             solved = keywords.pop("bearing").solve(**keywords)
             messages = list(solved.report.warnings)
             notes = {"warnings": messages, "kinds": ["bearing"] * len(messages)}
-            return {"values": plain(solved, outputs), "bears": True} | notes
+            return {"values": plain(solved, outputs, "bearing"), "bears": True} | notes
+        if "rate" in arguments:
+            return _worn(wear(**arguments), outputs)
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
@@ -494,6 +512,20 @@ def _solve(
         return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
+
+
+def _worn(history: WearHistory, outputs: dict[str, Output]) -> Record:
+    """Return the outputs and the warnings of a history of wear."""
+    marks = {
+        "wears": True,
+        "counts": history.unit != "m",
+        "line": history.states[0].solution.grid.is_line,
+    }
+    return {
+        "values": plain(history, outputs, "wear"),
+        "warnings": list(history.warnings),
+        "kinds": ["wear"] * len(history.warnings),
+    } | {name: True for name, holds in marks.items() if holds}
 
 
 def _solution(arguments: dict[str, Any]) -> Solution | FrictionSolution:

@@ -88,9 +88,11 @@ def assemble(
     dataset = coordinates.drop_vars("case")
     kinds = {
         kind: any(record.get(kind) for record in records)
-        for kind in ("line", "rolls", "indents", "bears")
+        for kind in ("line", "rolls", "indents", "bears", "wears")
     }
     units = quantities.units(**kinds)
+    if any(record.get("counts") for record in records):  # cycles or passes
+        units = {name: unit for name, unit in units.items() if name not in ("life", "distance")}
     axes = RING_AXES if kinds["bears"] else AXES
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
@@ -116,7 +118,7 @@ def assemble(
             dataset[name].attrs["units"] = own
     names = {*outputs, *map(str, dataset.coords)}
     estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
-    if kinds["indents"]:
+    if kinds["indents"] or kinds["wears"]:
         estimated = ()
     elif not kinds["bears"]:
         estimated = (*ESTIMATED, *OF_SLIDING)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from nacre.results.quantities import AXIS, BEARING, CONTACT, ERROR, FRICTION, INDENT
+from nacre.results.quantities import AXIS, BEARING, CONTACT, ERROR, FRICTION, INDENT, WORN
 
 if TYPE_CHECKING:
     from nacre.bearing.solution import BearingSolution
     from nacre.contact.friction import FrictionSolution
     from nacre.contact.solution import Solution
     from nacre.contact.stresses import StressSummary
+    from nacre.contact.wear_solution import WearHistory
     from nacre.fatigue.summary import FatigueSummary
     from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
-CaseKind = Literal["contact", "indent", "bearing"]
+CaseKind = Literal["contact", "wear", "indent", "bearing"]
 """What a study solves."""
 
 OUTPUTS = (
@@ -35,8 +37,11 @@ INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 """Outputs of an indentation by default."""
 OF_RINGS = ("displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure")
 """Outputs of a bearing by default; its life is asked for, as it is a model."""
+OF_HISTORIES = ("life", "worn_volume", "deepest", "peak_pressure", "contact_area")
+"""Outputs of wear by default."""
 USUAL: dict[CaseKind, tuple[str, ...]] = {
     "contact": OUTPUTS,
+    "wear": OF_HISTORIES,
     "indent": INDENTED,
     "bearing": OF_RINGS,
 }
@@ -50,6 +55,8 @@ OF_INDENT = [row.name for row in INDENT]
 """Numbers of an indentation."""
 OF_BEARING = {row.name: row for row in BEARING}
 """Numbers of a bearing."""
+OF_WEAR = [row.name for row in WORN]
+"""Numbers of a history of wear."""
 AXES = {row.name for row in (*CONTACT, *FRICTION) if row.dims == AXIS}
 """Outputs with a value along x and one along y."""
 
@@ -115,6 +122,7 @@ def outputs_by_name(
         f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
         f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
         f"fatigue ({', '.join((*FATIGUES, *MARGINS))})",
+        "wear": f"numbers of a history of wear ({', '.join(OF_WEAR)})",
         "indent": "attributes of nacre.indent.IndentSolution that hold numbers "
         f"({', '.join(OF_INDENT)})",
         "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
@@ -122,10 +130,11 @@ def outputs_by_name(
     }
     names_by_kind: dict[CaseKind, set[str]] = {
         "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
+        "wear": {*OF_WEAR},
         "indent": {*OF_INDENT},
         "bearing": {*OF_BEARING},
     }
-    kinds: list[CaseKind] = ["indent", "contact", "bearing"] if kind is None else [kind]
+    kinds: list[CaseKind] = ["indent", "contact", "wear", "bearing"] if kind is None else [kind]
     for name, output in items:
         if not (any(output in names_by_kind[kind] for kind in kinds) or callable(output)):
             all_choices = ", ".join(choices[kind] for kind in kinds)
@@ -139,25 +148,42 @@ def outputs_by_name(
     return by_name
 
 
+OTHERS: dict[CaseKind, tuple[Iterable[str], str]] = {
+    "wear": (OF_WEAR, "a history of wear"),
+    "indent": (OF_INDENT, "an indentation"),
+    "bearing": (OF_BEARING, "a bearing"),
+}
+"""Outputs of what is no single contact, and what it is."""
+
+
 def plain(
-    solution: IndentSolution | BearingSolution, outputs: Mapping[str, Output]
+    solution: WearHistory | IndentSolution | BearingSolution,
+    outputs: Mapping[str, Output],
+    kind: CaseKind,
 ) -> dict[str, Any]:
-    """Return the outputs of an indentation or of a bearing as plain numbers."""
-    own, words = (
-        (OF_INDENT, "an indentation") if hasattr(solution, "tip") else (OF_BEARING, "a bearing")
-    )
+    """Return the outputs of wear, of an indentation or of a bearing as plain numbers."""
+    own, words = OTHERS[kind]
+    number: Callable[[Any, str], Any] = worn if kind == "wear" else getattr
     numbers: dict[str, object] = {}
     for name, output in outputs.items():
         if isinstance(output, str) and output not in own:
             raise ValueError(f"the output {output} is not one of {words}")
-        value = getattr(solution, output) if isinstance(output, str) else output(solution)
+        value = number(solution, output) if isinstance(output, str) else output(solution)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
-    if not hasattr(solution, "tip"):
-        estimates = solution.report.discretisation or {}
+    if kind == "bearing":
+        report: Any = solution.report
+        estimates = report.discretisation or {}
         for name, quantity in errors(outputs, outputs, ESTIMATED_OF_RINGS).items():
             estimate = estimates.get(quantity)
             numbers[name] = np.nan if estimate is None else float(estimate)
     return numbers
+
+
+def worn(history: WearHistory, name: str) -> float:
+    """Return a number of the end of a history of wear; its life is NaN if no layer is through."""
+    if name == "life":
+        return math.nan if history.life is None else history.life.distance
+    return history.worn_volume if name == "worn_volume" else getattr(history, name)[-1].max()
 
 
 def errors(

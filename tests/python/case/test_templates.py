@@ -133,6 +133,17 @@ def test_slides_and_rolls_carry_forces_within_friction(tmp_path: Path, capsys: C
     assert roll["dissipated"] == pytest.approx(1e-3 * roll["force"][0], rel=1e-6)
 
 
+def test_the_coat_is_through_where_the_law_says(tmp_path: Path, capsys: Capture) -> None:
+    numbers = solved("wear", tmp_path, capsys)
+    assert numbers["life"] == numbers["distance"][-1]
+    # Archard's law under a constant load: κ W s, to rounding of the sum over 129 cells.
+    assert numbers["volume"][-1][0] == pytest.approx(1e-11 * 100 * numbers["life"], rel=1e-12)
+    # A rigid cylinder is as deep where a³ = 3/2 R κ W s and a² = 2 R h; an elastic one is wider.
+    radius, thickness = 10, 2e-3
+    rigid = 2 / 3 * (2 * radius * thickness) ** 1.5 / (radius * 1e-11 * 100)
+    assert rigid < numbers["life"] < 2 * rigid
+
+
 def test_the_sweep_has_all_its_cases(tmp_path: Path, capsys: Capture) -> None:
     numbers = solved("sweep", tmp_path, capsys)
     assert sum(map(len, numbers["data_vars"]["error"]["data"])) == 9

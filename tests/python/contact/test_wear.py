@@ -33,8 +33,7 @@ def test_worn_volume_is_that_of_the_law() -> None:
 
 
 def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
-    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
-        history = worn(sliding=5e4, steps="auto", until="through")
+    history = worn(sliding=5e4, steps="auto", until="through")
     life = history.life
     assert life is not None
     assert (life.layer, life.body) == ("layers[0] DLC", "body")
@@ -42,6 +41,10 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert history.distance[-1] == life.distance
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
     assert "layers[0] DLC of the body: through after" in history.verdict.words
+    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+        further = worn(sliding=1.01 * life.distance, steps=3, scheme="euler")
+    assert further.life is not None
+    assert further.distance[-1] > further.life.distance
 
 
 def test_a_history_goes_on_and_comes_back_from_files(tmp_path: Path) -> None:
@@ -75,7 +78,7 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
         ({"slip": np.full((1, 64), 0.5)}, "store must be a history of the same slip"),
         ({"scheme": "trapezoidal"}, "store must be a history of the same scheme"),
         ({"thickness": "first order"}, "store must be a history of the same thickness"),
-        ({"sliding": 200.0}, "same distance, 200.0 m, got 100.0 m"),
+        ({"sliding": 200.0}, "same sliding, 200.0, got 100.0"),
     ],
 )
 def test_a_store_of_something_else_is_refused(

@@ -35,6 +35,8 @@ QUICK: list[tuple[str, dict[str, list[int]]]] = [
     ("shakedown", {"cases": [0, 8, 14]}),
     ("quarter_space_wave", {"cases": [0, 8, 14]}),
     ("coated_roller", {"cases": [1]}),
+    ("fretting_limit", {"rows": [0, 3, 7]}),
+    ("wave_decay", {"rows": [2, 13, 23]}),
 ]
 
 
@@ -75,7 +77,12 @@ def test_a_number_that_is_off_by_a_millionth_is_found() -> None:
 
 def test_files_say_where_their_numbers_come_from() -> None:
     for path in sorted(
-        [*DATA.glob("*.json"), *(DATA / "friction").glob("*.json"), DATA / "fatigue/shakedown.json"]
+        [
+            *DATA.glob("*.json"),
+            *(DATA / "friction").glob("*.json"),
+            *(DATA / "wear").glob("*.json"),
+            DATA / "fatigue/shakedown.json",
+        ]
     ):
         content = json.loads(path.read_text(encoding="utf-8"))
         for key in ("description", "source", "method", "error"):

@@ -24,7 +24,10 @@ from nacre.results import values
 from results import DLC, GRID, solved
 from support import Patch, python, resealed
 
-SAVED = results.NORMAL | results.FRICTION | results.INDENT | results.FITS | results.LISTED
+SAVED: dict[str, Any] = {
+    **{**results.NORMAL, **results.FRICTION, **results.WEAR},
+    **{**results.INDENT, **results.FITS, **results.LISTED},
+}
 FIELDS: dict[type, tuple[str, ...]] = {
     nacre.Solution: ("pressure", "gap", "displacement", "x", "y", "line_load"),
     nacre.types.FrictionSolution: (

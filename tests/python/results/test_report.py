@@ -86,6 +86,7 @@ KINDS: dict[str, Callable[[], Any]] = {
         for kind in (
             *results.NORMAL,
             *("slid", "line slid", "rolled", "apart", "not converged in friction"),
+            *results.WEAR,
             *results.INDENT,
             *results.FITS,
             *results.LISTED,
@@ -164,7 +165,7 @@ def test_every_result_saves_a_page_that_runs_nothing(kind: str, tmp_path: Path) 
     chapters = [name for name in re.findall(r"<h2>(.*?)</h2>", read.source)]
     assert chapters == [name for name in CHAPTERS if name in chapters]
     assert {"Warnings"} <= {*chapters}
-    own = (design.Optimum, nacre.types.History, nacre.indent.Fit)
+    own = (design.Optimum, nacre.types.History, nacre.types.WearHistory, nacre.indent.Fit)
     texts = result.warnings if isinstance(result, own) else result.report.warnings
     for warning in texts:
         assert warning in read.text

@@ -1,0 +1,61 @@
+"""Table of case files for histories of wear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+import nacre
+from nacre.case.friction import SHARED
+from nacre.case.tables import Count, Number, Numbers, Table, from_signature, with_words
+
+MOST_STATES = 10_000
+"""Largest number of ends of steps: each takes a hundredth of a second at least."""
+AnyRate = Annotated[
+    Number | dict[str, Number],
+    with_words('a finite number, or a table of them by layer or material and "substrate"'),
+]
+AnySteps = Annotated[
+    Literal["auto"] | Count | Annotated[Numbers, Field(min_length=1, max_length=MOST_STATES)],
+    with_words('"auto", an integer above 0, or a list of finite numbers'),
+]
+RATE = (
+    "Specific wear rate κ of the {} [m²/N], at least 0: one number, or one of each layer, by its "
+    'number, its name or that of its material, and of the "substrate". 1 m²/N is 1e9 mm³/(N m).'
+)
+TEXTS = {
+    "rate": RATE.format("body"),
+    "counter_rate": RATE.format("counterbody, or of the rigid shape"),
+    "cycles": "Number of fretting cycles; the steps of `[slide]` are one.",
+    "passes": "Number of passes of a wheel, which rolls as `[roll]` says.",
+    "store": "File `.nc` in the folder of the case, in which the history is kept after each step. "
+    "Where it exists, the calculation goes on from it.",
+}
+"""Descriptions of keys that are not those of the keywords."""
+
+
+@from_signature(
+    nacre.wear, SHARED, TEXTS, rate=AnyRate, counter_rate=AnyRate, steps=AnySteps, store=str | None
+)
+class Wear(Table):
+    """Dry wear over one of sliding, cycles and passes; load and tilts stand in `[solve]`."""
+
+
+def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> Any:
+    """Return a rate as `nacre.wear` takes it, by the numbers of layers.
+
+    Each part of the body, from the surface down, has its names, the first of which is its key.
+    A `ValueError` names the keys that there may be.
+    """
+    if not isinstance(rate, Mapping):
+        return rate
+    if not names:
+        raise ValueError("must be a number, as the shape is rigid without a counterbody")
+    known = list(dict.fromkeys(name for part in names for name in part))
+    if others := [key for key in rate if key not in known]:
+        raise ValueError(f"must have keys among {', '.join(known)}, got {others[0]!r}")
+    found = [next((name for name in part if name in rate), None) for part in names]
+    keys = [int(part[0]) if part[0].isdigit() else part[0] for part in names]
+    return {key: rate[name] for key, name in zip(keys, found, strict=True) if name is not None}
