@@ -70,7 +70,7 @@ def solve(
 ) -> Solution:
     """Press a shape into a body, in one call: choose a grid where none is given, plan, solve.
 
-    By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
+    By default the grid of a height map is its own. Other shapes get a grid that holds the whole
     contact, with 64 cells across its narrower width, oblong where the contact is long, and a margin
     of a quarter of the contact on every side. The cells are divided until the estimated error of
     the peak pressure (`Report.discretisation`) is at most 1 %; where that needs more than 2²²
