@@ -8,4 +8,5 @@ pub(crate) mod images;
 pub mod influence;
 pub(crate) mod kernel;
 pub mod response;
+pub(crate) mod strain;
 pub mod traction;

@@ -21,7 +21,7 @@ pub(crate) use options::SMALLEST_GRID;
 pub use options::{Algorithm, Motion, Options, Setup};
 pub use plan::Contact;
 pub use problem::bounds::Hardness;
-pub(crate) use problem::patch::{block, bounds};
+pub(crate) use problem::patch::{block, bounds, enclosing};
 pub use problem::springs::Compliance;
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::{Unestimated, Warning};

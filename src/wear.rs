@@ -21,11 +21,13 @@
 //! |---|---|
 //! | `rates` | wear rates over the depth of a body |
 //! | `regrid` | larger grids, and depths on them |
+//! | `thickness` | layers that are thinner where they are worn |
 //! | `session` | steps, their control, and events |
 
 mod rates;
 mod regrid;
 mod session;
+mod thickness;
 
 use ndarray::Array2;
 
@@ -47,6 +49,8 @@ pub struct Wear {
     pub steps: WearSteps,
     /// How a step is made. Default: [`WearScheme::Trapezoidal`].
     pub scheme: WearScheme,
+    /// What wear does to the elastic contact. Default: [`Thickness::Frozen`].
+    pub thickness: Thickness,
     /// Whether to end where the first layer is through. Default: false.
     pub until_through: bool,
     /// Depths removed before from body and counterbody \[m\]. Default: none.
@@ -63,6 +67,7 @@ impl Wear {
             slip: Slip::Everywhere,
             steps: WearSteps::Auto { end: distance, tolerance: 1e-3 },
             scheme: WearScheme::default(),
+            thickness: Thickness::default(),
             until_through: false,
             initial: None,
             options: Options::default(),
@@ -87,8 +92,8 @@ pub enum Slip {
 /// The steps of a history.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WearSteps {
-    /// Steps whose error of the pressure, the root of its mean square over the contact relative to the peak, is at most a
-    /// `tolerance`, up to the `end`.
+    /// Steps whose error of the pressure, the root of its mean square within the contact relative to the peak, is at most a
+    /// `tolerance`, up to the `end`. Cells at the edge do not count: they join the contact at once.
     Auto {
         /// Distance of the last step.
         end: f64,
@@ -110,6 +115,20 @@ pub enum WearScheme {
     Trapezoidal,
     /// That of its end: first order, and all that is not resolved fades at once.
     Euler,
+}
+
+/// How thick the layers are in the elastic contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Thickness {
+    /// As before wear.
+    #[default]
+    Frozen,
+    /// The top layers of both bodies are thinner in each cell by what is worn there, to first order in the depth. Slips of
+    /// friction, stiffness and stresses of the solutions stay those of layers as thick as before.
+    #[cfg_attr(feature = "serde", serde(rename = "first order"))]
+    FirstOrder,
 }
 
 /// A worn contact.

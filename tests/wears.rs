@@ -1,4 +1,4 @@
-//! Wear: waves, the limit of fretting, steps and their control, layers that are worn through.
+//! Wear: waves, the limit of fretting, steps and their control, layers that get thinner and are worn through.
 
 #[macro_use]
 #[path = "support/root.rs"]
@@ -8,5 +8,6 @@ mod support;
 mod wear {
     mod fretting;
     mod histories;
+    mod thickness;
     mod waves;
 }

@@ -3,6 +3,7 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101, doi:10.1016/S0043-1648(00)00427-0.
 
+use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -49,10 +50,33 @@ pub struct Convolution {
     springs: Option<Arc<[f64]>>,
     /// s of each cell, by which input and output are multiplied.
     scale: Option<Arc<[f64]>>,
+    /// Operators that are no convolutions.
+    beside: Vec<Arc<dyn Beside>>,
     /// Memory that is not in use, shared with companions of this convolution.
     idle: Pool<ConvolutionMemory>,
     /// Time spent by this convolution and its companions.
     clock: Arc<Clock>,
+}
+
+/// A symmetric operator beside a convolution, which is none itself: what it adds to the displacement.
+pub(crate) trait Beside: fmt::Debug + Send + Sync {
+    /// Adds the displacement under a `pressure` that is zero outside the rows `occupied`.
+    fn add(
+        &self,
+        pressure: &[f64],
+        occupied: Range<usize>,
+        displacement: &mut [f64],
+        threads: &Threads,
+    );
+
+    /// The operator on a `window` of its cells.
+    fn on_window(&self, window: &Window, threads: &Threads) -> Arc<dyn Beside>;
+
+    /// What it adds to the displacement of `one` cell under unit pressure on an `other`.
+    fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64;
+
+    /// Cost of an application, as that of [`Convolution::work`].
+    fn work(&self) -> f64;
 }
 
 /// Sum of the time spent in convolutions \[ns\].
@@ -133,6 +157,7 @@ impl Convolution {
             additions: Vec::new(),
             springs: None,
             scale: None,
+            beside: Vec::new(),
             idle,
             clock,
         }
@@ -147,6 +172,7 @@ impl Convolution {
             additions: self.additions.clone(),
             springs: self.springs.clone(),
             scale: self.scale.clone(),
+            beside: self.beside.clone(),
             idle: Pool::default(),
             clock: Arc::default(),
             ..*self
@@ -186,34 +212,41 @@ impl Convolution {
         Self { springs: Some(springs.into()), ..self }
     }
 
+    /// This convolution with operators beside it, on the same cells.
+    pub(crate) fn with_beside(self, beside: Vec<Arc<dyn Beside>>) -> Self {
+        Self { beside, ..self }
+    }
+
     /// The mean compliance of the springs \[m/Pa\].
     pub(crate) fn mean_spring(&self) -> f64 {
         let springs = self.springs.as_ref();
         springs.map_or(0.0, |springs| springs.iter().sum::<f64>() / springs.len() as f64)
     }
 
-    /// What the additions and the springs contribute to the displacement of `one` cell under unit pressure on an `other`.
+    /// What all but the coefficients contributes to the displacement of `one` cell under unit pressure on an `other`.
     pub(crate) fn added(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
         let distance = one[1].abs_diff(other[1]);
         let additions = self.additions.iter();
         let added: f64 = additions.map(|added| added.entry([one[0], other[0]], distance)).sum();
+        let beside: f64 = self.beside.iter().map(|beside| beside.entry(one, other)).sum();
         let own = self.springs.as_ref().filter(|_| one == other);
-        added + own.map_or(0.0, |springs| springs[one[0] * self.shape[1] + one[1]])
+        added + beside + own.map_or(0.0, |springs| springs[one[0] * self.shape[1] + one[1]])
     }
 
-    /// [`Convolution::companion`] for a `window`, with the part of the additions and the springs there.
+    /// [`Convolution::companion`] for a `window`, with the part of the additions, the springs and the operators beside there.
     pub(crate) fn on_window(&self, coefficients: &ArrayRef2<f64>, window: &Window) -> Self {
         let additions = self.additions.iter();
         let additions = additions.map(|a| a.on_rows(window[0].clone())).collect();
         let springs =
             self.springs.as_deref().map(|springs| copied_slice(springs, self.shape[1], window));
+        let beside = self.beside.iter().map(|one| one.on_window(window, &self.threads)).collect();
         let within = self.companion(coefficients, [false; 2]).plus(additions);
-        Self { springs: springs.map(Into::into), ..within }
+        Self { springs: springs.map(Into::into), beside, ..within }
     }
 
     /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.
     pub(crate) fn work(&self) -> f64 {
-        self.transform.work()
+        self.transform.work() + self.beside.iter().map(|beside| beside.work()).sum::<f64>()
     }
 
     /// Bytes of a plan for data of `shape`, with one workspace.
@@ -349,6 +382,9 @@ impl Convolution {
             if let Some(springs) = &self.springs {
                 let products = input[cells.clone()].iter().zip(&springs[cells.clone()]);
                 output[cells].iter_mut().zip(products).for_each(|(u, (p, c))| *u += p * c);
+            }
+            for beside in &self.beside {
+                beside.add(input, occupied.clone(), output, &self.threads);
             }
             if let Some(scale) = &self.scale {
                 output.iter_mut().zip(scale.iter()).for_each(|(u, s)| *u *= s);

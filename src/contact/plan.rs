@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, ArrayRef2};
 
-use crate::compliance::convolution::{Addition, Convolution};
+use crate::compliance::convolution::{Addition, Beside, Convolution};
 use crate::compliance::datum::Datum;
 use crate::compliance::ends::Ends;
 use crate::compliance::influence::{Method, coefficients_on};
@@ -206,6 +206,20 @@ impl Contact {
             levels.push(level.on_springs(&springs, finest));
         }
         self.with_levels(levels)
+    }
+
+    /// This plan with operators beside its convolution. Coarser grids, on which no solve from a given pressure begins, do not
+    /// have them; nor do its solutions for their stiffness.
+    pub(crate) fn with_beside(&self, beside: Vec<Arc<dyn Beside>>) -> Self {
+        let finest = self.convolution();
+        let levels = self.levels.iter().enumerate().map(|(number, level)| {
+            let convolution = level.convolution.sharing_with(finest);
+            level.with(match number {
+                0 => convolution.with_beside(beside.clone()),
+                _ => convolution,
+            })
+        });
+        self.with_levels(levels.collect())
     }
 
     /// This plan with other levels of the same grids.

@@ -30,6 +30,7 @@ pub(super) struct PyWear<'py> {
     steps: Option<Vec<f64>>,
     step_tolerance: Argument<'py>,
     scheme: Argument<'py>,
+    thickness: Argument<'py>,
     until_through: bool,
     initial: Option<[Bound<'py, PyAny>; 2]>,
     tolerance: Argument<'py>,
@@ -65,6 +66,7 @@ impl PyWear<'_> {
             slip,
             steps,
             scheme,
+            thickness: self.thickness.word("thickness")?,
             until_through: self.until_through,
             initial: initial.transpose()?,
             options: Options {

@@ -6,13 +6,16 @@ use ndarray::{Array2, Zip};
 
 use super::rates::{Rates, THROUGH};
 use super::regrid::{grown, regridded};
-use super::{Slip, Wear, WearScheme, WearState, WearSteps, WearThrough};
+use super::thickness::TopLayers;
+use super::{Slip, Thickness, Wear, WearScheme, WearState, WearSteps, WearThrough};
 use crate::compliance::response::Body;
 use crate::contact::{
     Compliance, Contact, Motion, Options, Progress, Setup, Solution, Termination,
 };
 use crate::error::{Result, fraction, none_negative, not_negative, refuse_if, require, same_shape};
-use crate::friction::{FrictionSolution, Step};
+use crate::friction::{
+    FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
+};
 use crate::model::body::{HalfSpace, Layer};
 use crate::model::surface::{OffsetShape, Surface};
 use crate::stress::Member;
@@ -22,6 +25,10 @@ const ROUNDS: usize = 12;
 
 /// Change of a rate, relative to it, that ends these rounds: far below what a rate is known to.
 const SETTLED: f64 = 1e-6;
+
+/// Part of the thickness of a layer by which the depth in the elastic contact may lag behind: the pressure errs by no more, a
+/// tenth of the usual error of a step.
+const LAG: f64 = 1e-4;
 
 /// Trials of the moment at which a layer is through. The depth is nearly linear in the length of the step.
 const TRIALS: usize = 30;
@@ -51,6 +58,8 @@ pub struct WearSession<S> {
     motion: Motion,
     wear: Wear,
     rates: [Rates; 2],
+    /// Layers that get thinner in the elastic contact; `None` where they do not.
+    layers: Option<TopLayers>,
     /// Largest number of cells of a grid that grows; `None` where it was given.
     most_cells: Option<usize>,
     /// Length of the next step, where lengths are chosen.
@@ -61,8 +70,24 @@ pub struct WearSession<S> {
     last: Option<WearState>,
     /// Pressure that wears at the start of the next step, where it is not that of the last solution.
     start: Option<Array2<f64>>,
-    /// Change of the pressure in the step before.
-    change: Option<Array2<f64>>,
+    /// Change of the pressure in the step before, and its length.
+    change: Option<(Array2<f64>, f64)>,
+}
+
+/// Where a step begins.
+struct Start<'a> {
+    state: &'a WearState,
+    /// Pressure that wears there.
+    pressure: &'a Array2<f64>,
+    slipping: Slipping,
+}
+
+/// Where surfaces slip in a step.
+enum Slipping {
+    /// Slip of each cell per unit of the distance.
+    Cells(Array2<f64>),
+    /// Σ |slip| p \[N/m\] along the track of a wheel.
+    Track(Array2<f64>),
 }
 
 /// The end of one step.
@@ -127,6 +152,10 @@ impl<S: Surface> WearSession<S> {
             let bottoms = rates[k].bottoms.iter();
             through[k] = bottoms.filter(|bottom| deepest >= **bottom * (1.0 - THROUGH)).count();
         }
+        let layers = match wear.thickness {
+            Thickness::Frozen => None,
+            Thickness::FirstOrder => Some(TopLayers::plan(&plan)?),
+        };
         let most_cells = grows.then(|| MORE_CELLS * grid.shape()[0] * grid.shape()[1]);
         Ok(Self {
             plan,
@@ -134,6 +163,7 @@ impl<S: Surface> WearSession<S> {
             motion,
             wear,
             rates,
+            layers,
             most_cells,
             length: None,
             through,
@@ -154,14 +184,15 @@ impl<S: Surface> WearSession<S> {
             return Ok(None);
         }
         let plan = Arc::clone(&self.plan);
-        let next = match self.last.take() {
+        let mut last = self.last.take();
+        let next = match &mut last {
             None => plan.run(|| self.first(progress))?,
             Some(last) => plan.run(|| self.step(last, progress))?,
         };
         self.ended = next.is_none()
             || self.wear.until_through
                 && next.as_ref().is_some_and(|state| !state.through.is_empty());
-        self.last.clone_from(&next);
+        self.last = next.clone().or(last);
         Ok(next)
     }
 
@@ -169,7 +200,7 @@ impl<S: Surface> WearSession<S> {
     fn first(&self, progress: &mut Progress) -> Result<Option<WearState>> {
         let zeros = || Array2::zeros(self.plan.grid().shape());
         let depth = self.wear.initial.clone().unwrap_or_else(|| [zeros(), zeros()]);
-        let solution = self.solved(&depth, &zeros(), None, None, progress)?;
+        let solution = self.solved(&depth, &zeros(), &depth, None, None, progress)?;
         Ok(solution.map(|solution| WearState {
             distance: 0.0,
             depth,
@@ -182,8 +213,10 @@ impl<S: Surface> WearSession<S> {
         }))
     }
 
-    /// Largest change of the last pressure, over the peak, where the layers that wear are thinner by the mean of their depths,
-    /// weighted by the pressure; `None` where no layer wears, or all of one is gone.
+    /// Error of the last pressure, relative to the peak, by the thickness of the layers: the largest difference between it and
+    /// the pressure on layers that are thinner by the mean of their depths, weighted by the pressure. To first order it is
+    /// that between two pressures on layers that are thinner by this mean, to first order and exactly. `None` where no layer
+    /// wears.
     ///
     /// # Errors
     /// As [`WearSession::advance`].
@@ -191,10 +224,16 @@ impl<S: Surface> WearSession<S> {
         let Some(last) = &self.last else { return Ok(None) };
         let (pressure, setup) = (&last.solution.pressure, self.plan.setup());
         let force = pressure.sum();
+        if force <= 0.0 {
+            return Ok(None);
+        }
+        let means = [0, 1].map(|k| (&last.depth[k] * pressure).sum() / force);
         let thinner = |k: usize, body: &Body| -> Result<Option<Body>> {
-            let depth = (&last.depth[k] * pressure).sum() / force;
+            let depth = means[k];
             match body.half_space() {
-                Some(half_space) if depth > 0.0 => thinned(half_space, depth).map(Some),
+                Some(half_space) if depth > 0.0 && !half_space.layers().is_empty() => {
+                    thinned(half_space, depth).map(Some)
+                }
                 _ => Ok(None),
             }
         };
@@ -212,54 +251,77 @@ impl<S: Surface> WearSession<S> {
         let worn = self.worn(last);
         let other =
             plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress))?.pressure;
+        let even = means.map(|mean| Array2::from_elem(pressure.dim(), mean));
+        let even = self
+            .thinned_plan(&even)
+            .map(|plan| plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress)));
+        let even = even.transpose()?;
+        let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
         let peak = last.solution.peak_pressure();
         let apart =
             Zip::from(pressure).and(&other).fold(0.0_f64, |most, a, b| most.max((a - b).abs()));
         Ok((peak > 0.0).then_some(apart / peak))
     }
 
-    /// The contact of the worn bodies, between which `removed` is taken off too, on `springs`; `None` where it was stopped.
+    /// The plan of bodies whose layers are thinner by these depths; `None` where that changes nothing.
+    fn thinned_plan(&self, depth: &[Array2<f64>; 2]) -> Option<Contact> {
+        let operators = self.layers.as_ref()?.thinned(depth, self.plan.convolution().own_threads());
+        (!operators.is_empty()).then(|| self.plan.with_beside(operators))
+    }
+
+    /// The contact of the worn bodies, between which `removed` is taken off too, on `springs`, with layers that are thinner
+    /// by the depths `missing`; `None` where it was stopped.
     fn solved(
         &self,
         [body, counterbody]: &[Array2<f64>; 2],
         removed: &Array2<f64>,
+        missing: &[Array2<f64>; 2],
         springs: Option<Array2<f64>>,
-        initial: Option<&Solution>,
+        initial: Option<&Array2<f64>>,
         progress: &mut Progress,
     ) -> Result<Option<Solution>> {
-        let options = Options {
+        let mut options = Options {
             compliance: springs.map(Compliance::Cells),
-            initial: initial.map(|solution| solution.pressure.clone()),
+            initial: initial.cloned(),
             ..self.wear.options.clone()
         };
         let worn = body + counterbody + removed;
-        let solution = if worn.iter().all(|depth| *depth <= 0.0) && initial.is_none() {
-            self.plan.solve_alone(&self.shape, &self.motion, &options, progress)?
-        } else {
-            let worn = OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn);
-            self.plan.solve_alone(&worn, &self.motion, &options, progress)?
-        };
+        let is_new = worn.iter().all(|depth| *depth <= 0.0) && initial.is_none();
+        let worn = OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn);
+        let shape: &dyn Surface = if is_new { &self.shape } else { &worn };
+        let thinned = self.thinned_plan(missing);
+        if thinned.is_some() && options.initial.is_none() {
+            // Coarser grids have layers as thick as before.
+            let start = self.plan.solve_alone(shape, &self.motion, &options, progress)?;
+            options.initial = Some(start.pressure);
+        }
+        let plan = thinned.as_ref().unwrap_or(&self.plan);
+        let solution = plan.solve_alone(shape, &self.motion, &options, progress)?;
         if solution.report.termination == Termination::Stopped {
             return Ok(None);
         }
+        refuse_if(
+            thinned.is_some() && !solution.report.converged(),
+            "thickness must be \"frozen\" here: to first order in the depth, the contact of so thin a layer did not converge",
+        )?;
         solution.require_converged(options.tolerance).map(Some)
     }
 
     /// The state after `last`.
-    fn step(&mut self, mut last: WearState, progress: &mut Progress) -> Result<Option<WearState>> {
+    fn step(&mut self, last: &mut WearState, progress: &mut Progress) -> Result<Option<WearState>> {
         loop {
             let Some(left) = self.left(last.distance) else {
                 return Ok(None);
             };
-            let Some(trial) = self.controlled(&last, left, progress)? else {
+            let Some(trial) = self.controlled(last, left, progress)? else {
                 return Ok(None);
             };
             let grow = self.touched(&trial.solution);
             if let Some(most) = self.most_cells.filter(|_| grow != [false; 2]) {
-                let Some(wider) = self.regrid(&last, grow, most, progress)? else {
+                let Some(wider) = self.regrid(last, grow, most, progress)? else {
                     return Ok(None);
                 };
-                last = wider;
+                *last = wider;
                 continue;
             }
             let is_end = trial.length >= left * (1.0 - 1e-12);
@@ -271,11 +333,11 @@ impl<S: Surface> WearSession<S> {
             let through = self.through_at(distance, &trial.depth);
             let change = &trial.solution.pressure - &last.solution.pressure;
             let rings = self.wear.scheme == WearScheme::Trapezoidal
-                && self.change.as_ref().is_some_and(|before| {
+                && self.change.as_ref().is_some_and(|(before, _)| {
                     correlation(&change, before, LEAST_CHANGE * trial.solution.peak_pressure())
                         < RINGING
                 });
-            self.change = through.is_empty().then_some(change);
+            self.change = through.is_empty().then_some((change, trial.length));
             self.start = Some(trial.pressure);
             return Ok(Some(WearState {
                 distance,
@@ -307,16 +369,20 @@ impl<S: Surface> WearSession<S> {
         left: f64,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
+        let start = self.start.clone();
+        let Some(begun) = self.begun(last, start.as_ref(), progress)? else {
+            return Ok(None);
+        };
         let WearSteps::Auto { tolerance, .. } = self.wear.steps else {
-            let trial = self.trial(last, self.start.as_ref(), left, progress)?;
-            return trial.map_or(Ok(None), |trial| self.until_through(last, trial, progress));
+            let trial = self.trial(&begun, left, self.expected(&begun, left), progress)?;
+            return trial.map_or(Ok(None), |trial| self.until_through(&begun, trial, progress));
         };
         if self.rates.iter().all(Rates::vanish) {
-            return self.trial(last, self.start.as_ref(), left, progress);
+            return self.trial(&begun, left, begun.pressure.clone(), progress);
         }
         let mut length = self.length.unwrap_or_else(|| self.first_length(last)).min(left);
         loop {
-            let Some(trial) = self.halved(last, length, progress)? else {
+            let Some(trial) = self.halved(&begun, length, progress)? else {
                 return Ok(None);
             };
             let error = trial.error.unwrap_or(0.0);
@@ -325,7 +391,7 @@ impl<S: Surface> WearSession<S> {
             let next = length * factor.clamp(CHANGE[0], CHANGE[1]);
             if error <= tolerance {
                 self.length = Some(if length < left { next } else { next.max(length) });
-                return self.until_through(last, trial, progress);
+                return self.until_through(&begun, trial, progress);
             }
             length = next.min(0.8 * length);
         }
@@ -349,45 +415,127 @@ impl<S: Surface> WearSession<S> {
         if length.is_finite() && length > 0.0 { length } else { f64::MAX }
     }
 
-    /// A step in two halves, with the error that the whole one shows.
-    fn halved(
+    /// Where a step from a state begins; `pressure` wears there, if it is not that of its solution. `None` where it was stopped.
+    fn begun<'a>(
         &self,
-        last: &WearState,
-        length: f64,
+        state: &'a WearState,
+        pressure: Option<&'a Array2<f64>>,
         progress: &mut Progress,
-    ) -> Result<Option<Trial>> {
-        let Some(whole) = self.trial(last, self.start.as_ref(), length, progress)? else {
+    ) -> Result<Option<Start<'a>>> {
+        let slipping = self.slipping(state, progress)?;
+        let pressure = pressure.unwrap_or(&state.solution.pressure);
+        Ok(slipping.map(|slipping| Start { state, pressure, slipping }))
+    }
+
+    /// Where worn bodies slip; `None` where it was stopped.
+    fn slipping(&self, state: &WearState, progress: &mut Progress) -> Result<Option<Slipping>> {
+        let shape = self.plan.grid().shape();
+        if self.rates.iter().all(Rates::vanish) {
+            return Ok(Some(Slipping::Cells(Array2::zeros(shape))));
+        }
+        Ok(match &self.wear.slip {
+            Slip::Everywhere => Some(Slipping::Cells(Array2::ones(shape))),
+            Slip::Cells(slip) => Some(Slipping::Cells(slip.clone())),
+            Slip::Cycle(steps, options) => {
+                let mut twice: Vec<Step> = [&steps[..], &steps[..]].concat();
+                if let Some(first) = twice.first_mut() {
+                    first.motion = Some(self.motion);
+                }
+                let moves = twice.iter().map(Move::Slide);
+                let solutions = self.moved(state, moves, options, progress)?;
+                solutions.map(|solutions| {
+                    let mut slip = Array2::zeros(shape);
+                    for pair in solutions.windows(2).skip(steps.len().saturating_sub(1)) {
+                        slip += &passed(&pair[0], &pair[1]);
+                    }
+                    Slipping::Cells(slip)
+                })
+            }
+            Slip::Pass(rolling, options) => {
+                let moves = std::iter::once(Move::RollSteadily(rolling));
+                let solutions = self.moved(state, moves, options, progress)?;
+                let axis = ndarray::Axis(rolling.direction.axis());
+                let width = self.plan.grid().spacing()[axis.index()];
+                let track = solutions.into_iter().flatten().next().and_then(|pass| {
+                    let line = (magnitude(&pass) * &pass.normal.pressure).sum_axis(axis) * width;
+                    line.insert_axis(axis).broadcast(shape).map(|track| track.to_owned())
+                });
+                track.map(Slipping::Track)
+            }
+        })
+    }
+
+    /// Solutions of `moves` of the worn bodies with friction, in which `progress` is told of the last contact; `None` where it
+    /// breaks.
+    fn moved<'m>(
+        &self,
+        state: &WearState,
+        moves: impl Iterator<Item = Move<'m>>,
+        options: &FrictionOptions,
+        progress: &mut Progress,
+    ) -> Result<Option<Vec<FrictionSolution>>> {
+        let worn = self.worn(state);
+        let tell = &mut |_: &FrictionReport| progress(&state.solution.report);
+        let mut solutions: Vec<FrictionSolution> = Vec::new();
+        for next in moves {
+            let last = solutions.last().map(|solution| Last { solution, is_own: true });
+            let solution = self.plan.friction_step(&worn, next, options, last, tell)?;
+            if solution.report.termination == Termination::Stopped {
+                return Ok(None);
+            }
+            solutions.push(solution.require_converged()?);
+        }
+        Ok(Some(solutions))
+    }
+
+    /// Pressure that is to be expected at the end of a step: it goes on as in the step before, and no further where the step
+    /// is longer, as pressures fall ever more slowly.
+    fn expected(&self, begun: &Start, length: f64) -> Array2<f64> {
+        let now = &begun.state.solution.pressure;
+        match &self.change {
+            Some((change, over)) if change.dim() == now.dim() => {
+                let part = (length / over).min(1.0);
+                Zip::from(now).and(change).map_collect(|p, change| (p + part * change).max(0.0))
+            }
+            _ => now.clone(),
+        }
+    }
+
+    /// A step in two halves, with the error that the whole one shows.
+    fn halved(&self, begun: &Start, length: f64, progress: &mut Progress) -> Result<Option<Trial>> {
+        let Some(whole) = self.trial(begun, length, self.expected(begun, length), progress)? else {
             return Ok(None);
         };
-        let Some(half) = self.trial(last, self.start.as_ref(), 0.5 * length, progress)? else {
+        let middle = 0.5 * (&begun.state.solution.pressure + &whole.solution.pressure);
+        let Some(half) = self.trial(begun, 0.5 * length, middle, progress)? else {
             return Ok(None);
         };
-        let middle = WearState { depth: half.depth, solution: half.solution, ..last.clone() };
-        let Some(end) = self.trial(&middle, Some(&half.pressure), 0.5 * length, progress)? else {
+        let middle =
+            WearState { depth: half.depth, solution: half.solution, ..begun.state.clone() };
+        let Some(middle) = self.begun(&middle, Some(&half.pressure), progress)? else {
             return Ok(None);
         };
-        let peak = end.solution.peak_pressure();
-        // The root of the mean square over the contact: cells that join it jump, however short the step.
-        let (mut sum, mut cells) = (0.0, 0.0);
-        let both = Zip::from(&end.solution.pressure).and(&whole.solution.pressure);
-        both.for_each(|a, b| {
-            sum += (a - b).powi(2);
-            cells += f64::from(*a > 0.0);
-        });
+        let expected = whole.solution.pressure.clone();
+        let Some(end) = self.trial(&middle, 0.5 * length, expected, progress)? else {
+            return Ok(None);
+        };
+        let [before, after] = [&begun.state.solution, &whole.solution].map(|one| &one.pressure);
+        let error = difference([before, after, &end.solution.pressure]);
         let orders = if self.is_second_order() { 3.0 } else { 1.0 };
-        let error = if peak > 0.0 { (sum / cells).sqrt() / (orders * peak) } else { 0.0 };
+        let peak = end.solution.peak_pressure();
+        let error = if peak > 0.0 { error / (orders * peak) } else { 0.0 };
         Ok(Some(Trial { length, error: Some(error), ..end }))
     }
 
     /// The step, or the shorter one at whose end the first cell of a layer is through.
     fn until_through(
         &self,
-        last: &WearState,
+        begun: &Start,
         mut trial: Trial,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
-        let mut least = [0.0, 1.0 - self.part_of_layer(&last.depth)];
+        let mut least = [0.0, 1.0 - self.part_of_layer(&begun.state.depth)];
         let mut most: Option<[f64; 2]> = None;
         let mut was_beyond = None;
         let mut nearest: Option<(f64, Trial)> = None;
@@ -411,8 +559,8 @@ impl<S: Surface> WearSession<S> {
             let [[a, lacks], [b, beyond]] = [least, most.unwrap_or([trial.length, part - 1.0])];
             let length = a + (b - a) * lacks / (lacks + beyond);
             let next = match trial.error {
-                Some(_) => self.halved(last, length, progress)?,
-                None => self.trial(last, self.start.as_ref(), length, progress)?,
+                Some(_) => self.halved(begun, length, progress)?,
+                None => self.trial(begun, length, trial.solution.pressure.clone(), progress)?,
             };
             let Some(next) = next else { return Ok(None) };
             // The depth jumps, by what a pressure is known to: the nearest trial counts.
@@ -457,64 +605,50 @@ impl<S: Surface> WearSession<S> {
         events
     }
 
-    /// One step from `last`, of this `length`; `start` is the pressure that wears there, if not that of its solution.
+    /// One step of this `length`, whose end is `expected` at this pressure.
     fn trial(
         &self,
-        last: &WearState,
-        start: Option<&Array2<f64>>,
+        begun: &Start,
         length: f64,
+        expected: Array2<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        let shape = self.plan.grid().shape();
-        let unchanged = || {
+        let last = begun.state;
+        if self.rates.iter().all(Rates::vanish) {
             let (depth, solution) = (last.depth.clone(), last.solution.clone());
             let pressure = solution.pressure.clone();
-            Some(Trial { length, depth, solution, pressure, error: None, settled: true })
-        };
-        if self.rates.iter().all(Rates::vanish) {
-            return Ok(unchanged());
+            return Ok(Some(Trial {
+                length,
+                depth,
+                solution,
+                pressure,
+                error: None,
+                settled: true,
+            }));
         }
-        let before = start.unwrap_or(&last.solution.pressure);
-        let (track, slip) = match &self.wear.slip {
-            Slip::Everywhere => (None, Array2::ones(shape)),
-            Slip::Cells(slip) => (None, slip.clone()),
-            Slip::Cycle(steps, options) => {
-                let worn = self.worn(last);
-                let mut twice: Vec<Step> = [&steps[..], &steps[..]].concat();
-                if let Some(first) = twice.first_mut() {
-                    first.motion = Some(self.motion);
-                }
-                let solutions = self.plan.slide(&worn, &twice, options, None)?;
-                let mut slip = Array2::zeros(shape);
-                for one in solutions.into_iter().skip(steps.len()) {
-                    slip += &magnitude(&one.require_converged()?);
-                }
-                (None, slip)
-            }
-            Slip::Pass(rolling, options) => {
-                let pass = self.plan.roll(&self.worn(last), rolling, options)?;
-                let pass = pass.require_converged()?;
-                let axis = ndarray::Axis(rolling.direction.axis());
-                let worked = magnitude(&pass) * &pass.normal.pressure;
-                let line = worked.sum_axis(axis) * self.plan.grid().spacing()[axis.index()];
-                let track = line.insert_axis(axis).broadcast(shape).map(|track| track.to_owned());
-                (track, Array2::zeros(shape))
-            }
-        };
         let end_weight = if self.is_second_order() { 0.5 } else { 1.0 };
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
-        let (first, per_pressure) = match track {
-            Some(track) => (track * length, Array2::zeros(shape)),
-            None => (&slip * before * (length * (1.0 - end_weight)), slip * (length * end_weight)),
+        let (first, per_pressure) = match &begun.slipping {
+            Slipping::Track(track) => (track * length, Array2::zeros(track.dim())),
+            Slipping::Cells(slip) => (
+                slip * begun.pressure * (length * (1.0 - end_weight)),
+                slip * (length * end_weight),
+            ),
         };
         let mut rates = [0, 1].map(|k| last.depth[k].mapv(|depth| self.rates[k].at(depth)));
+        let after = |rates: &[Array2<f64>; 2], work: &Array2<f64>| {
+            [0, 1].map(|k| &last.depth[k] + &(&rates[k] * work))
+        };
+        let mut depth = after(&rates, &(&per_pressure * &expected + &first));
+        let mut initial = expected;
         for round in 1.. {
             let total = &rates[0] + &rates[1];
             let springs = &total * &per_pressure;
             let removed = total * &first;
             let soft = springs.iter().any(|c| *c > 0.0).then(|| springs.clone());
-            let (depth, initial) = (&last.depth, Some(&last.solution));
-            let Some(mut solution) = self.solved(depth, &removed, soft, initial, progress)? else {
+            let solution =
+                self.solved(&last.depth, &removed, &depth, soft, Some(&initial), progress)?;
+            let Some(mut solution) = solution else {
                 return Ok(None);
             };
             let one_cell = self.plan.convolution().self_influence();
@@ -532,8 +666,10 @@ impl<S: Surface> WearSession<S> {
                     *rate = mean;
                 });
             }
-            if changed <= SETTLED || round == ROUNDS {
-                let depth = [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work));
+            let reached = after(&rates, &work);
+            let lag = self.layers.as_ref().map_or(0.0, |layers| layers.apart(&reached, &depth));
+            depth = reached;
+            if changed <= SETTLED && lag <= LAG || round == ROUNDS {
                 return Ok(Some(Trial {
                     length,
                     depth,
@@ -543,6 +679,7 @@ impl<S: Surface> WearSession<S> {
                     settled: true,
                 }));
             }
+            initial.clone_from(&solution.pressure);
             rates = next;
         }
         unreachable!("the loop ends by its limit")
@@ -586,8 +723,12 @@ impl<S: Surface> WearSession<S> {
         let grid = grown(&from, axes, most)?;
         let setup = self.plan.setup().clone();
         self.plan = Arc::new(Contact::plan(self.plan.body().clone(), grid, setup)?);
+        if self.layers.is_some() {
+            self.layers = Some(TopLayers::plan(&self.plan)?);
+        }
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
-        let solution = self.solved(&depth, &Array2::zeros(grid.shape()), None, None, progress)?;
+        let none = Array2::zeros(grid.shape());
+        let solution = self.solved(&depth, &none, &depth, None, None, progress)?;
         (self.change, self.start) = (None, None);
         Ok(solution.map(|solution| WearState {
             depth,
@@ -632,10 +773,57 @@ fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Array2<
     })
 }
 
+/// Difference of the last two pressures: the root of its mean square over the cells that are in contact with all their
+/// neighbours under all three, over all cells where there are none. At the edge, pressures differ by which cells the contact
+/// covers, however short a step is.
+fn difference([before, one, other]: [&Array2<f64>; 3]) -> f64 {
+    let carries = |i: usize, j: usize| [before, one, other].iter().all(|p| p[[i, j]] > 0.0);
+    let (nx, ny) = before.dim();
+    let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+    let inside = |i: usize, j: usize| around(i, nx).all(|k| around(j, ny).all(|l| carries(k, l)));
+    let squares = |member: &dyn Fn(usize, usize) -> bool| {
+        let (mut sum, mut cells) = (0.0, 0.0);
+        for ((i, j), p) in one.indexed_iter().filter(|((i, j), _)| member(*i, *j)) {
+            sum += (p - other[[i, j]]).powi(2);
+            cells += 1.0;
+        }
+        (cells > 0.0).then(|| f64::sqrt(sum / cells))
+    };
+    squares(&inside).or_else(|| squares(&|_, _| true)).unwrap_or(0.0)
+}
+
 /// Size of the slip of each cell.
 fn magnitude(solution: &FrictionSolution) -> Array2<f64> {
     let [x, y] = &solution.slip;
     Zip::from(x).and(y).map_collect(|x, y| x.hypot(*y))
+}
+
+/// Distance by which the surfaces pass each other in each cell in a step, |Δw − Δu|: the slip of cells in contact. Others may come
+/// into contact within a step of wear, and would then press without being worn.
+fn passed(before: &FrictionSolution, after: &FrictionSolution) -> Array2<f64> {
+    let mut slip = magnitude(after);
+    let [Some(from), Some(to)] = [before, after].map(shift_and_twist) else { return slip };
+    let moved = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    let (x, y) = (after.normal.grid().x(), after.normal.grid().y());
+    for ((i, j), slip) in slip.indexed_iter_mut() {
+        if after.normal.pressure[[i, j]] <= 0.0 {
+            let rigid = [moved[0] - moved[2] * y[j], moved[1] + moved[2] * x[i]];
+            let [along, across] = [0, 1].map(|axis| {
+                let [a, b] = [before, after].map(|one| one.displacement[axis][[i, j]]);
+                rigid[axis] - (b - a)
+            });
+            *slip = along.hypot(across);
+        }
+    }
+    slip
+}
+
+/// Shift along x and y, and twist; `None` of rolling.
+fn shift_and_twist(solution: &FrictionSolution) -> Option<[f64; 3]> {
+    match solution.motion {
+        TangentialMotion::Slide { shift, twist } => Some([shift[0], shift[1], twist]),
+        TangentialMotion::Roll { .. } => None,
+    }
 }
 
 /// Correlation of two changes of a pressure; 0 where the largest is below `least`, and where the grids differ.

@@ -3,8 +3,10 @@
 //! `tests/data/wear/fretting_limit.json`, closed forms.
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use nacre::friction::{FrictionOptions, Rolling, RollingDirection, Step};
 use nacre::wear::{Slip, Wear, WearScheme, WearSession, WearState, WearSteps};
 use nacre::{Contact, Elastic, Grid, Motion, Paraboloid, Result, Setup};
 use ndarray::Array2;
@@ -99,6 +101,45 @@ fn balls_end_on_their_stick_zone() -> Result<()> {
         let (middle, area) = (state.solution.pressure[[64, 64]], grid.cell_area());
         near!(middle * RADIUS, number("p_centre"), 0.012, row);
         near!(state.depth[0].sum() * area * RADIUS, number("worn"), 0.02, row);
+    }
+    Ok(())
+}
+
+/// While friction is solved, `progress` is asked at each iteration whether to go on, and told of the contact before.
+#[test]
+fn friction_stops_where_it_is_told_to() -> Result<()> {
+    let ball = Paraboloid::new(RADIUS, RADIUS)?;
+    let motion = Motion::load(4.0 / (3.0 * RADIUS));
+    let steel = Elastic::new(1.0, 0.0)?;
+    let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    let plan = Arc::new(Contact::plan(steel, Grid::new([32, 32], [4.0, 4.0])?, setup)?);
+    let options = FrictionOptions::default();
+    let pull = |part: f64| Step {
+        force: [Some(0.15 * part * motion.load.unwrap_or(0.0)), None],
+        ..Step::press(motion, 0.3)
+    };
+    let rolling = Rolling {
+        creepage: [Some(1e-4), None],
+        ..Rolling::new(motion, 0.3, RollingDirection::PlusX)
+    };
+    for slip in
+        [Slip::Cycle(vec![pull(1.0), pull(-1.0)], options), Slip::Pass(Box::new(rolling), options)]
+    {
+        let wear = Wear {
+            slip,
+            steps: WearSteps::Ends(vec![1.0]),
+            ..Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
+        };
+        let mut session = WearSession::new(Arc::clone(&plan), ball, motion, wear, false)?;
+        let first = session.advance(&mut |_| ControlFlow::Continue(()))?.expect("a state");
+        let mut calls = 0;
+        let stopped = session.advance(&mut |report| {
+            assert_eq!(*report, first.solution.report);
+            calls += 1;
+            if calls < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        })?;
+        assert!(stopped.is_none());
+        assert_eq!(calls, 3);
     }
     Ok(())
 }

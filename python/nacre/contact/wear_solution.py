@@ -45,11 +45,17 @@ if TYPE_CHECKING:
 Rate = float | Mapping[str | int, float]
 """Wear rate of a body, or of its layers by number, name and "substrate"."""
 Scheme = Literal["trapezoidal", "euler"]
+Thickness = Literal["frozen", "first order"]
 Unit = Literal["m", "cycles", "passes"]
 MODEL = (
     "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
-    "no change of friction, and layers as thick as before: `thickness_error` says what that costs"
+    "no change of friction, and layers {}: `thickness_error` says what that costs"
 )
+THICKNESSES: dict[str, str] = {
+    "frozen": "as thick as before",
+    "first order": "thinner to first order in the depth",
+}
+"""How thick layers are in the elastic contact, in words."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +161,7 @@ class WearControl:
     steps: Any
     step_tolerance: float
     scheme: Scheme
+    thickness: Thickness
     initial: Any
     until: Literal["through"] | None
     store: AnyPath | None
@@ -226,6 +233,7 @@ class WearOptions:
     steps: list[float] | None
     step_tolerance: float
     scheme: str
+    thickness: str
     until_through: bool
     initial: tuple[Any, Any] | None
     tolerance: float
@@ -283,9 +291,10 @@ class WearReport(Result):
     Errors of earlier steps fade; None where the steps were given.
     """
     thickness_error: float | None
-    """Estimated error of the last pressure that the frozen thickness costs, relative to the peak.
+    """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
 
-    None without a layer that wears.
+    That of layers as thick as before, or of thinner ones to first order. It is found with layers
+    that are thinner by the mean of the depths; None without a layer that wears.
     """
     regrids: int
     """Number of times that the grid grew."""
@@ -459,6 +468,21 @@ class WearHistory(Result):
             f"at {', '.join(places)}."
         )
         return Verdict("bad", words, (), None, life.layer, None)
+
+    @property
+    def _thickness(self) -> str:
+        return self.inputs.get("thickness", "frozen")
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Say why there is no gradient."""
+            if name == "gradient":
+                raise AttributeError(
+                    "a history of wear has no gradient: take differences of two histories, such "
+                    "as of rates 1 % apart; the solution of a state has one, at its wear"
+                )
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def _numbers(self, of: Callable[[WearState], Any]) -> Field:
         return np.array([of(state) for state in self.states])
@@ -672,7 +696,7 @@ class WearHistory(Result):
             self._rows(),
             pictures=pictures,
             tables=[table("Steps", self._table())],
-            model=[("model", MODEL)],
+            model=[("model", MODEL.format(THICKNESSES[self._thickness]))],
             warnings=self.warnings,
         )
 
@@ -710,9 +734,8 @@ class WearHistory(Result):
             ),
         ]
         if report.thickness_error is not None:
-            rows.append(
-                ("thickness", f"as before wear, error {report.thickness_error:.1g} of the peak")
-            )
+            words = THICKNESSES[self._thickness]
+            rows.append(("layers", f"{words}, error {report.thickness_error:.1g} of the peak"))
         return [*rows, ("ended", "at its end" if report.converged else "stopped")]
 
     def __repr__(self) -> str:
@@ -816,7 +839,10 @@ def wear_history(
     before = control.history
     stored = control.store is not None and before is not None and before is not control.initial
     sliding = dataclasses.replace(sliding, motion=motion)
-    inputs = _inputs(shape, motion, bodies, sliding) | {"scheme": control.scheme}
+    inputs = _inputs(shape, motion, bodies, sliding) | {
+        "scheme": control.scheme,
+        "thickness": control.thickness,
+    }
     if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
         raise ValueError("initial must be a history of the same body, in the same unit of distance")
     own = on.grid if isinstance(on, Setup) else on.grid()
@@ -845,6 +871,7 @@ def wear_history(
         steps=ends,
         step_tolerance=control.step_tolerance,
         scheme=control.scheme,
+        thickness=control.thickness,
         until_through=control.until is not None,
         initial=control.depths(before),
         tolerance=control.tolerance,
@@ -863,7 +890,7 @@ def wear_history(
             thickness_error=thickness,
             regrids=regrids + (earlier.regrids if earlier else 0),
             converged=converged,
-            warnings=_notes(states, events, thickness, settled=settled),
+            warnings=_notes(states, events, control.thickness, thickness, settled=settled),
             seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
         )
         return WearHistory(tuple(states), tuple(events), sliding.unit, report, inputs)
@@ -946,7 +973,8 @@ def _other(before: Mapping[str, str], now: Mapping[str, str]) -> str | None:
 def _notes(
     states: Sequence[WearState],
     events: Sequence[WearThrough],
-    thickness: float | None,
+    model: Thickness,
+    error: float | None,
     *,
     settled: bool,
 ) -> tuple[str, ...]:
@@ -959,16 +987,34 @@ def _notes(
         )
     if not settled:
         notes.append(NOT_SETTLED)
+    part, frozen = _worn_part(states[-1]), model == "frozen"
     if events and events[0].distance < states[-1].distance:
-        notes.append(
-            "a layer is through, and the elastic contact still has it: what follows is a bound"
-        )
-    elif thickness is not None and thickness > MOST_THINNING:
+        rest = "still has it" if frozen else "lacks it there to first order only"
+        notes.append(f"a layer is through, and the elastic contact {rest}: what follows is a bound")
+    elif frozen and error is not None and error > MOST_THINNING:
         notes.append(
             "the worn layer counts as thick as before: the pressure errs by some "
-            f"{100 * thickness:.0f} %"
+            f"{100 * error:.0f} %"
+        )
+    elif not frozen and part > FIRST_ORDER:
+        size = "by an unknown part" if error is None else f"by some {100 * error:.2g} %"
+        notes.append(
+            f"thinner layers count to first order, and {part:.0%} of one is worn: the pressure "
+            f"errs {size}"
         )
     return tuple(dict.fromkeys(notes))
+
+
+def _worn_part(state: WearState) -> float:
+    """Return the largest part of a top layer's thickness that is worn; 0 without layers."""
+    report = state.solution.report
+    members = ((report.body, state.depth), (report.counterbody, state.counter_depth))
+    return max(
+        float(depth.max()) / body.layers[0].thickness
+        if isinstance(body, core.HalfSpace) and body.layers
+        else 0.0
+        for body, depth in members
+    )
 
 
 NOT_SETTLED = (
@@ -978,3 +1024,5 @@ NOT_SETTLED = (
 """Warning of a search for an event that ended before it was there."""
 MOST_THINNING = 0.05
 """Error of the pressure by layers of constant thickness from which on there is a warning."""
+FIRST_ORDER = 0.4
+"""Part of the thickness up to which thinner layers have been compared with exact ones: 0.3 %."""

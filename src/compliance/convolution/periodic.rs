@@ -97,6 +97,7 @@ impl Convolution {
             transform: transform.clone(),
             threads: Arc::clone(&self.threads),
             additions: Vec::new(),
+            beside: Vec::new(),
             idle: periodic.idle.clone(),
             clock: Arc::clone(&periodic.clock),
             ..periodic

@@ -77,6 +77,7 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
         ({"grid": nacre.Grid.line(64, 7e-4)}, "store must be a history on the same grid"),
         ({"slip": np.full((1, 64), 0.5)}, "store must be a history of the same slip"),
         ({"scheme": "trapezoidal"}, "store must be a history of the same scheme"),
+        ({"thickness": "first order"}, "store must be a history of the same thickness"),
         ({"sliding": 200.0}, "same sliding, 200.0, got 100.0"),
     ],
 )
@@ -111,6 +112,25 @@ def test_fretting_wears_where_it_slips() -> None:
     assert np.corrcoef(worn_depth.ravel(), (slip * loop[0].pressure).ravel())[0, 1] > 0.99
 
 
+def test_cells_that_come_into_contact_wear_by_what_passes_them() -> None:
+    contact = nacre.Contact(STEEL, nacre.Grid.line(129, 3.4e-4), STEEL)
+    steps = [{"force": (None, one)} for one in (3e4, -3e4)]
+    cycle: dict[str, Any] = {"friction": 0.6, "steps": steps}
+    motion: dict[str, Any] = {"load": 1e5, "rate": 1e-16, "steps": 1, "scheme": "euler"}
+    worn_out = contact.wear(ROLLER, cycles=2e7, slide=cycle, **motion).states[-1]
+    loop = contact.slide(ROLLER, load=1e5, friction=0.6, steps=steps * 2)
+    assert isinstance(loop, nacre.types.History)
+    shifts = np.array([step.shift for step in loop])[:, 1, None]
+    passed = shifts - np.array([step.displacement[1, 0] for step in loop])
+    slip = np.abs(np.diff(passed, axis=0))[1:].sum(axis=0)
+    pressure = worn_out.solution.pressure[0]
+    joined = (pressure > 0) & (loop[0].pressure[0] == 0)
+    assert joined.sum() >= 4
+    # Pressures of cells are the springs' to 1e-6 of the peak, and there a twentieth of it.
+    due = 1e-16 * 2e7 * (slip * pressure)[joined]
+    np.testing.assert_allclose(worn_out.depth[0, joined], due, rtol=1e-4)
+
+
 def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     grid = nacre.Grid((32, 32), (3e-4, 3e-4))
     contact = nacre.Contact(STEEL, grid, STEEL)
@@ -136,6 +156,7 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
         ({"steps": [50.0]}, "steps must end at 100"),
         ({"steps": "few"}, 'steps must be "auto"'),
         ({"scheme": "explicit"}, "scheme must be"),
+        ({"thickness": "thin"}, 'thickness must be "frozen" or "first order", got "thin"'),
         ({"until": "worn"}, "until must be"),
         ({"initial": np.full((1, 64), -1.0)}, "initial"),
         ({"load": None}, "load or approach must be given"),
@@ -168,3 +189,54 @@ def test_a_store_of_another_measured_surface_is_refused(tmp_path: Path) -> None:
     assert len(steel.wear(map_of_heights, initial=history, **keywords)) == 3
     with pytest.raises(ValueError, match="store must be a history of the same shape"):
         steel.wear(nacre.HeightMap(other, (1e-6, 1e-6)), store=store, **keywords)
+
+
+def test_first_order_thins_the_coat_and_says_how_far_it_holds() -> None:
+    """A soft, thick coat; warnings come beyond 40 % of it, and where it is through."""
+    rubber = nacre.Elastic(young=1e9, poisson=0.4)
+    body = nacre.HalfSpace(STEEL, layers=[nacre.Layer(rubber, thickness=20e-6, name="rubber")])
+    contact = nacre.Contact(body, nacre.Grid.line(64, 2e-3))
+    keywords: dict[str, Any] = {"load": 1e4, "rate": 1e-15, "steps": 4}
+    frozen = contact.wear(ROLLER, sliding=100.0, **keywords)
+    first = contact.wear(ROLLER, sliding=100.0, thickness="first order", **keywords)
+    # A thinner soft coat gives less: the contact is smaller, and the pressure higher.
+    assert first.peak_pressure[-1] > frozen.peak_pressure[-1]
+    np.testing.assert_allclose(first.volume, frozen.volume, rtol=1e-12)
+    assert first.report.thickness_error is not None
+    assert frozen.report.thickness_error is not None
+    assert first.report.thickness_error < 0.1 * frozen.report.thickness_error
+    assert "thinner to first order in the depth" in str(first)
+    assert "as thick as before" in str(frozen)
+    keywords |= {"thickness": "first order"}
+    with pytest.warns(nacre.NacreWarning, match="layers count to first order, and .* of one is"):
+        contact.wear(ROLLER, sliding=100.0 * 0.5 * 20e-6 / first.deepest[-1, 0], **keywords)
+    with pytest.warns(nacre.NacreWarning, match="lacks it there to first order only"):
+        contact.wear(ROLLER, sliding=1e5, until="through", **keywords)
+
+
+def test_an_event_that_does_not_settle_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Unsettled:
+        def __init__(self, *arguments: Any) -> None:
+            self.steps = steps(*arguments)
+
+        def __iter__(self) -> Any:
+            for *rest, (rings, _), grown in self.steps:
+                yield (*rest, (rings, False), grown)
+
+        def thickness_error(self) -> float | None:
+            return self.steps.thickness_error()
+
+    steps = nacre._core.wear
+    monkeypatch.setattr(nacre._core, "wear", Unsettled)
+    with pytest.warns(nacre.NacreWarning, match="did not settle, and a step ends near it"):
+        history = worn()
+    assert any("did not settle" in note for note in history.warnings)
+
+
+def test_a_history_says_why_it_has_no_gradient() -> None:
+    history = worn()
+    with pytest.raises(AttributeError, match="a history of wear has no gradient: take differences"):
+        history.gradient("life")  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="object has no attribute 'gradients'"):
+        history.gradients  # type: ignore[attr-defined]  # noqa: B018
+    assert history.states[-1].solution.gradient("approach")["load"] > 0
