@@ -13,7 +13,9 @@ use crate::contact::{
     Compliance, Contact, Motion, Options, Progress, Setup, Solution, Termination,
 };
 use crate::error::{Result, fraction, none_negative, not_negative, refuse_if, require, same_shape};
-use crate::friction::{FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step};
+use crate::friction::{
+    FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
+};
 use crate::model::body::{HalfSpace, Layer};
 use crate::model::surface::{OffsetShape, Surface};
 use crate::stress::Member;
@@ -182,14 +184,15 @@ impl<S: Surface> WearSession<S> {
             return Ok(None);
         }
         let plan = Arc::clone(&self.plan);
-        let next = match self.last.take() {
+        let mut last = self.last.take();
+        let next = match &mut last {
             None => plan.run(|| self.first(progress))?,
             Some(last) => plan.run(|| self.step(last, progress))?,
         };
         self.ended = next.is_none()
             || self.wear.until_through
                 && next.as_ref().is_some_and(|state| !state.through.is_empty());
-        self.last.clone_from(&next);
+        self.last = next.clone().or(last);
         Ok(next)
     }
 
@@ -305,20 +308,20 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// The state after `last`.
-    fn step(&mut self, mut last: WearState, progress: &mut Progress) -> Result<Option<WearState>> {
+    fn step(&mut self, last: &mut WearState, progress: &mut Progress) -> Result<Option<WearState>> {
         loop {
             let Some(left) = self.left(last.distance) else {
                 return Ok(None);
             };
-            let Some(trial) = self.controlled(&last, left, progress)? else {
+            let Some(trial) = self.controlled(last, left, progress)? else {
                 return Ok(None);
             };
             let grow = self.touched(&trial.solution);
             if let Some(most) = self.most_cells.filter(|_| grow != [false; 2]) {
-                let Some(wider) = self.regrid(&last, grow, most, progress)? else {
+                let Some(wider) = self.regrid(last, grow, most, progress)? else {
                     return Ok(None);
                 };
-                last = wider;
+                *last = wider;
                 continue;
             }
             let is_end = trial.length >= left * (1.0 - 1e-12);
@@ -442,7 +445,9 @@ impl<S: Surface> WearSession<S> {
                 let solutions = self.moved(state, moves, options, progress)?;
                 solutions.map(|solutions| {
                     let mut slip = Array2::zeros(shape);
-                    solutions.iter().skip(steps.len()).for_each(|one| slip += &magnitude(one));
+                    for pair in solutions.windows(2).skip(steps.len().saturating_sub(1)) {
+                        slip += &passed(&pair[0], &pair[1]);
+                    }
                     Slipping::Cells(slip)
                 })
             }
@@ -791,6 +796,34 @@ fn difference([before, one, other]: [&Array2<f64>; 3]) -> f64 {
 fn magnitude(solution: &FrictionSolution) -> Array2<f64> {
     let [x, y] = &solution.slip;
     Zip::from(x).and(y).map_collect(|x, y| x.hypot(*y))
+}
+
+/// Distance by which the surfaces pass each other in each cell in a step, |Δw − Δu|: the slip of cells in contact. Others may come
+/// into contact within a step of wear, and would then press without being worn.
+fn passed(before: &FrictionSolution, after: &FrictionSolution) -> Array2<f64> {
+    let mut slip = magnitude(after);
+    let [Some(from), Some(to)] = [before, after].map(shift_and_twist) else { return slip };
+    let moved = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    let (x, y) = (after.normal.grid().x(), after.normal.grid().y());
+    for ((i, j), slip) in slip.indexed_iter_mut() {
+        if after.normal.pressure[[i, j]] <= 0.0 {
+            let rigid = [moved[0] - moved[2] * y[j], moved[1] + moved[2] * x[i]];
+            let [along, across] = [0, 1].map(|axis| {
+                let [a, b] = [before, after].map(|one| one.displacement[axis][[i, j]]);
+                rigid[axis] - (b - a)
+            });
+            *slip = along.hypot(across);
+        }
+    }
+    slip
+}
+
+/// Shift along x and y, and twist; `None` of rolling.
+fn shift_and_twist(solution: &FrictionSolution) -> Option<[f64; 3]> {
+    match solution.motion {
+        TangentialMotion::Slide { shift, twist } => Some([shift[0], shift[1], twist]),
+        TangentialMotion::Roll { .. } => None,
+    }
 }
 
 /// Correlation of two changes of a pressure; 0 where the largest is below `least`, and where the grids differ.
