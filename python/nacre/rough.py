@@ -266,8 +266,8 @@ def roughness(surface: core.HeightMap) -> Roughness:
     Examples
     --------
     >>> wave = 1e-6 * np.sin(2 * np.pi * np.arange(64) / 64)[:, None] * np.ones(64)
-    >>> found = nacre.rough.roughness(nacre.HeightMap(wave, 1e-6, periodic=(True, True)))
-    >>> round(found.sq * 1e6, 3), round(found.rms_slope, 4)
+    >>> parameters = nacre.rough.roughness(nacre.HeightMap(wave, 1e-6, periodic=(True, True)))
+    >>> round(parameters.sq * 1e6, 3), round(parameters.rms_slope, 4)
     (0.707, 0.0694)
     """
     _check(surface)
