@@ -213,10 +213,10 @@ impl<S: Surface> WearSession<S> {
         }))
     }
 
-    /// Error of the last pressure, relative to the peak, by the thickness of the layers: the largest difference between it and
-    /// the pressure on layers that are thinner by the mean of their depths, weighted by the pressure. To first order it is
-    /// that between two pressures on layers that are thinner by this mean, to first order and exactly. `None` where no layer
-    /// wears.
+    /// Error of the last pressure by the thickness of the layers: the root of its mean square within the contact, relative to the
+    /// peak. It is the difference from the pressure on layers that are thinner by the mean of their depths, weighted by the
+    /// pressure; to first order, that between two pressures on layers that are thinner by this mean, to first order and
+    /// exactly. `None` where no layer wears.
     ///
     /// # Errors
     /// As [`WearSession::advance`].
@@ -258,8 +258,7 @@ impl<S: Surface> WearSession<S> {
         let even = even.transpose()?;
         let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
         let peak = last.solution.peak_pressure();
-        let apart =
-            Zip::from(pressure).and(&other).fold(0.0_f64, |most, a, b| most.max((a - b).abs()));
+        let apart = difference([pressure, pressure, &other]);
         Ok((peak > 0.0).then_some(apart / peak))
     }
 
@@ -314,8 +313,10 @@ impl<S: Surface> WearSession<S> {
             let Some(trial) = self.controlled(last, left, progress)? else {
                 return Ok(None);
             };
-            let grow = self.touched(&trial.solution);
-            if let Some(most) = self.most_cells.filter(|_| grow != [false; 2]) {
+            if let Some(most) = self.most_cells
+                && let grow = self.touched(&trial.solution)
+                && grow != [false; 2]
+            {
                 let Some(wider) = self.regrid(last, grow, most, progress)? else {
                     return Ok(None);
                 };

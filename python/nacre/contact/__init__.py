@@ -543,9 +543,9 @@ def wear(
         which never do.
     thickness : {"frozen", "first order"}, optional
         How thick the layers are in the elastic contact: as before wear, or, to first order in the
-        depth, thinner in each cell of the top layers by what is worn there. That takes three to
-        five times as long. Slips of `slide` and `roll`, stiffness and stresses of the solutions are
-        those of layers as thick as before.
+        depth, thinner in each cell of the top layers by what is worn there. That takes four times
+        as long, 1.3 times in line contact. Slips of `slide` and `roll`, stiffness, gradients and
+        stresses of the solutions are those of layers as thick as before.
     initial : WearHistory or array_like, optional
         History to go on from, by the distance that is given; or depth removed from the body before,
         ``(nx, ny)`` [m].
@@ -575,9 +575,9 @@ def wear(
 
     Notes
     -----
-    The rate is one of a model: measured rates scatter by factors of two and more. Layers are as
-    thick in the elastic contact as before they wore; `WearReport.thickness_error` says what that
-    costs.
+    The rate is one of a model: measured rates scatter by factors of two and more.
+    `WearReport.thickness_error` says what the `thickness` of the layers costs. To first order, the
+    peak under a roller errs by 0.3 % where 40 % of a coat are worn, under a ball by 1.5 %.
 
     Examples
     --------

@@ -293,8 +293,9 @@ class WearReport(Result):
     thickness_error: float | None
     """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
 
-    That of layers as thick as before, or of thinner ones to first order. It is found with layers
-    that are thinner by the mean of the depths; None without a layer that wears.
+    That of layers as thick as before, or of thinner ones to first order: the root of its mean
+    square within the contact, found with layers that are thinner by the mean of the depths. None
+    without a layer that wears.
     """
     regrids: int
     """Number of times that the grid grew."""
@@ -1025,4 +1026,4 @@ NOT_SETTLED = (
 MOST_THINNING = 0.05
 """Error of the pressure by layers of constant thickness from which on there is a warning."""
 FIRST_ORDER = 0.4
-"""Part of the thickness up to which thinner layers have been compared with exact ones: 0.3 %."""
+"""Part of the thickness up to which thinner layers were compared with exact ones: 0.3 to 1.6 %."""
