@@ -980,7 +980,8 @@ def _notes(
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
-    if any(state.rings for state in states):
+    # Steps that are chosen have an error that counts it.
+    if any(state.rings and state.step_error is None for state in states):
         notes.append(
             "pressures of cells rise and fall from step to step: take shorter steps, or "
             'scheme="euler"'
