@@ -713,7 +713,10 @@ class WearHistory(Result):
         """Return an input in words with its unit."""
         if name == "sliding":
             return travelled(float(text), "m")
-        return f"{text} {symbol(INPUTS[name])}" if name in ("rate", "counter_rate") else text
+        unit = INPUTS[name] if name in ("rate", "counter_rate", "load", "approach") else ""
+        if name == "load" and self.states[0].solution.grid.is_line:
+            unit = "N/m"
+        return f"{text} {symbol(unit)}".rstrip()
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
