@@ -361,7 +361,7 @@ def written(value: float, unit: str, digits: int = 4) -> str:
 
 
 def travelled(distance: float, unit: str) -> str:
-    """Return a sliding distance, in metres or kilometres where it is so long, or a number of others.
+    """Return a sliding distance, in metres or kilometres where it is long, or cycles or passes.
 
     >>> travelled(2500.0, "m"), travelled(2500.0, "cycles")
     ('2.5 km', '2500 cycles')
