@@ -19,8 +19,12 @@ cycle = {
     "steps": [{"force": (None, 3e4)}, {"force": (None, -3e4)}],
 }
 history = nacre.wear(
-    *(nacre.Cylinder(10e-3), flat, steel),
-    **{"load": 1e5, "grid": grid, "slide": cycle},
+    nacre.Cylinder(10e-3),
+    flat,
+    steel,
+    load=1e5,
+    grid=grid,
+    slide=cycle,
     rate={0: 1e-16, "substrate": 1e-15},
     cycles=3e7,
     steps=[1e6, 3e6, 1e7, 2e7, 3e7],

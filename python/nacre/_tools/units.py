@@ -361,17 +361,17 @@ def written(value: float, unit: str, digits: int = 4) -> str:
 
 
 def travelled(distance: float, unit: str) -> str:
-    """Return a sliding distance, in kilometres where it is long, or a number of cycles or passes.
+    """Return a sliding distance, in metres or kilometres where it is long, or cycles or passes.
 
     >>> travelled(2500.0, "m"), travelled(2500.0, "cycles")
     ('2.5 km', '2500 cycles')
     """
     if unit != "m":
         return f"{distance:.4g} {unit}"
-    kilometres = system().unit("m")[0] * abs(distance) / 1e3
-    if kilometres < 1 or system().imperial:
+    metres = system().metres * distance
+    if abs(metres) < 1 or system().imperial:
         return written(distance, "m")
-    return f"{kilometres:.4g} km"
+    return f"{metres / 1e3:.4g} km" if abs(metres) >= 1e3 else f"{metres:.4g} m"
 
 
 def plain(value: float, digits: int) -> str:

@@ -714,7 +714,10 @@ class WearHistory(Result):
         """Return an input in words with its unit."""
         if name == "sliding":
             return travelled(float(text), "m")
-        return f"{text} {symbol(INPUTS[name])}" if name in ("rate", "counter_rate") else text
+        unit = INPUTS[name] if name in ("rate", "counter_rate", "load", "approach") else ""
+        if name == "load" and self.states[0].solution.grid.is_line:
+            unit = "N/m"
+        return f"{text} {symbol(unit)}".rstrip()
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return names and values of the main numbers, with units."""
@@ -981,7 +984,8 @@ def _notes(
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
-    if any(state.rings for state in states):
+    # Steps that are chosen have an error that counts it.
+    if any(state.rings and state.step_error is None for state in states):
         notes.append(
             "pressures of cells rise and fall from step to step: take shorter steps, or "
             'scheme="euler"'

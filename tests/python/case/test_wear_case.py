@@ -33,7 +33,7 @@ DATA: dict[str, Any] = {
     "solve": {"load": 1e5},
     "wear": {"rate": {"dlc": 1e-17, "substrate": 1e-15}, "sliding": 100.0, "steps": 2},
 }
-RATES = {0: 1e-17, "substrate": 1e-15}
+RATES: dict[str | int, float] = {0: 1e-17, "substrate": 1e-15}
 BALL: dict[str, Any] = {
     "shape": {"kind": "sphere", "radius": 5e-3},
     "body": {"substrate": {"young": 210e9, "poisson": 0.3}},
@@ -205,6 +205,7 @@ def test_files_of_all_endings_are_saved(tmp_path: Path, capsys: Capture) -> None
     page = (tmp_path / "a.html").read_text(encoding="utf-8")
     assert "<td>sliding</td><td>100 m</td>" in page
     assert "mm²/N</td>" in page
+    assert "<td>load</td><td>100.0 N/mm</td>" in page
     assert all((tmp_path / name).stat().st_size > 100 for name in names)
     assert command("solve", path, "--save", tmp_path / "a.txt") == 2
     assert "must end in .csv, .gif, .html, .mp4, .nc" in " ".join(capsys.readouterr().err.split())

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import nacre
+from support import interrupted
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Elastic(young=300e9, poisson=0.25)
@@ -110,6 +111,17 @@ def test_fretting_wears_where_it_slips() -> None:
     worn_depth = history.states[-1].depth
     assert worn_depth[16, 16] < 1e-6 * worn_depth.max()
     assert np.corrcoef(worn_depth.ravel(), (slip * loop[0].pressure).ravel())[0, 1] > 0.99
+
+
+def test_ctrl_c_ends_a_history() -> None:
+    setup = """
+import nacre
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+contact = nacre.Contact(steel, nacre.Grid((128, 128), (4e-4, 4e-4)))
+keywords = {"load": 10.0, "rate": 1e-16, "sliding": 1e3, "steps": 10**5}
+"""
+    call = "contact.wear(nacre.Sphere(5e-3), progress=lambda state: begin.set(), **keywords)"
+    assert interrupted(setup, call, at="event") == 0
 
 
 def test_cells_that_come_into_contact_wear_by_what_passes_them() -> None:
