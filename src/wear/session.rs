@@ -13,7 +13,9 @@ use crate::contact::{
     Compliance, Contact, Motion, Options, Progress, Setup, Solution, Termination,
 };
 use crate::error::{Result, fraction, none_negative, not_negative, refuse_if, require, same_shape};
-use crate::friction::{FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step};
+use crate::friction::{
+    FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
+};
 use crate::model::body::{HalfSpace, Layer};
 use crate::model::surface::{OffsetShape, Surface};
 use crate::stress::Member;
@@ -182,14 +184,15 @@ impl<S: Surface> WearSession<S> {
             return Ok(None);
         }
         let plan = Arc::clone(&self.plan);
-        let next = match self.last.take() {
+        let mut last = self.last.take();
+        let next = match &mut last {
             None => plan.run(|| self.first(progress))?,
             Some(last) => plan.run(|| self.step(last, progress))?,
         };
         self.ended = next.is_none()
             || self.wear.until_through
                 && next.as_ref().is_some_and(|state| !state.through.is_empty());
-        self.last.clone_from(&next);
+        self.last = next.clone().or(last);
         Ok(next)
     }
 
@@ -197,7 +200,7 @@ impl<S: Surface> WearSession<S> {
     fn first(&self, progress: &mut Progress) -> Result<Option<WearState>> {
         let zeros = || Array2::zeros(self.plan.grid().shape());
         let depth = self.wear.initial.clone().unwrap_or_else(|| [zeros(), zeros()]);
-        let solution = self.solved(&depth, &zeros(), &depth, None, None, progress)?;
+        let solution = self.solved(&depth[0] + &depth[1], &depth, None, None, progress)?;
         Ok(solution.map(|solution| WearState {
             distance: 0.0,
             depth,
@@ -266,12 +269,11 @@ impl<S: Surface> WearSession<S> {
         (!operators.is_empty()).then(|| self.plan.with_beside(operators))
     }
 
-    /// The contact of the worn bodies, between which `removed` is taken off too, on `springs`, with layers that are thinner
-    /// by the depths `missing`; `None` where it was stopped.
+    /// The contact of the shape on bodies from which so much is `worn` together, on `springs`, with layers that are thinner by
+    /// the depths `missing`; `None` where it was stopped.
     fn solved(
         &self,
-        [body, counterbody]: &[Array2<f64>; 2],
-        removed: &Array2<f64>,
+        worn: Array2<f64>,
         missing: &[Array2<f64>; 2],
         springs: Option<Array2<f64>>,
         initial: Option<&Array2<f64>>,
@@ -282,7 +284,6 @@ impl<S: Surface> WearSession<S> {
             initial: initial.cloned(),
             ..self.wear.options.clone()
         };
-        let worn = body + counterbody + removed;
         let is_new = worn.iter().all(|depth| *depth <= 0.0) && initial.is_none();
         let worn = OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn);
         let shape: &dyn Surface = if is_new { &self.shape } else { &worn };
@@ -304,21 +305,21 @@ impl<S: Surface> WearSession<S> {
         solution.require_converged(options.tolerance).map(Some)
     }
 
-    /// The state after `last`.
-    fn step(&mut self, mut last: WearState, progress: &mut Progress) -> Result<Option<WearState>> {
+    /// The state after `last`, which is on the grid of the plan then.
+    fn step(&mut self, last: &mut WearState, progress: &mut Progress) -> Result<Option<WearState>> {
         loop {
             let Some(left) = self.left(last.distance) else {
                 return Ok(None);
             };
-            let Some(trial) = self.controlled(&last, left, progress)? else {
+            let Some(trial) = self.controlled(last, left, progress)? else {
                 return Ok(None);
             };
             let grow = self.touched(&trial.solution);
             if let Some(most) = self.most_cells.filter(|_| grow != [false; 2]) {
-                let Some(wider) = self.regrid(&last, grow, most, progress)? else {
+                let Some(wider) = self.regrid(last, grow, most, progress)? else {
                     return Ok(None);
                 };
-                last = wider;
+                *last = wider;
                 continue;
             }
             let is_end = trial.length >= left * (1.0 - 1e-12);
@@ -442,7 +443,9 @@ impl<S: Surface> WearSession<S> {
                 let solutions = self.moved(state, moves, options, progress)?;
                 solutions.map(|solutions| {
                     let mut slip = Array2::zeros(shape);
-                    solutions.iter().skip(steps.len()).for_each(|one| slip += &magnitude(one));
+                    for pair in solutions.windows(2).skip(steps.len().saturating_sub(1)) {
+                        slip += &passed(&pair[0], &pair[1]);
+                    }
                     Slipping::Cells(slip)
                 })
             }
@@ -631,18 +634,21 @@ impl<S: Surface> WearSession<S> {
             ),
         };
         let mut rates = [0, 1].map(|k| last.depth[k].mapv(|depth| self.rates[k].at(depth)));
-        let after = |rates: &[Array2<f64>; 2], work: &Array2<f64>| {
-            [0, 1].map(|k| &last.depth[k] + &(&rates[k] * work))
-        };
-        let mut depth = after(&rates, &(&per_pressure * &expected + &first));
+        let mut depth = last.depth.clone();
+        for (depth, rates) in depth.iter_mut().zip(&rates) {
+            let cells = Zip::from(depth).and(rates).and(&per_pressure).and(&expected).and(&first);
+            cells.for_each(|depth, rate, per_pressure, p, first| {
+                *depth += rate * (per_pressure * p + first);
+            });
+        }
         let mut initial = expected;
         for round in 1.. {
-            let total = &rates[0] + &rates[1];
-            let springs = &total * &per_pressure;
-            let removed = total * &first;
+            let cells = Zip::from(&rates[0]).and(&rates[1]);
+            let springs = cells.and(&per_pressure).map_collect(|a, b, work| (a + b) * work);
+            let cells = Zip::from(&last.depth[0]).and(&last.depth[1]).and(&rates[0]).and(&rates[1]);
+            let worn = cells.and(&first).map_collect(|v, w, a, b, work| v + w + (a + b) * work);
             let soft = springs.iter().any(|c| *c > 0.0).then(|| springs.clone());
-            let solution =
-                self.solved(&last.depth, &removed, &depth, soft, Some(&initial), progress)?;
+            let solution = self.solved(worn, &depth, soft, Some(&initial), progress)?;
             let Some(mut solution) = solution else {
                 return Ok(None);
             };
@@ -650,18 +656,19 @@ impl<S: Surface> WearSession<S> {
             let pressure = worn_by(&solution, &springs, one_cell);
             // What springs gave is worn off.
             solution.release_springs(springs * &pressure);
-            let work = &per_pressure * &pressure + &first;
+            let cells = Zip::from(&per_pressure).and(&pressure).and(&first);
+            let work = cells.map_collect(|per_pressure, p, first| per_pressure * p + first);
+            let mut reached = last.depth.clone();
             let mut changed = 0.0_f64;
-            let mut next = rates.clone();
-            for (k, next) in next.iter_mut().enumerate() {
-                Zip::from(next).and(&last.depth[k]).and(&work).for_each(|rate, depth, work| {
+            for (k, (rates, depth)) in rates.iter_mut().zip(&mut reached).enumerate() {
+                Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
                     let mean = self.rates[k].mean(*depth, *work);
                     changed =
                         changed.max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
+                    *depth += *rate * work;
                     *rate = mean;
                 });
             }
-            let reached = after(&rates, &work);
             let lag = self.layers.as_ref().map_or(0.0, |layers| layers.apart(&reached, &depth));
             depth = reached;
             if changed <= SETTLED && lag <= LAG || round == ROUNDS {
@@ -675,7 +682,6 @@ impl<S: Surface> WearSession<S> {
                 }));
             }
             initial.clone_from(&solution.pressure);
-            rates = next;
         }
         unreachable!("the loop ends by its limit")
     }
@@ -722,8 +728,8 @@ impl<S: Surface> WearSession<S> {
             self.layers = Some(TopLayers::plan(&self.plan)?);
         }
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
-        let none = Array2::zeros(grid.shape());
-        let solution = self.solved(&depth, &none, &depth, None, None, progress)?;
+        let worn = &depth[0] + &depth[1];
+        let solution = self.solved(worn, &depth, None, None, progress)?;
         (self.change, self.start) = (None, None);
         Ok(solution.map(|solution| WearState {
             depth,
@@ -791,6 +797,34 @@ fn difference([before, one, other]: [&Array2<f64>; 3]) -> f64 {
 fn magnitude(solution: &FrictionSolution) -> Array2<f64> {
     let [x, y] = &solution.slip;
     Zip::from(x).and(y).map_collect(|x, y| x.hypot(*y))
+}
+
+/// Distance by which the surfaces pass each other in each cell in a step, |Δw − Δu|: the slip of cells in contact. Others may come
+/// into contact within a step of wear, and would then press without being worn.
+fn passed(before: &FrictionSolution, after: &FrictionSolution) -> Array2<f64> {
+    let mut slip = magnitude(after);
+    let [Some(from), Some(to)] = [before, after].map(shift_and_twist) else { return slip };
+    let moved = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    let (x, y) = (after.normal.grid().x(), after.normal.grid().y());
+    for ((i, j), slip) in slip.indexed_iter_mut() {
+        if after.normal.pressure[[i, j]] <= 0.0 {
+            let rigid = [moved[0] - moved[2] * y[j], moved[1] + moved[2] * x[i]];
+            let [along, across] = [0, 1].map(|axis| {
+                let [a, b] = [before, after].map(|one| one.displacement[axis][[i, j]]);
+                rigid[axis] - (b - a)
+            });
+            *slip = along.hypot(across);
+        }
+    }
+    slip
+}
+
+/// Shift along x and y, and twist; `None` of rolling.
+fn shift_and_twist(solution: &FrictionSolution) -> Option<[f64; 3]> {
+    match solution.motion {
+        TangentialMotion::Slide { shift, twist } => Some([shift[0], shift[1], twist]),
+        TangentialMotion::Roll { .. } => None,
+    }
 }
 
 /// Correlation of two changes of a pressure; 0 where the largest is below `least`, and where the grids differ.

@@ -49,6 +49,7 @@ fn even(
     let mut session = WearSession::new(plan, shape, motion, wear, false)?;
     let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
     let state = session.advance(go_on)?.expect("the first state");
+    assert!(session.advance(go_on)?.is_none());
     Ok((state.solution, session.thickness_error(go_on)?))
 }
 
@@ -138,7 +139,7 @@ fn what_has_no_thinner_layers_is_refused() -> Result<()> {
         Ok(session.err().map_or_else(String::new, |error| error.to_string()))
     };
     let grid = Grid::new([16, 16], [3.0, 3.0])?;
-    let ended = coated(THICKNESS)?.with_ends([None, Some(1.0)])?;
+    let ended = coated(THICKNESS)?.with_ends([None, Some(1.125)])?;
     assert!(
         message(ended, grid)?
             .starts_with("thickness must be \"frozen\" for layered bodies with free ends")

@@ -43,7 +43,7 @@ for k, state in enumerate(history):
 left.set(xlabel="y [µm]", ylabel="pressure [MPa]")
 right.set(xlabel="y [µm]", ylabel="depth removed [nm]")
 right.invert_yaxis()
-right.legend(fontsize=8)
+left.legend(loc="lower center", fontsize=7)
 
 # %%
 # # The coat is 5 µm thick, and far from through:

@@ -29,6 +29,7 @@ bare = nacre.wear(
     *(roller, steel, steel),
     **{"load": 1e5, "grid": grid, "rate": 1e-15},
     sliding=distance / 10,
+    scheme="euler",
 )
 
 # %%
@@ -41,7 +42,7 @@ for name, one in {"coated": history, "bare": bare}.items():
     right.loglog(one.distance[1:], one.deepest[1:, 0] * 1e6, label=name)
 right.axhline(2.0, color="k", ls=":", label="thickness of the coat")
 right.set(xlabel="sliding distance [m]", ylabel="deepest wear [µm]")
-right.legend()
+right.legend(loc="upper left", fontsize=8)
 
 # %%
 # # The verdict has the distance and the place.

@@ -112,6 +112,25 @@ def test_fretting_wears_where_it_slips() -> None:
     assert np.corrcoef(worn_depth.ravel(), (slip * loop[0].pressure).ravel())[0, 1] > 0.99
 
 
+def test_cells_that_come_into_contact_wear_by_what_passes_them() -> None:
+    contact = nacre.Contact(STEEL, nacre.Grid.line(129, 3.4e-4), STEEL)
+    steps = [{"force": (None, one)} for one in (3e4, -3e4)]
+    cycle: dict[str, Any] = {"friction": 0.6, "steps": steps}
+    motion: dict[str, Any] = {"load": 1e5, "rate": 1e-16, "steps": 1, "scheme": "euler"}
+    worn_out = contact.wear(ROLLER, cycles=2e7, slide=cycle, **motion).states[-1]
+    loop = contact.slide(ROLLER, load=1e5, friction=0.6, steps=steps * 2)
+    assert isinstance(loop, nacre.types.History)
+    shifts = np.array([step.shift for step in loop])[:, 1, None]
+    passed = shifts - np.array([step.displacement[1, 0] for step in loop])
+    slip = np.abs(np.diff(passed, axis=0))[1:].sum(axis=0)
+    pressure = worn_out.solution.pressure[0]
+    joined = (pressure > 0) & (loop[0].pressure[0] == 0)
+    assert joined.sum() >= 4
+    # Pressures of cells are the springs' to 1e-6 of the peak, and there a twentieth of it.
+    due = 1e-16 * 2e7 * (slip * pressure)[joined]
+    np.testing.assert_allclose(worn_out.depth[0, joined], due, rtol=1e-4)
+
+
 def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     grid = nacre.Grid((32, 32), (3e-4, 3e-4))
     contact = nacre.Contact(STEEL, grid, STEEL)
