@@ -146,7 +146,9 @@ WEAR: dict[str, Callable[[], nacre.types.WearHistory]] = {
     "worn": lambda: CONTACT.wear(BALL, load=10.0, rate=1e-15, sliding=10.0, steps=2),
     "line worn": lambda: nacre.wear(
         *(ROD, COATED),
-        **{"load": 1e4, "grid": nacre.Grid.line(64, 2e-4), "counter_rate": 1e-16},
+        load=1e4,
+        grid=nacre.Grid.line(64, 2e-4),
+        counter_rate=1e-16,
         rate={0: 1e-15, "substrate": 1e-14},
         sliding=1e3,
         steps=3,

@@ -20,7 +20,9 @@ cycle = {
 }
 history = nacre.wear(
     *(nacre.Cylinder(10e-3), flat, steel),
-    **{"load": 1e5, "grid": grid, "slide": cycle},
+    load=1e5,
+    grid=grid,
+    slide=cycle,
     rate={0: 1e-16, "substrate": 1e-15},
     cycles=3e7,
     steps=[1e6, 3e6, 1e7, 2e7, 3e7],

@@ -16,18 +16,23 @@ steel = nacre.Elastic(young=210e9, poisson=0.3)
 dlc = nacre.Elastic(young=300e9, poisson=0.2)
 coated = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)])
 roller, grid = nacre.Cylinder(10e-3), nacre.Grid.line(256, 1e-3)
-rates = {0: 1e-17, "substrate": 1e-15}
+rates: dict[int | str, float] = {0: 1e-17, "substrate": 1e-15}
 
 history = nacre.wear(
     *(roller, coated, steel),
-    **{"load": 1e5, "grid": grid, "rate": rates},
+    load=1e5,
+    grid=grid,
+    rate=rates,
     sliding=5e3,
     until="through",
 )
+assert history.life is not None
 distance = history.life.distance
 bare = nacre.wear(
     *(roller, steel, steel),
-    **{"load": 1e5, "grid": grid, "rate": 1e-15},
+    load=1e5,
+    grid=grid,
+    rate=1e-15,
     sliding=distance / 10,
     scheme="euler",
 )

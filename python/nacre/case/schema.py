@@ -113,6 +113,7 @@ class Layer(Table):
     if TYPE_CHECKING:
         material: str | Material
         interface: str | Spring
+        name: str | None
 
 
 Ends = Annotated[

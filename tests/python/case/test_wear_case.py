@@ -33,7 +33,7 @@ DATA: dict[str, Any] = {
     "solve": {"load": 1e5},
     "wear": {"rate": {"dlc": 1e-17, "substrate": 1e-15}, "sliding": 100.0, "steps": 2},
 }
-RATES = {0: 1e-17, "substrate": 1e-15}
+RATES: dict[str | int, float] = {0: 1e-17, "substrate": 1e-15}
 BALL: dict[str, Any] = {
     "shape": {"kind": "sphere", "radius": 5e-3},
     "body": {"substrate": {"young": 210e9, "poisson": 0.3}},
