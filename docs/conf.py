@@ -35,7 +35,8 @@ extensions = [
     "names",
     "provenance",
 ]
-# Links into the pages of other libraries need their inventories from the network; `make docs` needs none.
+# Links into the pages of other libraries need their inventories from the network; `make docs` needs
+# none.
 if os.environ.get("NACRE_DOCS_ONLINE"):
     extensions.append("sphinx.ext.intersphinx")
 intersphinx_mapping = {
@@ -45,7 +46,9 @@ intersphinx_mapping = {
     "matplotlib": ("https://matplotlib.org/stable", None),
     "xarray": ("https://docs.xarray.dev/en/stable", None),
 }
-linkcheck_ignore = [r"https?://[^/]*\.invalid"]  # the address of the project until it is known
+linkcheck_ignore = [
+    r"https?://[^/]*\.invalid"
+]  # the address of the project until it is known
 
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]

@@ -18,6 +18,7 @@ from nacre.case import Case, CaseError, toml
 from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
+from nacre.contact.stresses import depth_pictures
 from nacre.indent import IndentSolution
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
@@ -45,8 +46,6 @@ BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
-DEPTHS, DEEPEST = 40, 1.25
-"""Depths of the picture of stresses, and the largest over the width of the contact."""
 DIGITS = 5
 """Digits of the main number."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
@@ -357,38 +356,8 @@ def _pressures(
 
 def _stresses(solution: Contact, bare: Contact | None, keywords: Answer) -> str:
     """Return the picture of the von Mises stress against depth, coated and bare."""
-    body = solution._normal.report.body
-    interfaces = [float(z) for z in body.interfaces] if isinstance(body, core.HalfSpace) else []
-    widths = [high - low for low, high in solution.contact_extent if high > low]
-    bottom = DEEPEST * min(widths, default=min(solution.grid.size))
-    inset = (0.0, 3 * interfaces[0]) if interfaces and interfaces[0] < bottom / 10 else None
-    sliding = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
-    curves = [Curve(*_over_depth(solution, bottom, interfaces, sliding), "coated" if bare else "")]
-    if bare is not None:
-        sliding.pop("residual", None)
-        curves.append(Curve(*_over_depth(bare, bottom, interfaces, sliding), "bare", "dashed"))
-    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
-    words = "Von Mises stress below the largest pressure; dotted: interfaces"
-    words += "; inset: the first three thicknesses" if inset else ""
-    return _figure(f"{words}.", lines(curves, axes, interfaces, inset))
-
-
-def _over_depth(
-    solution: Contact, bottom: float, interfaces: Sequence[float], sliding: Answer
-) -> tuple[Field, Field]:
-    """Return depths and von Mises stresses; an interface is there twice, for its two sides."""
-    faces = [0.0, *(z for z in interfaces if z < bottom)]
-    within = [np.linspace(top, 3 * top or bottom, DEPTHS) for top in faces]
-    within += [np.linspace(0.0, z, DEPTHS // 3) for z in faces[1:]]
-    below = np.unique(np.concatenate([one[one <= bottom] for one in within]))
-    place = dict(zip("xy", solution.peak_position, strict=True))
-    stresses = [solution.stress(below, **place, **sliding).von_mises]
-    if faces[1:]:
-        above = solution.stress(np.array(faces[1:]), side="above", **place, **sliding).von_mises
-        stresses.append(above)
-    depths = np.concatenate([below, faces[1:]])
-    order = np.lexsort((-np.arange(depths.size), depths))
-    return depths[order], np.concatenate([np.ravel(one) for one in stresses])[order]
+    options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
+    return "".join(_figure(*one) for one in depth_pictures(solution, bare, **options))
 
 
 def _along_roller(solution: BearingSolution, aligned: BearingSolution | None) -> str:

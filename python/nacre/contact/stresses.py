@@ -1112,11 +1112,16 @@ def _warned(result: StressResult) -> StressResult:
 
 
 def depth_pictures(
-    solution: Stressed, *, body: Member = "body", **sliding: Unpack[SlidingOptions]
+    solution: Stressed,
+    bare: Stressed | None = None,
+    *,
+    body: Member = "body",
+    **sliding: Unpack[SlidingOptions],
 ) -> Iterator[Picture]:
     """Yield the picture of the von Mises stress against depth below the largest pressure.
 
-    There is none of bodies without stresses, of surfaces that have yielded and of large grids.
+    A `bare` solution, without the layers, is drawn beside the coated one. There is none of bodies
+    without stresses, of surfaces that have yielded and of large grids.
     """
     normal = solution._normal
     member = normal.report.counterbody if body == "counterbody" else normal.report.body
@@ -1135,21 +1140,33 @@ def depth_pictures(
     ends = sorted({*faces, *(inset or ())})
     count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
     counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
-    plan, (x, y) = solution.stress_plan(body), normal.peak_position
     parts = zip(pairwise(ends), counts, strict=True)
     within = np.concatenate([np.linspace(top, end, n, endpoint=False) for (top, end), n in parts])
-    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces[1:]), "above"))
-    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
-    depths = np.concatenate([within, faces[1:]])
-    # An interface occurs twice: its upper side, which comes last here, stands first.
-    order = np.lexsort((-np.arange(depths.size), depths))
-    curve = Curve(depths[order], np.concatenate([one.von_mises for one in fields])[order])
+    curve = _over_depth(solution, body, within, faces[1:], sliding)
+    curves = [Curve(*curve, "" if bare is None else "coated")]
+    if bare is not None:
+        sliding.pop("residual", None)
+        curve = _over_depth(bare, body, within, faces[1:], sliding)
+        curves.append(Curve(*curve, "bare", "dashed"))
     axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
     words = ["Von Mises stress below the largest pressure"]
     words += ["dotted: interfaces"] if faces[1:-1] else []
     words += ["inset: the first three thicknesses of the coat"] if inset else []
     caption = "; ".join(words) + "."
-    yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
+    yield Picture(caption, lines(curves, axes, faces[1:-1], inset))
+
+
+def _over_depth(
+    solution: Stressed, body: Member, within: Array, faces: list[float], sliding: SlidingOptions
+) -> tuple[Array, Array]:
+    """Return depths and von Mises stresses; faces are there twice, for their two sides."""
+    plan, (x, y) = solution.stress_plan(body), solution._normal.peak_position
+    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces), "above"))
+    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
+    depths = np.concatenate([within, faces])
+    # The upper side of a face, which comes last here, stands first.
+    order = np.lexsort((-np.arange(depths.size), depths))
+    return depths[order], np.concatenate([one.von_mises for one in fields])[order]
 
 
 def _notes(summary: StressSummary) -> list[str]:
