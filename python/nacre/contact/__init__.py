@@ -577,7 +577,7 @@ def wear(
     -----
     The rate is one of a model: measured rates scatter by factors of two and more.
     `WearReport.thickness_error` says what the `thickness` of the layers costs. To first order, the
-    peak under a roller errs by 0.3 % where 40 % of a coat are worn, under a ball by 1.5 %.
+    peak errs by 0.3 to 1.6 % where 40 % of a hard coat are worn, of a soft one by 4 to 8 %.
 
     Examples
     --------
