@@ -53,7 +53,7 @@ impl Worn {
             ..Wear::sliding([vec![1.0, 1.0], vec![0.0]], self.distance)
         };
         let plan = Arc::clone(&self.plan);
-        let session = WearSession::new(plan, self.ball.clone(), self.motion, wear, false);
+        let session = WearSession::new(plan, self.ball, self.motion, wear, false);
         let mut session = session.expect("valid");
         let mut states = Vec::new();
         while let Some(state) =
