@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa torch develop stubs docs publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa torch develop stubs docs links publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
@@ -126,6 +126,10 @@ docs: $(WHEEL) $(DOCS) ## build the documentation as a site: docs/_build/html/in
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 	rm -rf docs/_build/html/rust
 	cp -R $(TARGET)/doc docs/_build/html/rust
+
+# Links to other sites need the network; those between pages are checked by make docs, too.
+links: $(WHEEL) $(DOCS) ## check the links of the documentation, to other sites too
+	NACRE_DOCS_ONLINE=1 $(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -D plot_gallery=0 -b linkcheck docs docs/_build/links
 
 # pip knows --group since version 25.1.
 $(BUILD): pyproject.toml

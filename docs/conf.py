@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import tomllib
 from importlib.metadata import version as version_of
@@ -34,6 +35,21 @@ extensions = [
     "names",
     "provenance",
 ]
+# Links into the pages of other libraries need their inventories from the network; `make docs` needs
+# none.
+if os.environ.get("NACRE_DOCS_ONLINE"):
+    extensions.append("sphinx.ext.intersphinx")
+intersphinx_mapping = {
+    "python": ("https://docs.python.org/3", None),
+    "numpy": ("https://numpy.org/doc/stable", None),
+    "scipy": ("https://docs.scipy.org/doc/scipy", None),
+    "matplotlib": ("https://matplotlib.org/stable", None),
+    "xarray": ("https://docs.xarray.dev/en/stable", None),
+}
+linkcheck_ignore = [
+    r"https?://[^/]*\.invalid"
+]  # the address of the project until it is known
+
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
 
@@ -100,6 +116,14 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "download_all_examples": False,
 }
+# Buttons that run an example in the browser: off until PyPI has a wheel for Pyodide.
+if os.environ.get("NACRE_DOCS_LIVE"):
+    extensions.append("jupyterlite_sphinx")
+    jupyterlite_silence = True
+    sphinx_gallery_conf |= {
+        "jupyterlite": {"use_jupyter_lab": False},
+        "first_notebook_cell": "%pip install --quiet nacre-contact[plot]\n%matplotlib inline",
+    }
 
 
 def link_pages(app: Any, name: str, source: list[str]) -> None:

@@ -239,7 +239,7 @@ def creep_curve(
         errors = [(s.report.discretisation or {}).get(quantity, np.nan) for s in solutions]
         columns[name + "_discretisation"] = (errors, size)
     dataset = xarray.Dataset(
-        {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},
+        {name: ("creepage", np.asarray(column)) for name, (column, _) in columns.items()},
         coords={"creepage": values},
     )
     for name, (_, unit) in columns.items():

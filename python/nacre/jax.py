@@ -234,8 +234,8 @@ def _callback(function: Callable[..., Array], size: int, *arrays: jax.Array) -> 
             _warn(f"the results are NaN: {message}")
             return np.full(size, np.nan)
 
-    result = jax.ShapeDtypeStruct((size,), np.float64)
-    return jax.pure_callback(values_or_nan, result, *arrays, vmap_method="sequential")
+    row = jax.ShapeDtypeStruct((size,), np.float64)
+    return jax.pure_callback(values_or_nan, row, *arrays, vmap_method="sequential")
 
 
 def _warn(message: str) -> None:

@@ -27,6 +27,7 @@ from nacre.results.table_results import TableResult
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
 __all__ = [
     "Roughness",
@@ -265,8 +266,8 @@ def roughness(surface: core.HeightMap) -> Roughness:
     Examples
     --------
     >>> wave = 1e-6 * np.sin(2 * np.pi * np.arange(64) / 64)[:, None] * np.ones(64)
-    >>> found = nacre.rough.roughness(nacre.HeightMap(wave, 1e-6, periodic=(True, True)))
-    >>> round(found.sq * 1e6, 3), round(found.rms_slope, 4)
+    >>> parameters = nacre.rough.roughness(nacre.HeightMap(wave, 1e-6, periodic=(True, True)))
+    >>> round(parameters.sq * 1e6, 3), round(parameters.rms_slope, 4)
     (0.707, 0.0694)
     """
     _check(surface)
@@ -290,7 +291,7 @@ def roughness(surface: core.HeightMap) -> Roughness:
 def markup(surface: core.HeightMap) -> str:
     """Return what a notebook shows of a map: its size, its roughness and a picture."""
 
-    def draw() -> Any:
+    def draw() -> Axes:
         from nacre import plot
 
         return plot.heights(surface)
@@ -347,7 +348,7 @@ def windowed(surface: core.HeightMap, taper: float = 0.1) -> core.HeightMap:
 
 
 def load_curve(
-    shape: core.HeightMap | Any,
+    shape: core.Shape,
     body: Body,
     pressures: Sequence[float],
     counterbody: Body | None = None,
@@ -392,14 +393,15 @@ def load_curve(
     positive = np.isfinite(values) & (values > 0)
     if values.ndim != 1 or values.size == 0 or not positive.all():
         raise ValueError(f"pressures must be numbers above 0, at least one, got {pressures!r}")
-    if grid is None and not isinstance(shape, core.HeightMap):
-        raise ValueError("grid must be given for a shape that is not a map")
-    cells = _grid(shape) if grid is None else grid
+    if grid is None:
+        if not isinstance(shape, core.HeightMap):
+            raise ValueError("grid must be given for a shape that is not a map")
+        grid = _grid(shape)
     plan_options = {
         name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords
     }
-    contact = Contact(body, cells, counterbody, **plan_options)
-    area = cells.size[0] * cells.size[1]
+    contact = Contact(body, grid, counterbody, **plan_options)
+    area = grid.size[0] * grid.size[1]
     columns: dict[str, list[float]] = {name: [] for name in CURVE}
     last: Solution | None = None
     for value in values:

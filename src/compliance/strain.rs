@@ -7,11 +7,22 @@
 //! ê_xx = e cos²φ p̂      ê_xy = e cos φ sin φ p̂      ê_yy = e sin²φ p̂
 //! ```
 //!
-//! On grids that do not repeat, strains are those at the centres of cells under uniform pressures on cells: exact, from the
-//! stresses there ([`crate::compliance::kernel`]) by Hooke's law, e_ij = \[(1+ν) s_ij − ν s_kk δ_ij\]/E with
-//! s_ij = σ_ij + ν p δ_ij/(1−ν). On grids that repeat along x and y, they are those of the waves of the grid. Both are even or odd
-//! kernels: as matrices, all three are symmetric.
+//! Waves that are short compared with the thickness strain it as a half-space of its material, by e∞ = −(1−2ν)/2G: half of
+//! that is an even strain e∞ p/2 of each cell. The rest, with cos 2φ and sin 2φ, has the same mean square as the pressure, and where
+//! wear is even it cancels a part c p² of the energy of the pressure, c = (1−2ν)²/4G. Uniform pressures on cells would lose some
+//! of it at short waves, and worn layers all of their stiffness. So both are those of the pressure L p of the waves that cells
+//! resolve,
+//!
+//! ```text
+//! L(m, n) = [1 − sin⁸(m dx/2)] [1 − sin⁸(n dy/2)]
+//! ```
+//!
+//! All else is that at the centres of cells under uniform pressures on cells:
+//! exact, from the stresses there ([`crate::compliance::kernel`]) by Hooke's law, e_ij = \[(1+ν) s_ij − ν s_kk δ_ij\]/E with
+//! s_ij = σ_ij + ν p δ_ij/(1−ν). On grids that repeat along x and y, all is that of the waves of the grid. Derived for nacre. As matrices,
+//! all three are symmetric.
 
+use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ndarray::{Array2, Array3, Axis, Slice};
@@ -20,6 +31,7 @@ use rayon::prelude::*;
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::kernel::loads::{ODD, PressureStress};
 use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel};
+use crate::compliance::kernel::rectangle::under_pressure;
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::alpha_compliance;
 use crate::compliance::response::interior::Place;
@@ -27,7 +39,9 @@ use crate::error::{Result, refuse_if};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
-use crate::numerics::fft::{PaddedTransform, ParitySpectrum, Term, TransformMemory};
+use crate::numerics::fft::{
+    PaddedTransform, ParitySpectrum, Term, TransformMemory, fast_length, inverse_even, inverse_odd,
+};
 use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::{Threads, check_memory};
 
@@ -36,6 +50,16 @@ const STRESSES: [usize; 3] = [0, 3, 1];
 
 /// Whether each strain is odd in x and in y.
 const PARITIES: [[bool; 2]; 3] = [[false; 2], [true; 2], [false; 2]];
+
+/// Mesh of the waves, in sides of the grid: images change the strain by 9.5 times the fourth power of the distance over theirs, at
+/// the distance of a side by 0.2 %.
+const MESH: usize = 8;
+
+/// Weights of the cell itself and of those that are 1, 2, … cells away in the pressure that cells resolve: those of
+/// 1 − sin⁸(m/2), along each direction.
+const RESOLVED: [f64; 5] = [186.0 / 256.0, 56.0 / 256.0, -28.0 / 256.0, 8.0 / 256.0, -1.0 / 256.0];
+
+const REACH: isize = RESOLVED.len() as isize;
 
 /// Windows that are kept.
 const KEPT: usize = 2;
@@ -97,8 +121,31 @@ impl SurfaceStrain {
             .collect()
     }
 
+    /// Whether strains are those along y alone.
+    pub(crate) fn is_line(&self) -> bool {
+        self.coefficients.len() == 1
+    }
+
+    /// Weight of the pressure of a cell in what is resolved of another, so many cells from it.
+    pub(crate) fn resolved(&self, offset: [isize; 2]) -> f64 {
+        (0..2)
+            .map(|k| {
+                let reached = (1 - REACH..REACH).filter(|by| match self.repeats {
+                    true => (offset[k] - by) % self.shape[k] as isize == 0,
+                    false => offset[k] == *by,
+                });
+                reached.map(|by| RESOLVED[by.unsigned_abs()]).sum::<f64>()
+            })
+            .product()
+    }
+
     fn parities(&self) -> &'static [[bool; 2]] {
         &PARITIES[PARITIES.len() - self.coefficients.len()..]
+    }
+
+    /// Whether strains repeat, so that windows are those of all cells.
+    pub(crate) fn repeats(&self) -> bool {
+        self.repeats
     }
 
     /// The operators on a window of `shape` cells.
@@ -118,8 +165,8 @@ impl SurfaceStrain {
     }
 
     fn planned(&self, shape: [usize; 2], threads: &Threads) -> StrainWindow {
-        let repeats = [0, 1].map(|k| self.repeats && self.shape[k] == shape[k]);
-        let transform = PaddedTransform::plan_repeated(shape, repeats, threads);
+        let repeats = self.repeats;
+        let transform = PaddedTransform::plan_repeated(shape, [repeats; 2], threads);
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
         transform.reserve(&mut memory);
         let spectra = (self.coefficients.iter().zip(self.parities()))
@@ -129,13 +176,14 @@ impl SurfaceStrain {
                 transform.parity_spectrum(&part, *odd, &mut memory, threads)
             })
             .collect();
-        StrainWindow { shape, transform, spectra, memory: Arc::clone(&self.memory) }
+        StrainWindow { shape, repeats, transform, spectra, memory: Arc::clone(&self.memory) }
     }
 }
 
 /// The operators on a window.
 pub(crate) struct StrainWindow {
-    pub(crate) shape: [usize; 2],
+    shape: [usize; 2],
+    repeats: bool,
     transform: PaddedTransform,
     spectra: Vec<ParitySpectrum>,
     memory: Arc<Mutex<TransformMemory>>,
@@ -151,6 +199,34 @@ impl StrainWindow {
     /// Number of strains: xx, xy and yy, or yy alone.
     pub(crate) fn strains(&self) -> usize {
         self.spectra.len()
+    }
+
+    /// L p of a field that is 0 outside the window.
+    pub(crate) fn resolve(&self, values: &mut [f64]) {
+        let [nx, ny] = self.shape;
+        let rows: Vec<(usize, usize)> = (0..nx).map(|i| (i * ny, 1)).collect();
+        let columns: Vec<(usize, usize)> = (0..ny).map(|j| (j, ny)).collect();
+        let mut line = Vec::new();
+        for (lines, length) in [(rows, ny), (columns, nx)] {
+            for (start, step) in lines {
+                line.clear();
+                line.extend((0..length).map(|k| values[start + k * step]));
+                let at = |k: usize, by: isize| {
+                    let place = k as isize + by;
+                    let n = length as isize;
+                    match self.repeats {
+                        true => line[place.rem_euclid(n) as usize],
+                        false if (0..n).contains(&place) => line[place as usize],
+                        false => 0.0,
+                    }
+                };
+                for k in 0..length {
+                    let cells = 1 - REACH..REACH;
+                    let parts = cells.map(|by| RESOLVED[by.unsigned_abs()] * at(k, by));
+                    values[start + k * step] = parts.sum();
+                }
+            }
+        }
     }
 
     /// Cost of [`StrainWindow::strain`], or of its adjoint, in the unit of convolutions, which have two transforms.
@@ -229,13 +305,15 @@ fn of_cells(body: &HalfSpace, grid: &Grid, threads: &Threads) -> [Array2<f64>; 3
             });
         });
     });
-    let mut strains = [0, 1, 2].map(|_| Array2::zeros((nx, ny)));
+    let mut strains = of_resolved_waves(place.material, grid, threads);
     for i in 0..nx {
         for j in 0..ny {
-            let pressure = if [i, j] == [0, 0] { 1.0 } else { 0.0 };
-            let stresses = [0, 1, 2].map(|k| rows[[i, k, j]]);
-            let values = of_stresses(place.material, pressure, stresses);
-            strains.iter_mut().zip(values).for_each(|(field, value)| field[[i, j]] = value);
+            // Those of waves hold the homogeneous half-space, under the same pressure.
+            let at = [i as f64 * spacing[0], j as f64 * spacing[1]];
+            let homogeneous = first(under_pressure(place.material, half, at, 0.0));
+            let stresses = [0, 1, 2].map(|k| rows[[i, k, j]] - homogeneous[k]);
+            let values = of_stresses(place.material, 0.0, stresses);
+            strains.iter_mut().zip(values).for_each(|(field, value)| field[[i, j]] += value);
         }
     }
     // What is odd vanishes on its axis, where rounding leaves a rest.
@@ -254,21 +332,76 @@ fn of_strips(body: &HalfSpace, grid: &Grid) -> Array2<f64> {
     })
 }
 
+/// e∞: strain of short waves on a material, per unit pressure.
+fn short_waves(material: Elastic) -> f64 {
+    -(1.0 - 2.0 * material.poisson()) / (2.0 * material.shear())
+}
+
+/// L of waves (m, n) \[rad per cell\].
+fn resolved(m: f64, n: f64) -> f64 {
+    [m, n].map(|k| 1.0 - (0.5 * k).sin().powi(8)).iter().product()
+}
+
+/// Strains of a homogeneous half-space: e∞ p/2 in each cell, and what is resolved of the rest.
+fn of_resolved_waves(material: Elastic, grid: &Grid, threads: &Threads) -> [Array2<f64>; 3] {
+    let (shape, [dx, dy]) = (grid.shape(), grid.spacing());
+    let mesh = shape.map(|n| 2 * fast_length(MESH * n / 2));
+    let wave = |k: [usize; 2]| [0, 1].map(|axis| TAU * k[axis] as f64 / mesh[axis] as f64);
+    let half = 0.5 * short_waves(material);
+    let even = inverse_even(
+        shape,
+        mesh,
+        |k, l| {
+            let [m, n] = wave([k, l]);
+            let [x, y] = [m / dx, n / dy];
+            let cosine = match x.hypot(y) {
+                alpha if alpha > 0.0 => (x * x - y * y) / (alpha * alpha),
+                _ => mean_cosine([0, 1].map(|axis| PI / (mesh[axis] as f64 * [dx, dy][axis]))),
+            };
+            half * resolved(m, n) * cosine
+        },
+        threads,
+    );
+    let odd = inverse_odd(
+        shape,
+        mesh,
+        |k, l| {
+            let [m, n] = wave([k, l]);
+            let [x, y] = [m / dx, n / dy];
+            let square = x * x + y * y;
+            if square > 0.0 { half * resolved(m, n) * 2.0 * x * y / square } else { 0.0 }
+        },
+        threads,
+    );
+    let mut strains = [even.clone(), odd, -even];
+    strains[0][[0, 0]] += half;
+    strains[2][[0, 0]] += half;
+    strains
+}
+
+/// Mean of cos 2φ over the waves |m| < a, |n| < b: 2⟨cos²φ⟩ − 1 with ⟨cos²φ⟩ = \[a² atan(b/a) + ab − b² atan(a/b)\]/2ab.
+fn mean_cosine([a, b]: [f64; 2]) -> f64 {
+    (a * a * b.atan2(a) + a * b - b * b * a.atan2(b)) / (a * b) - 1.0
+}
+
 /// The response to a unit pressure on one cell that holds the waves of a grid which repeats alike. A uniform pressure strains
 /// nothing.
 fn of_waves(body: &HalfSpace, grid: &Grid, threads: &Threads) -> [Array2<f64>; 3] {
     let (shape, [dx, dy]) = (grid.shape(), grid.spacing());
+    let short = short_waves(body.surface_material());
     let transform = PaddedTransform::plan_repeated(shape, [true; 2], threads);
     let spectra = transform.spectra_of(PARITIES, |m, n| {
-        let (m, n) = (m / dx, n / dy);
-        let alpha = m.hypot(n);
+        let [x, y] = [m / dx, n / dy];
+        let alpha = x.hypot(y);
         if alpha <= 0.0 {
             return [0.0; 3];
         }
-        let (c, s) = (m / alpha, n / alpha);
+        let (c, s) = (x / alpha, y / alpha);
         let e = -alpha_compliance(body, alpha).c12;
+        let turned = e - short * (1.0 - resolved(m, n));
+        let cosine = 0.5 * turned * (c * c - s * s);
         // Two odd directions have the factor i² = −1.
-        [e * c * c, -e * c * s, e * s * s]
+        [0.5 * e + cosine, -turned * c * s, 0.5 * e - cosine]
     });
     let mut unit = Array2::zeros(shape);
     unit[[0, 0]] = 1.0;

@@ -123,7 +123,9 @@ impl Contact {
             let springs = compliance.on(&self.grid)?;
             let without = Options { compliance: None, ..options.clone() };
             // Without any give, nothing is changed.
-            let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(&springs));
+            // From a given pressure, a solve begins on the finest grid.
+            let grids = if options.initial.is_some() { 1 } else { self.levels.len() };
+            let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(&springs, grids));
             let plan = soft.as_ref().unwrap_or(self);
             let mut solution = plan.solve_sampled(shape, sampled, motion, &without, progress)?;
             solution.take_springs(compliance.clone(), springs);

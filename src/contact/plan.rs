@@ -194,12 +194,13 @@ impl Contact {
         Self { operator, ..self.with_levels(levels) }
     }
 
-    /// This plan on springs of these compliances (nx, ny); all large arrays, threads and memory are shared.
-    pub(crate) fn on_springs(&self, springs: &Array2<f64>) -> Self {
+    /// This plan on springs of these compliances (nx, ny), with so many `grids` from the finest on; all large arrays, threads
+    /// and memory are shared.
+    pub(crate) fn on_springs(&self, springs: &Array2<f64>, grids: usize) -> Self {
         let finest = self.convolution();
         let mut springs = springs.clone();
         let mut levels = Vec::new();
-        for (number, level) in self.levels.iter().enumerate() {
+        for (number, level) in self.levels.iter().take(grids).enumerate() {
             if number > 0 {
                 springs = coarse_means(&springs, halved(self.levels[number - 1].grid()));
             }
@@ -208,21 +209,15 @@ impl Contact {
         self.with_levels(levels)
     }
 
-    /// This plan with operators beside its convolution. Coarser grids, on which no solve from a given pressure begins, do not
-    /// have them; nor do its solutions for their stiffness.
+    /// This plan with operators beside its convolution, without coarser grids: for solves from a given pressure. The stiffness
+    /// of its solutions lacks the operators.
     pub(crate) fn with_beside(&self, beside: Vec<Arc<dyn Beside>>) -> Self {
-        let finest = self.convolution();
-        let levels = self.levels.iter().enumerate().map(|(number, level)| {
-            let convolution = level.convolution.sharing_with(finest);
-            level.with(match number {
-                0 => convolution.with_beside(beside.clone()),
-                _ => convolution,
-            })
-        });
-        self.with_levels(levels.collect())
+        let (finest, level) = (self.convolution(), &self.levels[0]);
+        let convolution = finest.sharing_with(finest).with_beside(beside);
+        self.with_levels(vec![level.with(convolution)])
     }
 
-    /// This plan with other levels of the same grids.
+    /// This plan with other levels of the same grids, from the finest on.
     pub(super) fn with_levels(&self, levels: Vec<Level>) -> Self {
         Self {
             body: self.body.clone(),

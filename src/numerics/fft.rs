@@ -387,22 +387,43 @@ pub(crate) fn inverse_even(
     value: impl Fn(usize, usize) -> f64 + Sync,
     threads: &Threads,
 ) -> Array2<f64> {
+    inverse_corner([nx, ny], [mx, my], false, value, threads)
+}
+
+/// [`inverse_even`] of a spectrum that is odd along both directions.
+pub(crate) fn inverse_odd(
+    corner: [usize; 2],
+    mesh: [usize; 2],
+    value: impl Fn(usize, usize) -> f64 + Sync,
+    threads: &Threads,
+) -> Array2<f64> {
+    // Two odd directions have the factor i² = −1.
+    -inverse_corner(corner, mesh, true, value, threads)
+}
+
+fn inverse_corner(
+    [nx, ny]: [usize; 2],
+    [mx, my]: [usize; 2],
+    odd: bool,
+    value: impl Fn(usize, usize) -> f64 + Sync,
+    threads: &Threads,
+) -> Array2<f64> {
     let mut columns = Array2::zeros((my / 2 + 1, nx));
     let mut out = Array2::zeros((nx, ny));
     let scale = 1.0 / (mx as f64 * my as f64);
     threads.run(|| {
-        even_lines(&mut columns, mx, 1.0, |l, k| value(k, l));
-        even_lines(&mut out, my, scale, |i, l| columns[[l, i]]);
+        parity_lines(&mut columns, mx, (1.0, odd), |l, k| value(k, l));
+        parity_lines(&mut out, my, (scale, odd), |i, l| columns[[l, i]]);
     });
     out
 }
 
-/// Transforms real and even sequences of `period` points, for which the forward transform equals the unscaled inverse
-/// transform. `value(i, k)` returns the entries of row i at 0 ≤ k ≤ period/2.
-fn even_lines(
+/// Transforms real sequences of `period` points that are even, for which the forward transform equals the unscaled inverse
+/// transform, or odd, for which it is −i times the result. `value(i, k)` returns the entries of row i at 0 ≤ k ≤ period/2.
+fn parity_lines(
     out: &mut Array2<f64>,
     period: usize,
-    scale: f64,
+    (scale, odd): (f64, bool),
     value: impl Fn(usize, usize) -> f64 + Sync,
 ) {
     let fft = FftPlanner::new().plan_fft_forward(period);
@@ -412,11 +433,12 @@ fn even_lines(
         |[buffer, scratch], (i, mut row)| {
             for k in 0..=period / 2 {
                 let entry = Complex64::new(value(i, k), 0.0);
+                buffer[(period - k) % period] = if odd { -entry } else { entry };
                 buffer[k] = entry;
-                buffer[(period - k) % period] = entry;
             }
             fft.process_with_scratch(buffer, scratch);
-            row.iter_mut().zip(&*buffer).for_each(|(to, from)| *to = from.re * scale);
+            let part = |value: &Complex64| if odd { -value.im } else { value.re };
+            row.iter_mut().zip(&*buffer).for_each(|(to, from)| *to = part(from) * scale);
         },
     );
 }

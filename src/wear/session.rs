@@ -200,7 +200,7 @@ impl<S: Surface> WearSession<S> {
     fn first(&self, progress: &mut Progress) -> Result<Option<WearState>> {
         let zeros = || Array2::zeros(self.plan.grid().shape());
         let depth = self.wear.initial.clone().unwrap_or_else(|| [zeros(), zeros()]);
-        let solution = self.solved(&depth, &zeros(), &depth, None, None, progress)?;
+        let solution = self.solved(&depth[0] + &depth[1], &depth, None, None, progress)?;
         Ok(solution.map(|solution| WearState {
             distance: 0.0,
             depth,
@@ -213,10 +213,10 @@ impl<S: Surface> WearSession<S> {
         }))
     }
 
-    /// Error of the last pressure, relative to the peak, by the thickness of the layers: the largest difference between it and
-    /// the pressure on layers that are thinner by the mean of their depths, weighted by the pressure. To first order it is
-    /// that between two pressures on layers that are thinner by this mean, to first order and exactly. `None` where no layer
-    /// wears.
+    /// Error of the last pressure by the thickness of the layers: the root of its mean square within the contact, relative to the
+    /// peak. It is the difference from the pressure on layers that are thinner by the mean of their depths, weighted by the
+    /// pressure; to first order, that between two pressures on layers that are thinner by this mean, to first order and
+    /// exactly. `None` where no layer wears.
     ///
     /// # Errors
     /// As [`WearSession::advance`].
@@ -258,8 +258,7 @@ impl<S: Surface> WearSession<S> {
         let even = even.transpose()?;
         let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
         let peak = last.solution.peak_pressure();
-        let apart =
-            Zip::from(pressure).and(&other).fold(0.0_f64, |most, a, b| most.max((a - b).abs()));
+        let apart = difference([pressure, pressure, &other]);
         Ok((peak > 0.0).then_some(apart / peak))
     }
 
@@ -269,12 +268,11 @@ impl<S: Surface> WearSession<S> {
         (!operators.is_empty()).then(|| self.plan.with_beside(operators))
     }
 
-    /// The contact of the worn bodies, between which `removed` is taken off too, on `springs`, with layers that are thinner
-    /// by the depths `missing`; `None` where it was stopped.
+    /// The contact of the shape on bodies from which so much is `worn` together, on `springs`, with layers that are thinner by
+    /// the depths `missing`; `None` where it was stopped.
     fn solved(
         &self,
-        [body, counterbody]: &[Array2<f64>; 2],
-        removed: &Array2<f64>,
+        worn: Array2<f64>,
         missing: &[Array2<f64>; 2],
         springs: Option<Array2<f64>>,
         initial: Option<&Array2<f64>>,
@@ -285,7 +283,6 @@ impl<S: Surface> WearSession<S> {
             initial: initial.cloned(),
             ..self.wear.options.clone()
         };
-        let worn = body + counterbody + removed;
         let is_new = worn.iter().all(|depth| *depth <= 0.0) && initial.is_none();
         let worn = OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn);
         let shape: &dyn Surface = if is_new { &self.shape } else { &worn };
@@ -307,7 +304,7 @@ impl<S: Surface> WearSession<S> {
         solution.require_converged(options.tolerance).map(Some)
     }
 
-    /// The state after `last`.
+    /// The state after `last`, which is on the grid of the plan then.
     fn step(&mut self, last: &mut WearState, progress: &mut Progress) -> Result<Option<WearState>> {
         loop {
             let Some(left) = self.left(last.distance) else {
@@ -316,8 +313,10 @@ impl<S: Surface> WearSession<S> {
             let Some(trial) = self.controlled(last, left, progress)? else {
                 return Ok(None);
             };
-            let grow = self.touched(&trial.solution);
-            if let Some(most) = self.most_cells.filter(|_| grow != [false; 2]) {
+            if let Some(most) = self.most_cells
+                && let grow = self.touched(&trial.solution)
+                && grow != [false; 2]
+            {
                 let Some(wider) = self.regrid(last, grow, most, progress)? else {
                     return Ok(None);
                 };
@@ -636,18 +635,21 @@ impl<S: Surface> WearSession<S> {
             ),
         };
         let mut rates = [0, 1].map(|k| last.depth[k].mapv(|depth| self.rates[k].at(depth)));
-        let after = |rates: &[Array2<f64>; 2], work: &Array2<f64>| {
-            [0, 1].map(|k| &last.depth[k] + &(&rates[k] * work))
-        };
-        let mut depth = after(&rates, &(&per_pressure * &expected + &first));
+        let mut depth = last.depth.clone();
+        for (depth, rates) in depth.iter_mut().zip(&rates) {
+            let cells = Zip::from(depth).and(rates).and(&per_pressure).and(&expected).and(&first);
+            cells.for_each(|depth, rate, per_pressure, p, first| {
+                *depth += rate * (per_pressure * p + first);
+            });
+        }
         let mut initial = expected;
         for round in 1.. {
-            let total = &rates[0] + &rates[1];
-            let springs = &total * &per_pressure;
-            let removed = total * &first;
+            let cells = Zip::from(&rates[0]).and(&rates[1]);
+            let springs = cells.and(&per_pressure).map_collect(|a, b, work| (a + b) * work);
+            let cells = Zip::from(&last.depth[0]).and(&last.depth[1]).and(&rates[0]).and(&rates[1]);
+            let worn = cells.and(&first).map_collect(|v, w, a, b, work| v + w + (a + b) * work);
             let soft = springs.iter().any(|c| *c > 0.0).then(|| springs.clone());
-            let solution =
-                self.solved(&last.depth, &removed, &depth, soft, Some(&initial), progress)?;
+            let solution = self.solved(worn, &depth, soft, Some(&initial), progress)?;
             let Some(mut solution) = solution else {
                 return Ok(None);
             };
@@ -655,18 +657,19 @@ impl<S: Surface> WearSession<S> {
             let pressure = worn_by(&solution, &springs, one_cell);
             // What springs gave is worn off.
             solution.release_springs(springs * &pressure);
-            let work = &per_pressure * &pressure + &first;
+            let cells = Zip::from(&per_pressure).and(&pressure).and(&first);
+            let work = cells.map_collect(|per_pressure, p, first| per_pressure * p + first);
+            let mut reached = last.depth.clone();
             let mut changed = 0.0_f64;
-            let mut next = rates.clone();
-            for (k, next) in next.iter_mut().enumerate() {
-                Zip::from(next).and(&last.depth[k]).and(&work).for_each(|rate, depth, work| {
+            for (k, (rates, depth)) in rates.iter_mut().zip(&mut reached).enumerate() {
+                Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
                     let mean = self.rates[k].mean(*depth, *work);
                     changed =
                         changed.max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
+                    *depth += *rate * work;
                     *rate = mean;
                 });
             }
-            let reached = after(&rates, &work);
             let lag = self.layers.as_ref().map_or(0.0, |layers| layers.apart(&reached, &depth));
             depth = reached;
             if changed <= SETTLED && lag <= LAG || round == ROUNDS {
@@ -680,7 +683,6 @@ impl<S: Surface> WearSession<S> {
                 }));
             }
             initial.clone_from(&solution.pressure);
-            rates = next;
         }
         unreachable!("the loop ends by its limit")
     }
@@ -727,8 +729,8 @@ impl<S: Surface> WearSession<S> {
             self.layers = Some(TopLayers::plan(&self.plan)?);
         }
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
-        let none = Array2::zeros(grid.shape());
-        let solution = self.solved(&depth, &none, &depth, None, None, progress)?;
+        let worn = &depth[0] + &depth[1];
+        let solution = self.solved(worn, &depth, None, None, progress)?;
         (self.change, self.start) = (None, None);
         Ok(solution.map(|solution| WearState {
             depth,

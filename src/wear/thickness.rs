@@ -16,7 +16,7 @@
 //! F(k′, k) = S + (λ/M)(e′ + e) − Q (cos²θ + ν sin²θ) e e′         F(k, k) = ∂c11/∂h
 //! ```
 //!
-//! symmetric, as the matrices E are. The pressure on the slope of the worn surface is left out, as it is with all shapes.
+//! symmetric, as the matrices E are. In cells, a part c of S is that of the pressure which they resolve. The pressure on the slope of the worn surface is left out, as it is with all shapes.
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -112,8 +112,10 @@ impl TopLayers {
 /// What the operator has of a layer.
 #[derive(Debug, Clone)]
 struct Constants {
-    /// S
+    /// S, less what counts for the resolved pressure.
     own: f64,
+    /// c: what counts for the resolved pressure.
+    resolved: f64,
     /// λ/M
     ratio: f64,
     /// Q
@@ -125,8 +127,12 @@ struct Constants {
 impl From<&TopLayer> for Constants {
     fn from(layer: &TopLayer) -> Self {
         let (g, nu) = (layer.material.shear(), layer.material.poisson());
+        // In a line contact, strains have one direction.
+        let resolved =
+            if layer.strain.is_line() { 0.0 } else { (1.0 - 2.0 * nu).powi(2) / (4.0 * g) };
         Self {
-            own: (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu)),
+            own: (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu)) - resolved,
+            resolved,
             ratio: nu / (1.0 - nu),
             modulus: layer.material.plane_strain_modulus(),
             poisson: nu,
@@ -170,7 +176,10 @@ struct Thinned {
 impl Thinned {
     /// The operator for pressures and displacements in a window of the grid.
     fn on(self, window: Window, threads: &Threads) -> Thinning {
-        let domain = enclosing(&window, &self.worn);
+        let domain = match self.layer.strain.repeats() {
+            true => full_window(self.depth.dim().into()),
+            false => enclosing(&window, &self.worn),
+        };
         let strains = self.layer.strain.window([domain[0].len(), domain[1].len()], threads);
         Thinning { worn: self, window, domain, strains, fields: Mutex::default() }
     }
@@ -192,6 +201,8 @@ struct Thinning {
 #[derive(Debug, Default)]
 struct Fields {
     pressure: Vec<f64>,
+    /// L p
+    resolved: Vec<f64>,
     tensor: Vec<f64>,
     sums: Vec<f64>,
 }
@@ -216,7 +227,7 @@ impl Beside for Thinning {
             start..start + columns
         };
         let mut fields = self.fields.lock().unwrap_or_else(PoisonError::into_inner);
-        let Fields { pressure: p, tensor, sums } = &mut *fields;
+        let Fields { pressure: p, resolved, tensor, sums } = &mut *fields;
         p.clear();
         p.resize(cells, 0.0);
         tensor.resize(count * cells, 0.0);
@@ -225,6 +236,14 @@ impl Beside for Thinning {
             p[row(i)].copy_from_slice(&pressure[i * columns..][..columns]);
         }
         self.strains.strain(p, tensor, threads);
+        resolved.clear();
+        if layer.resolved > 0.0 {
+            resolved.extend_from_slice(p);
+            self.strains.resolve(resolved);
+            let cells = resolved.iter_mut().zip(each_cell(&self.domain));
+            cells.for_each(|(p, (i, j))| *p *= layer.resolved * depth[[i, j]]);
+            self.strains.resolve(resolved);
+        }
         // From here on p is what the cell's own strains and pressure give.
         for (at, (i, j)) in each_cell(&self.domain).enumerate() {
             let w = depth[[i, j]];
@@ -235,6 +254,7 @@ impl Beside for Thinning {
             (0..count).for_each(|k| tensor[k * cells + at] = w * made[k]);
             p[at] = w * (layer.own * p[at] + layer.ratio * Constants::trace(strains));
         }
+        p.iter_mut().zip(&*resolved).for_each(|(own, resolved)| *own += resolved);
         self.strains.adjoint(tensor, sums, threads);
         for (i, displacement) in displacement.chunks_exact_mut(columns).enumerate() {
             let own = p[row(i)].iter().zip(&sums[row(i)]);
@@ -267,7 +287,13 @@ impl Beside for Thinning {
                 [xx, xy, yy] => xx * made[0] + 2.0 * xy * made[1] + yy * made[2],
                 ref along => along.iter().sum::<f64>() * made[0],
             };
-            sum += depth[[i, j]] * product;
+            let weights = [one, other].map(|cell| {
+                layer
+                    .strain
+                    .resolved([cell[0] as isize - i as isize, cell[1] as isize - j as isize])
+            });
+            let resolved = layer.resolved * weights[0] * weights[1];
+            sum += depth[[i, j]] * (product + resolved);
         }
         -sum
     }
@@ -285,11 +311,17 @@ mod tests {
 
     use super::*;
     use crate::compliance::response::surface_compliance;
-    use crate::contact::{Setup, block};
+    use crate::contact::block;
     use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
     use crate::model::grid::Grid;
 
-    const SIDE: usize = 24;
+    const SIDE: usize = 96;
+
+    /// What cells do not resolve of waves (m, n) of the square, 1 − L: 1e-7 of waves of 4, 1e-12 of those of 1.
+    fn unresolved(waves: &[[i32; 2]]) -> f64 {
+        let numbers = waves.iter().flatten();
+        numbers.map(|k| (f64::from(*k) * 0.5 * TAU / SIDE as f64).sin().powi(8)).sum()
+    }
 
     fn threads() -> Result<Threads> {
         Threads::new(Some(1))
@@ -305,9 +337,14 @@ mod tests {
     }
 
     fn operator(body: &HalfSpace, grid: &Grid, depth: Array2<f64>) -> Result<Arc<dyn Beside>> {
-        let plan = Contact::plan(body, *grid, Setup::default())?;
+        let layer = TopLayer {
+            member: 0,
+            material: body.surface_material(),
+            thickness: body.layers()[0].thickness(),
+            strain: Arc::new(SurfaceStrain::plan(body, grid, &threads()?)?),
+        };
         let other = Array2::zeros(grid.shape());
-        let mut all = TopLayers::plan(&plan)?.thinned(&[depth, other], &threads()?);
+        let mut all = TopLayers(vec![layer]).thinned(&[depth, other], &threads()?);
         Ok(all.remove(0))
     }
 
@@ -347,14 +384,14 @@ mod tests {
     }
 
     /// Even wear is the derivative with respect to the thickness, on elastic and rigid bases and on one on which the layer
-    /// slips. Quotients over 2e-3 of the thickness err by 1e-6 of their cubes, and by the rounding of c11, 1e-13.
+    /// slips. Quotients of fourth order err by 1e-9.
     #[test]
     fn even_wear_is_the_derivative_by_the_thickness() -> Result<()> {
         let depth = 1e-2;
         for body in bodies()? {
             let operator = operator(&body, &square()?, Array2::from_elem((SIDE, SIDE), depth))?;
             let thickness = body.layers()[0].thickness();
-            for k in [[0, 1], [1, 0], [2, 3], [-5, 4], [7, 0]] {
+            for k in [[0, 1], [1, 0], [2, 3], [-3, 1], [4, 0]] {
                 let made = coefficient(&applied(&*operator, &wave(k))?, k) / -depth;
                 let alpha = f64::from(k[0]).hypot(f64::from(k[1]));
                 let c11 = |change: f64| {
@@ -369,7 +406,9 @@ mod tests {
                 let quotient =
                     |step: f64| Ok::<_, crate::Error>((c11(step)? - c11(-step)?) / (2.0 * step));
                 let due = (4.0 * quotient(step)? - quotient(2.0 * step)?) / 3.0;
-                assert!((made - due).abs() < 1e-9 * due.abs() + 1e-10, "{k:?}: {made} {due}");
+                let scale = c11(0.0)?.max(due.abs());
+                let rest = 1e-9 + unresolved(&[k]);
+                assert!((made - due).abs() < rest * scale, "{k:?}: {made} {due}");
             }
         }
         Ok(())
@@ -421,7 +460,8 @@ mod tests {
                 let turned = cos * cos + nu * (1.0 - cos * cos);
                 let modulus = material.plane_strain_modulus();
                 let due = 0.5 * (own + nu / (1.0 - nu) * (e + f) - modulus * turned * e * f);
-                assert!((made - due).abs() < 1e-12 * own, "{k:?} {worn:?}: {made} {due}");
+                let rest = 1e-12 + unresolved(&[k, to]);
+                assert!((made - due).abs() < rest * own, "{k:?} {worn:?}: {made} {due}");
             }
         }
         Ok(())
@@ -472,8 +512,8 @@ mod tests {
     }
 
     /// Strains under cells are those of waves: on a rigid base, from which they end some thicknesses away. Cells average their
-    /// pressure, by sin(kd/2)/(kd/2) along each side, but where the strain is that of the cell's own pressure; strains of
-    /// different directions err by what waves of a cell's length add, some (k d)²/10.
+    /// pressure, by sin(kd/2)/(kd/2) along each side, but where the strain is that of the cell's own pressure. Strains of
+    /// single directions err by that and by images of a homogeneous half-space beyond the grid.
     #[test]
     fn strains_under_cells_are_those_of_waves() -> Result<()> {
         let body = &bodies()?[1];
@@ -511,7 +551,7 @@ mod tests {
                 let trace = sums[0] + sums[2];
                 assert!((trace - due).abs() < 1e-5 * local.abs(), "{m} {n}: {trace} {due}");
                 let (c, s) = (m / k, n / k);
-                let rough = (0.1 * (k * dy).powi(2) + 1e-5) * strain.abs().max(local.abs());
+                let rough = (0.05 * (k * dy).powi(2) + 1e-3) * strain.abs().max(local.abs());
                 for (sum, direction) in sums.into_iter().zip([c * c, c * s, s * s]) {
                     let due = strain * direction;
                     assert!((sum - due).abs() < rough, "{m} {n}: {sum} {due}");

@@ -277,14 +277,29 @@ fn other_orders_are_refused() -> Result<()> {
 }
 
 /// Convolutions to 1e-6 of the ellipse whose creepage works against its spin, with which the pole of the motion lies in the
-/// contact: hardly more on finer grids, as each starts from half the cells. Measured: 36, 34 and 67, and 10 % for
+/// contact: hardly more on finer grids, as each starts from half the cells. Measured: 35, 37 and 52, and 10 % for
 /// rounding; first order takes 188, 642 and 1407 to 1e-8.
 #[test]
 #[ignore = "slow"]
 fn convolutions_hardly_grow() -> Result<()> {
-    for (cells, most) in [(44, 40), (88, 38), (176, 74)] {
+    for (cells, most) in [(44, 38), (88, 41), (176, 57)] {
         let case = cases("friction/rolling.json").remove(2);
         let solution = Ellipse::of(case, cells)?.roll()?;
+        assert!(solution.report.convolutions <= most, "{cells}: {:?}", solution.report);
+    }
+    Ok(())
+}
+
+/// Convolutions to 1e-6 of two coated bodies that slip almost everywhere: no more on finer grids. Measured: 18, 22 and 23,
+/// and 10 % for rounding; with sums that do not decay where cells slip, 21, 34 and 57.
+#[test]
+#[ignore = "slow"]
+fn convolutions_do_not_grow_where_coated_bodies_slip() -> Result<()> {
+    for (cells, most) in [(64, 20), (128, 25), (256, 26)] {
+        let width = 2.0 / 0.83;
+        let contact = equal(coated(4.0, 0.3)?, Grid::new([cells, cells], [width, width])?)?;
+        let creeping = rolling(load(0.3), 0.4, RollingDirection::PlusX, [Some(3e-3), None]);
+        let solution = rolled(&contact, &ball()?, &creeping, &precise(1e-6))?;
         assert!(solution.report.convolutions <= most, "{cells}: {:?}", solution.report);
     }
     Ok(())

@@ -238,6 +238,18 @@ fn grids_grow_with_the_contact() -> Result<()> {
     Ok(())
 }
 
+/// Root of the mean square of the difference of two pressures over the cells that are in contact with all their neighbours.
+pub(crate) fn apart_within(one: &Array2<f64>, other: &Array2<f64>) -> f64 {
+    let (nx, ny) = one.dim();
+    let carries = |i: usize, j: usize| one[[i, j]] > 0.0 && other[[i, j]] > 0.0;
+    let around = |i: usize, n: usize| (i.max(1) - 1)..=(i + 1).min(n - 1);
+    let within = one
+        .indexed_iter()
+        .filter(|((i, j), _)| around(*i, nx).all(|i| around(*j, ny).all(|j| carries(i, j))));
+    let squares: Vec<f64> = within.map(|(at, p)| (p - other[at]).powi(2)).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
 /// Thinner layers change the pressure; the estimate is that of the contact with a coat that is thinner by the depth.
 #[test]
 fn frozen_thickness_has_its_estimate() -> Result<()> {
@@ -257,9 +269,9 @@ fn frozen_thickness_has_its_estimate() -> Result<()> {
         HalfSpace::new(Elastic::new(1.0, 0.3)?, [Layer::new(Elastic::new(3.0, 0.3)?, 8e-5)?])?;
     let thin = Contact::plan(thin, *plan.grid(), Setup::default())?;
     let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &Options::default())?;
-    let due = apart(&exact.pressure, &state.solution.pressure) / state.solution.peak_pressure();
+    let due = apart_within(&state.solution.pressure, &exact.pressure);
     // Both solves to 1e-8, of whose pressure the root counts.
-    near!(error, due, 0.01);
+    near!(error, due / state.solution.peak_pressure(), 0.01);
     Ok(())
 }
 

@@ -10,6 +10,7 @@ use nacre::{
 };
 use ndarray::Array2;
 
+use super::histories::apart_within;
 use super::waves::states;
 use crate::support::checks::{apart, largest};
 
@@ -49,11 +50,12 @@ fn even(
     let mut session = WearSession::new(plan, shape, motion, wear, false)?;
     let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
     let state = session.advance(go_on)?.expect("the first state");
+    assert!(session.advance(go_on)?.is_none());
     Ok((state.solution, session.thickness_error(go_on)?))
 }
 
-/// Of a coat that is evenly thinner by 5 to 40 %, the peak is within 0.3 % to first order; as thick as before it errs by 1.7 to
-/// 11.4 % in line contact. The estimates are the errors.
+/// Of a coat that is evenly thinner by 5 to 40 %, the peak under a roller is within 0.3 % to first order; as thick as before it
+/// errs by 1.7 to 11.4 %. Under a ball, it is 0.1 to 1.5 % and 3 to 24 %. The estimates are the errors within the contact.
 #[test]
 fn even_wear_is_a_thinner_coat() -> Result<()> {
     let frozen_errors = [(0.05, 0.017), (0.1, 0.033), (0.2, 0.064), (0.4, 0.114)];
@@ -75,17 +77,21 @@ fn even_wear_is_a_thinner_coat() -> Result<()> {
                     .collect::<Result<Vec<_>>>()?
                     .try_into()
                     .expect("two");
-            below!(error(&first).abs(), 0.003, part);
             if place == 0 {
-                // Two digits of the sheet, on cells of its own.
+                below!(error(&first).abs(), 0.003, part);
+                // Two digits, of cells of another length.
                 below!((error(&frozen) - due).abs(), 0.001, part);
             } else {
-                assert!(error(&frozen) > 10.0 * error(&first).abs(), "{part}");
+                // What is left is of second order.
+                below!(error(&first).abs(), 0.4 * part.powi(2), part);
+                assert!(error(&frozen) > 0.55 * part, "{part}");
             }
             for (solution, estimate) in [(frozen, of_frozen), (first, of_first)] {
-                let due = apart(&solution.pressure, &exact.pressure) / solution.peak_pressure();
+                let due = apart_within(&solution.pressure, &exact.pressure);
                 // Solves to 1e-8, of whose pressure the root counts.
-                below!((estimate.expect("a layer wears") - due).abs(), 3e-4, part);
+                let rest =
+                    (estimate.expect("a layer wears") - due / solution.peak_pressure()).abs();
+                below!(rest, 3e-4, part);
             }
         }
     }
@@ -138,7 +144,7 @@ fn what_has_no_thinner_layers_is_refused() -> Result<()> {
         Ok(session.err().map_or_else(String::new, |error| error.to_string()))
     };
     let grid = Grid::new([16, 16], [3.0, 3.0])?;
-    let ended = coated(THICKNESS)?.with_ends([None, Some(1.0)])?;
+    let ended = coated(THICKNESS)?.with_ends([None, Some(1.125)])?;
     assert!(
         message(ended, grid)?
             .starts_with("thickness must be \"frozen\" for layered bodies with free ends")

@@ -5,14 +5,17 @@ from __future__ import annotations
 import dataclasses
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import nacre._core as core
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
-def read_fields(frozen: Any) -> None:
+
+def read_fields(frozen: DataclassInstance) -> None:
     """Make the numbers of a new, frozen dataclass those of Python, or raise an error.
 
     NumPy's numbers and whole floats become `int` and `float`, and pairs of them tuples. A class of

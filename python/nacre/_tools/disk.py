@@ -14,7 +14,7 @@ import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -75,7 +75,7 @@ def is_study(path: Path) -> bool:
         return _seal(file)[:MARK] == STUDY
 
 
-def read(path: Path, names: Collection[str]) -> tuple[str, dict[str, npt.NDArray[Any]]]:
+def read(path: Path, names: Collection[str]) -> tuple[str, dict[str, npt.NDArray[np.float64]]]:
     """Return the state of a result as text, and those of its variables that have these names."""
     import h5py
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -51,7 +50,7 @@ def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> d
     return argument
 
 
-def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, Any]:
+def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, object]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
     return {
         name: core.HalfSpace(one) if name in BODIES and isinstance(one, core.Elastic) else one

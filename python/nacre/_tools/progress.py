@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from datetime import timedelta
 from importlib.util import find_spec
 from threading import Event, Thread, current_thread, main_thread
-from typing import Any
 
 from nacre._tools.extras import extra
 
@@ -21,10 +20,11 @@ EVERY = 60.0
 """Shortest time between two lines in a log [s]: a night has a few hundred of them."""
 
 
-def check_progress(progress: object) -> None:
-    """Raise a `TypeError` unless an argument is a function, or None."""
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress must be callable, got {progress!r}")
+def check_progress(progress: object) -> Callable[..., object] | None:
+    """Return an argument that is a function or None, or raise a `TypeError`."""
+    if progress is None or callable(progress):
+        return progress
+    raise TypeError(f"progress must be callable, got {progress!r}")
 
 
 @contextmanager
@@ -66,17 +66,17 @@ def case_progress(progress: bool | None, total: int, stored: int) -> Iterator[Ca
 
 
 @contextmanager
-def lasting(what: str, progress: object = None) -> Iterator[Any]:
+def lasting(what: str, progress: object = None) -> Iterator[Callable[..., object] | None]:
     """Yield what is called with the progress: `progress`, or a bar in a terminal or a notebook.
 
     It is called with the share that is done or with a text. Nothing is shown in the first two
     seconds, inside of other work that is shown, in threads, or without rich.
     """
-    check_progress(progress)
+    callback = check_progress(progress)
     watched = "ipykernel" in sys.modules or sys.stderr.isatty()
     outermost = not _open_bars and current_thread() is main_thread()
-    if progress is not None or not (watched and outermost) or find_spec("rich") is None:
-        yield progress
+    if callback is not None or not (watched and outermost) or find_spec("rich") is None:
+        yield callback
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

@@ -5,23 +5,30 @@ from __future__ import annotations
 import html
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 import nacre
 import nacre._core as core
-from nacre.bearing import PairSolution
+from nacre._tools.typing import Field
+from nacre.bearing import BearingSolution, PairSolution
+from nacre.bearing.kinds import RollerBearing
 from nacre.case import Case, CaseError, toml
 from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
+from nacre.contact.friction import FrictionSolution
+from nacre.contact.solution import Solution
+from nacre.contact.stresses import depth_pictures
+from nacre.indent import IndentSolution
 from nacre.indent import solve as solve_indentation
-from nacre.indent._reading import apparent_modulus, substrate_verdict
+from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.results import display, report
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
 from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
+Contact = Solution | FrictionSolution
 Going = Callable[[], bool]
 """Function that says whether the answer is still wanted."""
 
@@ -39,8 +46,6 @@ BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
-DEPTHS, DEEPEST = 40, 1.25
-"""Depths of the picture of stresses, and the largest over the width of the contact."""
 DIGITS = 5
 """Digits of the main number."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
@@ -59,6 +64,12 @@ class Measured(NamedTuple):
 
 
 NONE = Measured({}, {}, ())
+
+
+class Printed(Protocol):
+    """A result that is printed as rows of names and values."""
+
+    def _rows(self) -> list[tuple[str, str]]: ...
 
 
 class Stopped(Exception):
@@ -120,7 +131,8 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
     solution = _solved_contact(case, arguments, going)
     bare = _bare(case, arguments, going)
-    rows, beside = (one and _selected(one, CONTACT_ROWS) for one in (solution, bare))
+    rows = _selected(solution, CONTACT_ROWS)
+    beside = [] if bare is None else _selected(bare, CONTACT_ROWS)
     parts: Answer = {
         "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
         "rows": _rows(rows, beside),
@@ -146,19 +158,19 @@ def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
     return _answer(parts | _judged(summary.verdict))
 
 
-def _solved_contact(case: Case, arguments: Answer, going: Going) -> Any:
+def _solved_contact(case: Case, arguments: Answer, going: Going) -> Contact:
     """Return the solution of a contact, the last one of a history."""
     outcome = getattr(nacre, case.friction or "solve")(
         **arguments, progress=lambda *_: going(), check=False
     )
     _check(going)
-    solution = last_of(outcome)
+    solution: Contact = last_of(outcome)
     if not solution.report.converged:
         raise CaseError("no solution was found: the solve did not converge")
     return solution
 
 
-def _bare(case: Case, arguments: Answer, going: Going) -> Any:
+def _bare(case: Case, arguments: Answer, going: Going) -> Contact | None:
     """Return the solution without layers, or None where there are none or friction is solved."""
     body = arguments["body"]
     if case.friction or not isinstance(body, core.HalfSpace) or not body.layers:
@@ -220,18 +232,18 @@ def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
         "picture-2": _ring(solution.second if is_pair else solution),
         "warnings": list(solution.report.warnings),
     }
-    is_compared = is_tilted and not is_pair and bearing.rolls
+    is_compared = is_tilted and isinstance(bearing, RollerBearing)
     following = {"draft": "full", "full": "stress" if is_compared else None}
     return _answer(parts | _judged(solution.verdict), following.get(stage))
 
 
 def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
     """Return the answer on an indentation, with and without the substrate."""
-    given = next(name for name in ("load", "approach", "radius") if name in arguments)
-    values = np.atleast_1d(np.asarray(arguments[given], dtype=float))
+    variable = next(name for name in ("load", "approach", "radius") if name in arguments)
+    values = np.atleast_1d(np.asarray(arguments[variable], dtype=float))
     if stage == "draft":
         values = values[::-1][::EVERY][::-1]
-    arguments = arguments | {given: values}
+    arguments = arguments | {variable: values}
     solution = solve_indentation(**arguments)
     _check(going)
     last = int(np.argmax(solution.approach))
@@ -248,7 +260,7 @@ def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Ans
     parts: Answer = {
         "peak": ("largest depth", display.number(float(solution.approach[last]), "m", DIGITS)),
         "rows": _rows([*numbers.items()]),
-        "picture-1": _loads(arguments, solution, given),
+        "picture-1": _loads(arguments, solution, variable),
         "warnings": list(solution.warnings),
     }
     reading = apparent_modulus(solution)
@@ -285,7 +297,7 @@ def _judged(verdict: Verdict) -> Answer:
     return {"verdict": {"level": verdict.level, "words": verdict.words, "lines": verdict.lines}}
 
 
-def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
+def _selected(result: Printed, names: set[str]) -> list[tuple[str, str]]:
     return [row for row in result._rows() if row[0] in names]
 
 
@@ -316,7 +328,7 @@ def _figure(caption: str, drawing: str) -> str:
     return f"<figure>{drawing}<figcaption>{words}</figcaption></figure>"
 
 
-def _section(solution: Any, axis: int | None = None) -> tuple[int, Any, Any]:
+def _section(solution: Contact, axis: int | None = None) -> tuple[int, Field, Field]:
     """Return the longer axis of a contact, or another, places along it and the pressure there."""
     pressure = solution.pressure
     if axis is None:
@@ -330,7 +342,9 @@ def _section(solution: Any, axis: int | None = None) -> tuple[int, Any, Any]:
     return axis, places, np.take(pressure, peak[1 - axis], axis=1 - axis)[cells]
 
 
-def _pressures(solution: Any, other: Any, names: tuple[str, str] = ("coated", "bare")) -> str:
+def _pressures(
+    solution: Contact, other: Contact | None, names: tuple[str, str] = ("coated", "bare")
+) -> str:
     """Return the picture of the pressure along the longer side of a contact, and of another."""
     axis, x, pressure = _section(solution)
     curves = [Curve(x, pressure, "" if other is None else names[0])]
@@ -340,43 +354,13 @@ def _pressures(solution: Any, other: Any, names: tuple[str, str] = ("coated", "b
     return _figure("Pressure through the largest.", drawing)
 
 
-def _stresses(solution: Any, bare: Any, keywords: Answer) -> str:
+def _stresses(solution: Contact, bare: Contact | None, keywords: Answer) -> str:
     """Return the picture of the von Mises stress against depth, coated and bare."""
-    body = solution.report.body
-    interfaces = [float(z) for z in body.interfaces] if isinstance(body, core.HalfSpace) else []
-    widths = [high - low for low, high in solution.contact_extent if high > low]
-    bottom = DEEPEST * min(widths, default=min(solution.grid.size))
-    inset = (0.0, 3 * interfaces[0]) if interfaces and interfaces[0] < bottom / 10 else None
-    sliding = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
-    curves = [Curve(*_over_depth(solution, bottom, interfaces, sliding), "coated" if bare else "")]
-    if bare is not None:
-        sliding.pop("residual", None)
-        curves.append(Curve(*_over_depth(bare, bottom, interfaces, sliding), "bare", "dashed"))
-    axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
-    words = "Von Mises stress below the largest pressure; dotted: interfaces"
-    words += "; inset: the first three thicknesses" if inset else ""
-    return _figure(f"{words}.", lines(curves, axes, interfaces, inset))
+    options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
+    return "".join(_figure(*one) for one in depth_pictures(solution, bare, **options))
 
 
-def _over_depth(
-    solution: Any, bottom: float, interfaces: Sequence[float], sliding: Answer
-) -> tuple[Any, Any]:
-    """Return depths and von Mises stresses; an interface is there twice, for its two sides."""
-    faces = [0.0, *(z for z in interfaces if z < bottom)]
-    within = [np.linspace(top, 3 * top or bottom, DEPTHS) for top in faces]
-    within += [np.linspace(0.0, z, DEPTHS // 3) for z in faces[1:]]
-    below = np.unique(np.concatenate([one[one <= bottom] for one in within]))
-    place = dict(zip("xy", solution.peak_position, strict=True))
-    stresses = [solution.stress(below, **place, **sliding).von_mises]
-    if faces[1:]:
-        above = solution.stress(np.array(faces[1:]), side="above", **place, **sliding).von_mises
-        stresses.append(above)
-    depths = np.concatenate([below, faces[1:]])
-    order = np.lexsort((-np.arange(depths.size), depths))
-    return depths[order], np.concatenate([np.ravel(one) for one in stresses])[order]
-
-
-def _along_roller(solution: Any, aligned: Any) -> str:
+def _along_roller(solution: BearingSolution, aligned: BearingSolution | None) -> str:
     """Return the picture of the pressure along the heaviest element, and of aligned rings."""
     curves = [Curve(*_profile(solution), "as it stands" if aligned else "")]
     if aligned is not None:
@@ -385,19 +369,20 @@ def _along_roller(solution: Any, aligned: Any) -> str:
     return _figure("Pressure along the heaviest element, inner ring.", drawing)
 
 
-def _profile(solution: Any) -> tuple[Any, Any]:
+def _profile(solution: BearingSolution) -> tuple[Field, Field]:
     """Return places along the heaviest element, and the largest pressure there."""
     heaviest = int(solution.loads[:, 0].argmax())
     if solution.lamina_pressures is not None:
+        assert isinstance(solution.bearing, RollerBearing)
         pressure = solution.lamina_pressures[heaviest, 0]
         places = ((np.arange(pressure.size) + 0.5) / pressure.size - 0.5) * solution.bearing.length
         return places, pressure
     if solution.model != "solved" or (contact := solution.contact(heaviest, "inner")) is None:
-        return [0.0], [float(solution.peak_pressures[heaviest, 0])]
+        return np.zeros(1), solution.peak_pressures[heaviest, :1]
     return contact.x, contact.pressure.max(axis=1)
 
 
-def _ring(solution: Any) -> str:
+def _ring(solution: BearingSolution) -> str:
     """Return the picture of the loads around the ring."""
     count, rows = solution.bearing.count, solution.bearing.rows
     loads = solution.loads.reshape(rows, count, 2)[:, :, 0].T
@@ -406,7 +391,7 @@ def _ring(solution: Any) -> str:
     return _figure("Loads of the elements around the ring, x to the right.", drawing)
 
 
-def _loads(arguments: Answer, solution: Any, given: str) -> str:
+def _loads(arguments: Answer, solution: IndentSolution, variable: str) -> str:
     """Return the picture of load over depth, and of the film without a substrate."""
     body = arguments["body"]
     layers = body.layers if isinstance(body, core.HalfSpace) else []
@@ -418,7 +403,7 @@ def _loads(arguments: Answer, solution: Any, given: str) -> str:
     return _figure("Load over depth.", drawing)
 
 
-def _moduli(reading: Any) -> str:
+def _moduli(reading: Reading) -> str:
     """Return the picture of the modulus that a bare film of each depth's load would have."""
     curves = [
         Curve(reading.depths, reading.moduli, "read as a bare film"),

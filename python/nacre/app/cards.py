@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.typing import AnyPath
 from nacre._tools.units import System
 from nacre.app.answer import NONE, Measured
 from nacre.app.fields import CARDS, Field, tidy
@@ -131,14 +132,14 @@ def _short(typed: object) -> str:
 def set_value(data: Data, one: Field, value: float | None) -> Data:
     """Return the data of a case with the value of a field, in the unit of the field."""
     units = str(data.get("units", "SI"))
-    kept: Any = None if value is None else one.in_case(value, units)
-    if one.path == "indent.load" and kept is not None and one.slides:
-        kept = [tidy(kept * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
+    entry: float | list[float] | None = None if value is None else one.in_case(value, units)
+    if one.path == "indent.load" and isinstance(entry, float) and one.slides:
+        entry = [tidy(entry * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
     parent, _, key = one.path.rpartition(".")
     if key.endswith("]"):
-        return dict(core.with_value(data, one.path, kept))
+        return dict(core.with_value(data, one.path, entry))
     table = {name: old for name, old in core.at(data, parent).items() if name != key}
-    return dict(core.with_value(data, parent, table if kept is None else table | {key: kept}))
+    return dict(core.with_value(data, parent, table if entry is None else table | {key: entry}))
 
 
 def check_size(data: Data) -> None:
@@ -220,7 +221,7 @@ def _merged(data: Data, changes: Data) -> Data:
     return {key: value for key, value in (data | tables).items() if value is not None}
 
 
-def own_card(path: Any) -> Card:
+def own_card(path: AnyPath) -> Card:
     """Return the card of a case file; what it measures is read here, once.
 
     The page writes no file: neither that of a study, nor that of a history.
@@ -250,13 +251,13 @@ def _rank(path: str) -> int:
 
 def _others(data: Data, fields: tuple[Field, ...]) -> Iterator[Field]:
     """Yield fields of all numbers that are not in others, and of limits that are missing."""
-    shown = {one.path for one in fields} | (set(CHOSEN) if fields else set())
+    paths = {one.path for one in fields} | (set(CHOSEN) if fields else set())
     for path, value in core.numbers(data):
-        if not {path, path.rpartition("[")[0]} & shown:
+        if not {path, path.rpartition("[")[0]} & paths:
             yield _field(data, path, value)
     for name, table in data.get("materials", {}).items():
         for key in LIMITS if isinstance(table, dict) else ():
-            if key not in table and f"materials.{name}.{key}" not in shown:
+            if key not in table and f"materials.{name}.{key}" not in paths:
                 yield _field(data, f"materials.{name}.{key}", None)
 
 

@@ -8,14 +8,13 @@ import threading
 import time
 import warnings
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
-from typing import Any
 
 import nacre
-from nacre.app.answer import STAGES, Going, Stopped, answer
+from nacre.app.answer import STAGES, Answer, Going, Stopped, answer
 from nacre.app.cards import Card, FieldError
 from nacre.app.page import files
 from nacre.case import CaseError
@@ -95,13 +94,17 @@ class Server(ThreadingHTTPServer):
 
         return is_wanted
 
-    def reply(self, question: dict[str, Any], stages: tuple[str, ...]) -> dict[str, Any]:
+    def reply(self, question: Mapping[str, object], stages: tuple[str, ...]) -> Answer:
         """Return the answer to a question."""
         stage, values = question.get("stage"), question.get("values", {})
         card = self.cards.get(str(question.get("card")))
         page, age = str(question.get("page"))[:60], question.get("age", 0)
-        is_age = isinstance(age, int | float) and not isinstance(age, bool)
-        if card is None or stage not in stages or not isinstance(values, dict) or not is_age:
+        if not (
+            card is not None
+            and (isinstance(stage, str) and stage in stages)
+            and isinstance(values, dict)
+            and (isinstance(age, int | float) and not isinstance(age, bool))
+        ):
             raise Refused(400, "no such question")
         going = self.going(page, age)
         try:
@@ -143,7 +146,7 @@ class Handler(BaseHTTPRequestHandler):
         """Send an answer."""
         self._answered(self._reply)
 
-    def _answered(self, make: Any) -> None:
+    def _answered(self, make: Callable[[], tuple[str, bytes]]) -> None:
         try:
             self._check_origin()
             code, (kind, body) = 200, make()

@@ -15,8 +15,6 @@ from nacre.bearing.kinds import BallBearing
 
 FLATTEST = 100.0
 """Largest radius of a groove over the diameter of a ball, which is plane beside it."""
-STATIC = 4.2e9
-"""Pressure of the static rating of ball bearings [Pa], ISO 76:2006."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +71,9 @@ class _Balls(BallBearing, Solvable):
                 math.acos(1 - high / (f * self.diameter)) for high in (self.radius, height)
             )
             if self.shoulder_height is None and self.nominal_angle:
-                angle = max(angle, self.nominal_angle + self.spread(ring, STATIC))
+                angle = max(
+                    angle, self.nominal_angle + self.spread(ring, self.standards.static_pressure)
+                )
             angles.append(min(angle, middle))
         return angles[0], angles[1]
 
@@ -251,6 +251,11 @@ class AngularContactBall(_Balls):
     def nominal_angle(self) -> float:
         """Nominal contact angle α [rad]."""
         return self.contact_angle
+
+    def _check_loosest(self) -> None:
+        """Raise a `ValueError` where a clearance that is given is one of millimetres."""
+        if vars(self)["clearance"] is not None:
+            super()._check_loosest()
 
     @property
     def play(self) -> float:

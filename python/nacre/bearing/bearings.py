@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 from nacre.bearing.geometry import Bearing, Ring
 from nacre.bearing.iso import rating
 from nacre.bearing.solution import BearingSolution, Model
 from nacre.bearing.solving import (
-    CELLS,
     Along,
     BearingOptions,
     Operation,
@@ -40,7 +39,7 @@ class Solvable(Bearing):
         tolerance: float = 1e-9,
         max_iterations: int = 50,
         threads: int | None = None,
-        progress: Any = None,
+        progress: Callable[[int, float], object] | None = None,
         check: bool = True,
     ) -> BearingSolution:
         """Load, tilt and pressure of every element under a load or displacement of the inner ring.
@@ -113,6 +112,6 @@ class Solvable(Bearing):
         """
         ring = RingConditions(force, displacement, moment, tilt)
         operation = Operation(rotation, speed, rotating)
-        cells = CELLS[self.rolls] if cells is None else cells
+        cells = self.usual_cells if cells is None else cells
         options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
         return solve_bearing(self, ring, operation, options)

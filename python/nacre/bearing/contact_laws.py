@@ -235,7 +235,7 @@ class Solved:
         self.plans: dict[tuple[int, int], Contact] = {}
         self.last: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
         """Place, solution and stiffness of each contact at the last places."""
-        power = 2 if bearing.rolls else 3  # of the width, in the load
+        power = bearing.width_power
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
         heaviest = 2.0 ** (steps * power / STEPS)
@@ -300,7 +300,7 @@ class Solved:
         body, counterbody = self.bearing.bodies(RINGS[ring])
         cells = contact.grid.shape[0] // 2, contact.grid.shape[1] // 2
         plan = Contact(body, core.Grid(cells, contact.grid.size), counterbody)
-        moment = contact.moment[0] if self.bearing.leans else None
+        moment = contact.moment[0] if self.bearing.carries_moments else None
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
             try:
@@ -357,7 +357,7 @@ class Solved:
                         stiffness[j, r] = tangent[:2, :2]
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
-        if not self.bearing.leans:
+        if not self.bearing.carries_moments:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
         self.last = solved

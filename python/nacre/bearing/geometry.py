@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -130,6 +131,30 @@ def _following(source: str) -> Any:
     return Following(source)
 
 
+class Standards(NamedTuple):
+    """Numbers that ISO 76 and ISO 281 have for balls, and others for rollers."""
+
+    element: Literal["ball", "roller"]
+    """Rolling elements."""
+    life_exponent: float
+    """Exponent p of the life ``(C/P)^p``: ISO 281:2007."""
+    static_pressure: float
+    """Pressure of the static rating [Pa], ISO 76:2006, 3.2.
+
+    Self-aligning ball bearings, of 4.6 GPa, are not among nacre's.
+    """
+    limit_share: float
+    """Load of the heaviest element over the mean one at the fatigue load limit, ISO 281:2007, annex
+    B: (B.9) and (B.14)."""
+    static_over_limit: float
+    """Static rating over the fatigue load limit: annex B, (B.18) to (B.21)."""
+    size_power: float
+    """Power of 100 mm over the pitch diameter by which limits of larger bearings fall: annex B."""
+
+
+BALLS = Standards("ball", 3.0, 4.2e9, 1 / 0.2288, 22.0, 0.5)
+ROLLERS = Standards("roller", 10 / 3, 4.0e9, 1 / 0.2453, 8.2, 0.3)
+
 KNOWN: dict[str, type[Bearing]] = {}
 """Bearings by the names of their classes, which files have."""
 
@@ -165,9 +190,20 @@ class Bearing(ABC):
 
     kind: ClassVar[str]
     """Name in case files."""
-    rolls: ClassVar[bool]
-    """Whether the elements are rollers, in line contact."""
-    leans: ClassVar[bool]
+    standards: ClassVar[Standards]
+    """Numbers of the standards for the elements."""
+    usual_cells: ClassVar[tuple[int, int]]
+    """Cells of a contact by default.
+
+    With these the load of a ball at a given approach is right to 1e-4, the peak pressure of a
+    roller to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured against
+    twice as many.
+    """
+    cells_multiple: ClassVar[int] = 1
+    """Number of which the cells along an element are a multiple."""
+    width_power: ClassVar[int]
+    """Power of the width of a contact in its load, of rollers in that per length."""
+    carries_moments: ClassVar[bool] = True
     """Whether the elements tilt against the raceways and carry moments."""
     aligns: ClassVar[bool] = False
     """Whether the bearing aligns itself, so that a tilt of the ring changes nothing."""
@@ -277,12 +313,7 @@ class Bearing(ABC):
                 f"{self.count} elements are {millimetres(apart)} apart, less than their diameter, "
                 f"{millimetres(diameter)}"
             )
-        loosest = LOOSEST * diameter
-        if self.play > loosest and (self.rolls or vars(self)["clearance"] is not None):
-            raise ValueError(
-                f"clearance must be at most a tenth of the diameter of an element, "
-                f"{millimetres(loosest)}: {_si()}; got {millimetres(self.play)}"
-            )
+        self._check_loosest()
         capacity, usual = vars(self)["capacity"], self.standard_capacity
         if capacity is not None and not usual / 100 <= capacity <= 100 * usual:
             raise ValueError(
@@ -294,6 +325,15 @@ class Bearing(ABC):
                 f"clearance must be at least {millimetres(-4 * DEEPEST * diameter)}, where "
                 f"contacts of steel carry {HIGHEST / 1e9:g} GPa and are no longer small; "
                 f"got {millimetres(self.play)}"
+            )
+
+    def _check_loosest(self) -> None:
+        """Raise a `ValueError` where the clearance is one of millimetres."""
+        loosest = LOOSEST * self.diameter
+        if self.play > loosest:
+            raise ValueError(
+                f"clearance must be at most a tenth of the diameter of an element, "
+                f"{millimetres(loosest)}: {_si()}; got {millimetres(self.play)}"
             )
 
     @property
@@ -331,6 +371,16 @@ class Bearing(ABC):
     def nominal_angle(self) -> float:
         """Nominal contact angle α [rad]."""
         return 0.0
+
+    @property
+    def carries_thrust(self) -> bool:
+        """Whether contacts have forces along the bearing's axis."""
+        return True
+
+    @property
+    def needs_thrust(self) -> bool:
+        """Whether a thrust alone holds the rings together, as angles follow the load."""
+        return not self.carries_moments and self.nominal_angle > 0
 
     @property
     def radius(self) -> float:
@@ -466,7 +516,7 @@ class Bearing(ABC):
         return {field.name: vars(self)[field.name] for field in dataclasses.fields(self)}
 
 
-def bearing_from(data: Any) -> Bearing:
+def bearing_from(data: Mapping[str, object]) -> Bearing:
     """Return the bearing that plain data describe; other data raise an error."""
     ((name, fields),) = data.items()
     return KNOWN[name](**decode(fields))

@@ -260,7 +260,7 @@ def reference_life(
     capacity = bearing.capacity
     assert capacity is not None
     ring_capacities = capacities(bearing, capacity)
-    if bearing.rolls:
+    if isinstance(bearing, RollerBearing):
         powers, exponent, life = (4.0, 4.5), 4.5, -8 / 9
         limits = np.array(ring_capacities) * LAMINAE ** (-7 / 9)
     else:
@@ -275,6 +275,9 @@ def reference_life(
         for ring in range(2)
     )
     l10 = sums**life if sums > 0 else math.inf
-    slope = 10 / 3 if bearing.rolls else 3.0
-    equivalent = capacity * l10 ** (-1 / slope) if sums > 0 else 0.0
-    return ReferenceLife(l10, equivalent, ring_capacities)
+    return ReferenceLife(l10, equivalent_load(bearing, l10), ring_capacities)
+
+
+def equivalent_load(bearing: Bearing, l10: float) -> float:
+    """Return the load of a life in millions of revolutions [N]; 0 of an infinite one."""
+    return float((bearing.capacity or 0.0) * l10 ** (-1 / bearing.standards.life_exponent))

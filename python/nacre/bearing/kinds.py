@@ -10,16 +10,29 @@ import numpy as np
 
 import nacre._core as core
 from nacre._tools.typing import Layers
-from nacre.bearing.contact_laws import Hertzian, Slices
-from nacre.bearing.geometry import RINGS, Array, Bearing, Ring
+from nacre.bearing.contact_laws import LAMINAE, Hertzian, Slices
+from nacre.bearing.geometry import (
+    BALLS,
+    RINGS,
+    ROLLERS,
+    Array,
+    Bearing,
+    Ring,
+    Standards,
+    laminae_of,
+)
 from nacre.hertz import Ellipse
 
 WIDER = 1.5
 """Width of a grid over that of the widest contact that is expected; wider ones are solved again."""
+PLANE = 1e6
+"""Radius of a surface that is plane across its profile [m]: it drops by 1e-14 m in 0.1 mm."""
 
 
 class CurvedRaceways(Bearing):
     """Bearing whose raceways are curved along the elements, too: contacts are ellipses."""
+
+    carries_moments: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -44,8 +57,9 @@ class BallBearing(CurvedRaceways):
     osculation: tuple[float, float]
     """Radii of the grooves of inner and outer ring over the diameter of a ball."""
 
-    rolls: ClassVar[bool] = False
-    leans: ClassVar[bool] = False
+    standards: ClassVar[Standards] = BALLS
+    usual_cells: ClassVar[tuple[int, int]] = (96, 96)
+    width_power: ClassVar[int] = 3
 
     @property
     @abstractmethod
@@ -74,11 +88,68 @@ class RollerBearing(Bearing):
     free_ends: bool
     """Whether the ends of the rollers are free surfaces."""
 
-    rolls: ClassVar[bool] = True
+    standards: ClassVar[Standards] = ROLLERS
+    usual_cells: ClassVar[tuple[int, int]] = (3 * LAMINAE, 48)
+    cells_multiple: ClassVar[int] = LAMINAE
+    width_power: ClassVar[int] = 2
+
+    @property
+    def apex(self) -> float | None:
+        """Distance of the apex of rollers and raceways from the middle of a roller [m]."""
+        return None
 
     @abstractmethod
-    def drop(self, ring: Ring, laminae: int = 40) -> Array:
+    def _profile(self) -> core.LogarithmicProfile | core.SampledProfile:
+        """Return the profile of a roller."""
+
+    @abstractmethod
+    def _own_drop(self, x: Array) -> Array:
+        """Return the drop of that profile at x along a roller [m], infinite beyond it."""
+
+    @abstractmethod
+    def _crown(self, ring: Ring, x: Array) -> Array:
+        """Return the drop of a raceway at x along it [m]."""
+
+    @abstractmethod
+    def _crown_points(self, ring: Ring) -> int:
+        """Return the number of points between which cubics are that drop; 0 where it is 0."""
+
+    def drop(self, ring: Ring, laminae: int = LAMINAE) -> Array:
         """Drop of a roller from the raceway at the middles of laminae [m]."""
+        x = laminae_of(self.length, laminae)
+        return self._own_drop(x) + self._crown(ring, x)
+
+    def shape(self, ring: Ring) -> core.Shape:
+        """Return the gap between a roller and a raceway.
+
+        Parameters
+        ----------
+        ring : {"inner", "outer"}
+            Ring of the raceway.
+
+        Returns
+        -------
+        Shape
+            Shape for `nacre.solve`: x along the roller, y in the direction of rolling.
+        """
+        inner, outer = self.raceways
+        roller = core.Roller(
+            radius=self.radius,
+            length=self.length,
+            profile=self._profile(),
+            counter_radius=inner if ring == "inner" else -outer,
+            apex=self.apex,
+        )
+        if not (points := self._crown_points(ring)):
+            return roller
+        x = np.linspace(-0.5, 0.5, points) * self.length
+        crown = core.SampledProfile(x, self._crown(ring, x))
+        return roller + core.Roller(PLANE, length=float(x[-1] - x[0]), profile=crown)
+
+    @property
+    def carries_thrust(self) -> bool:
+        """Whether contacts have forces along the bearing's axis: those at an angle."""
+        return self.nominal_angle > 0
 
     @property
     def reach(self) -> float:

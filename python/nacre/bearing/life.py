@@ -493,7 +493,7 @@ def life_ratio(
     model: Models,
     *,
     body: Member = "body",
-    progress: object = None,
+    progress: Callable[[float], object] | None = None,
 ) -> LifeRatio:
     """Life of a contact or of a bearing over that of a reference, by the stress in its volume.
 

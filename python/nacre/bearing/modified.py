@@ -54,12 +54,6 @@ MOST_VISCOUS = 0.1
 """Kinematic viscosity above that of any oil in a bearing [m²/s]: ISO VG 3200 has 3.2e-3."""
 LIMIT = 1.5e9
 """Pressure at the fatigue load limit [Pa]: ISO 281:2007, 9.3 and annex B."""
-SHARE = {False: 1 / 0.2288, True: 1 / 0.2453}
-"""Load of the heaviest element over the mean one, of balls and of rollers: (B.9) and (B.14)."""
-SIMPLE = {False: 22.0, True: 8.2}
-"""Static rating over the fatigue load limit, of balls and rollers: annex B, (B.18) to (B.21)."""
-LARGER = {False: 0.5, True: 0.3}
-"""Power of 100 mm over the pitch diameter by which limits of larger bearings fall: annex B."""
 CELLS = (120, 48)
 """Cells of a profiled contact: its peak pressure is right to 1e-3."""
 PRECISION = 1e-4
@@ -297,7 +291,7 @@ def fatigue_load_limit(bearing: Bearing) -> float:
             stacklevel=2,
         )
         return simple_fatigue_load_limit(bearing)
-    return total_load(bearing, load, SHARE[bearing.rolls]) * _smaller(bearing)
+    return total_load(bearing, load, bearing.standards.limit_share) * _smaller(bearing)
 
 
 def simple_fatigue_load_limit(bearing: Bearing) -> float:
@@ -323,12 +317,12 @@ def simple_fatigue_load_limit(bearing: Bearing) -> float:
     >>> round(simple_fatigue_load_limit(bearing))
     6102
     """
-    return static_rating(bearing) / SIMPLE[bearing.rolls] * _smaller(bearing)
+    return static_rating(bearing) / bearing.standards.static_over_limit * _smaller(bearing)
 
 
 def _smaller(bearing: Bearing) -> float:
     """Return the factor by which limits of larger bearings are smaller."""
-    return float(min(1.0, LARGE / bearing.pitch) ** LARGER[bearing.rolls])
+    return float(min(1.0, LARGE / bearing.pitch) ** bearing.standards.size_power)
 
 
 def _roller_load(bearing: RollerBearing) -> float | None:
@@ -450,7 +444,7 @@ class Lubrication(NamedTuple):
         """
         contamination, _ = self.cleanliness(bearing)
         kappa = self.kappa(bearing, speed)
-        element: Element = "roller" if bearing.rolls else "ball"
+        element = bearing.standards.element
         ratio, thrust = contamination * limit / load if load > 0 else math.inf, is_thrust(bearing)
         if self.additives and kappa < 1 and contamination >= CLEAN:
             best = min(MOST_ADDITIVES, life_modification_factor(1.0, ratio, element, thrust=thrust))

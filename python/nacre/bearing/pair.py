@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
@@ -20,7 +20,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.arguments import read_fields
 from nacre._tools.typing import among
-from nacre._tools.units import printable, rounded
+from nacre._tools.units import rounded
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import Law, Reaction, Several
@@ -34,11 +34,11 @@ from nacre.bearing.solution import (
     VECTORS,
     BearingReport,
     BearingSolution,
+    Equilibrium,
     Model,
     stiffness_rows,
 )
 from nacre.bearing.solving import (
-    CELLS,
     Along,
     BearingOptions,
     Operation,
@@ -57,9 +57,9 @@ from nacre.bearing.solving import (
 )
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
-from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.quantities import BEARING, PAIR_LIFE, Quantity
 from nacre.results.report import Sections, input_rows, notebook_picture, table, writer
-from nacre.results.table_results import TableResult, Tabular
+from nacre.results.table_results import TableResult
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -219,7 +219,7 @@ class Pair:
         tolerance: float = 1e-9,
         max_iterations: int = 50,
         threads: int | None = None,
-        progress: Any = None,
+        progress: Callable[[int, float], object] | None = None,
         check: bool = True,
     ) -> PairSolution:
         """Equilibrium of the shaft and of all elements of both bearings.
@@ -289,11 +289,11 @@ class Pair:
         """
         conditions = RingConditions(force, displacement, moment, tilt)
         operation = Operation(rotation, speed, rotating)
-        cells = CELLS[self.first.rolls] if cells is None else cells
+        cells = self.first.usual_cells if cells is None else cells
         options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
         return solve_pair(self, conditions, operation, options)
 
-    def _arguments(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, object]:
         """Return what makes the pair again, for files."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
@@ -313,7 +313,9 @@ def _ways(pair: Pair) -> list[Array]:
 
 def _touching(bearing: Single) -> float:
     """Return the displacement of the inner ring along z at which all elements touch [m]."""
-    return bearing.play / (2 * math.tan(bearing.nominal_angle)) if bearing.leans else 0.0
+    if isinstance(bearing, TaperedRoller):
+        return bearing.play / (2 * math.tan(bearing.nominal_angle))
+    return 0.0
 
 
 def _settings(pair: Pair, options: BearingOptions) -> Array:
@@ -397,7 +399,7 @@ def _constant(reaction: Reaction) -> Law:
 
 def _check_tandem(pair: Pair, solutions: Iterable[BearingSolution], loaded: bool) -> None:
     """Raise a `ValueError` unless an axial force keeps the rings of balls in tandem together."""
-    if pair.arrangement != "tandem" or pair.first.leans or not loaded:
+    if pair.arrangement != "tandem" or not pair.first.needs_thrust or not loaded:
         return
     pushed = axial = 0.0
     for one in solutions:
@@ -504,7 +506,7 @@ class PairLife(TableResult):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PairSolution(Tabular):
+class PairSolution(Equilibrium):
     """A solved pair of bearings on a shaft.
 
     Each bearing is a `BearingSolution` in its own axes, in which z presses its inner ring into
@@ -652,7 +654,7 @@ class PairSolution(Tabular):
         if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
         first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
-        slope = LINE if self.pair.first.rolls else POINT
+        slope = LINE if isinstance(self.pair.first, TaperedRoller) else POINT
         lives = np.array([first.revolutions, second.revolutions])
         shortest = float(lives.min())
         shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
@@ -705,7 +707,7 @@ class PairSolution(Tabular):
         return Sections(self._TITLE, inputs, numbers, pictures, tables, model, self.report.warnings)
 
     @staticmethod
-    def _vectors() -> list[Any]:
+    def _vectors() -> list[Quantity]:
         """Return the quantities of the shaft."""
         kinds = {row.name: row for row in BEARING}
         return [kinds[name] for name in VECTORS]
@@ -748,12 +750,10 @@ class PairSolution(Tabular):
         writers |= files.pictures(lambda: next(iter(self.plot().values())))
         return files.save(path, writers)
 
-    def _comments(self) -> dict[str, Any]:
-        vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
-        notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
-        return {"model": self.first.model, **vectors, **notes}
+    def _comments(self) -> dict[str, object]:
+        return {"model": self.first.model, **self._vector_texts(), **self._notes()}
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> Iterable[Iterable[object]]:
         (heads, *rows), (_, *others) = (one._file_rows() for one in self.bearings)
         yield ["bearing", *heads]
         for name, elements in zip(NAMES, (rows, others), strict=True):
@@ -776,15 +776,8 @@ class PairSolution(Tabular):
             pressure = display.estimated(one, "peak_pressure", "Pa", one._digits("peak_pressure"))
             texts += [f"peak pressure {pressure}", f"{one.loaded} of {one.bearing.elements} loaded"]
             rows.append((f"{name} bearing", ", ".join(texts)))
-        report = self.report
         contacts = "ISO/TS 16281, a model" if self.first.model != "solved" else "solved contacts"
-        ended = f"{report.termination} after {report.iterations} steps"
-        return [*rows, ("contacts", contacts), ("ended", f"{ended}, balance {report.balance:.0e}")]
-
-    def __repr__(self) -> str:
-        """Return the main numbers in a line."""
-        rows = ", ".join(" ".join(row) for row in self._rows())
-        return printable(f"<{type(self).__name__}: {rows}>")
+        return [*rows, ("contacts", contacts), self._ended()]
 
     def __str__(self) -> str:
         """Return the verdict and the main numbers."""
@@ -796,15 +789,7 @@ class PairSolution(Tabular):
         picture = notebook_picture(heavier._pictures()[:1])
         return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
 
-    def __eq__(self, other: object) -> bool:
-        """Return whether all numbers are equal; NaN is equal to NaN."""
-        if not isinstance(other, PairSolution):
-            return NotImplemented
-        return repr(self._state()) == repr(other._state())
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = {name: list(getattr(self, name)) for name in VECTORS}
         parts = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
         pair = {name: encode(value) for name, value in self.pair._arguments().items()}
@@ -833,8 +818,4 @@ class PairSolution(Tabular):
         for name in NAMES:
             if getattr(self, name).bearing != getattr(self.pair, name):
                 raise ValueError(f"{name} must be a solution of that bearing of the pair")
-        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
-        if any(len(getattr(self, name)) != length for name, length in lengths):
-            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
-        if self.tangent.shape != (5, 5):
-            raise ValueError(f"tangent must have the shape (5, 5), got {self.tangent.shape}")
+        self._check_vectors()

@@ -15,7 +15,14 @@ from nacre._tools.typing import among
 from nacre._tools.units import rounded
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, above
-from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, reference_life
+from nacre.bearing.iso import (
+    Edge,
+    ReferenceLife,
+    edge_factors,
+    equivalent_load,
+    reference_life,
+)
+from nacre.bearing.kinds import CurvedRaceways
 from nacre.bearing.modified import (
     Lubrication,
     fatigue_load_limit,
@@ -177,7 +184,7 @@ def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> Refer
     loads, factors = solution.loads, np.array(1.0)
     if solution.lamina_loads is not None:
         loads = solution.lamina_loads
-        if edge == "standard" and not solution.bearing.aligns:
+        if edge == "standard" and not isinstance(solution.bearing, CurvedRaceways):
             factors = edge_factors(LAMINAE)
         elif edge == "pressure":
             factors = solution.edge_factors()
@@ -189,11 +196,13 @@ def _words(solution: BearingSolution, edge: Edge, reliability: float) -> str:
     words = f"ISO/TS 16281, {100 * reliability:g} % reliability, a model"
     if solution.lamina_loads is None:
         return words
-    barrels = edge == "standard" and solution.bearing.aligns
+    barrels = edge == "standard" and isinstance(solution.bearing, CurvedRaceways)
     return f"{words}; {BARRELS if barrels else EDGES[edge]}"
 
 
-def _duties(solution: BearingSolution, spectrum: Iterable[Duty]) -> list[tuple[float, Any, float]]:
+def _duties(
+    solution: BearingSolution, spectrum: Iterable[Duty]
+) -> list[tuple[float, dict[str, object], float]]:
     """Return the parts of a spectrum, checked, with shares that sum to 1."""
     duties = list(spectrum) if isinstance(spectrum, Iterable) else []
     if not duties or not all(isinstance(one, Sequence) and len(one) == 3 for one in duties):
@@ -236,7 +245,9 @@ def _conditions(solution: BearingSolution, place: str, force: object) -> dict[st
     }
 
 
-def _duty_solution(solution: BearingSolution, conditions: Any, speed: float) -> BearingSolution:
+def _duty_solution(
+    solution: BearingSolution, conditions: dict[str, object], speed: float
+) -> BearingSolution:
     """Return the bearing solved under a load of a spectrum."""
     bearing: Any = solution.bearing
     keywords = conditions | {"rotation": solution.rotation, "rotating": solution.rotating}
@@ -305,13 +316,12 @@ def _combined(
     l10 = _harmonic(shares, [one.reference.l10 for one in rates])
     modified = _harmonic(shares, [one.reference.l10 * one.factor for one in rates])
     revolutions = reliability[1] * modified * 1e6
-    capacity = float(bearing.capacity or 0.0)
     return BearingLife(
         revolutions=revolutions,
         hours=revolutions * 2 * math.pi / turned / 3600 if turned else math.inf,
         l10=l10,
-        equivalent_load=capacity * l10 ** (-0.3 if bearing.rolls else -1 / 3),
-        capacity=capacity,
+        equivalent_load=equivalent_load(bearing, l10),
+        capacity=float(bearing.capacity or 0.0),
         ring_capacities=rates[0].reference.capacities,
         reliability=reliability[0],
         reliability_factor=reliability[1],

@@ -14,7 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.equilibrium import Barrels, Rollers
-from nacre.bearing.geometry import RINGS, Ring, above, check_flag, laminae_of, millimetres
+from nacre.bearing.geometry import RINGS, Ring, above, check_flag, millimetres
 from nacre.bearing.kinds import WIDER, CurvedRaceways, RollerBearing
 
 Array = npt.NDArray[np.float64]
@@ -31,14 +31,6 @@ TAPERED = 0.00045
 Nguyen-Schäfer, *Computational Tapered and Cylinder Roller Bearings* (Springer 2019), eq. (1.8), as
 that of ISO/TS 16281:2008, whose text was not seen.
 """
-PLANE = 1e6
-"""Radius of a surface that is plane across its profile [m]: it drops by 1e-14 m in 0.1 mm."""
-
-
-def _across_plane(x: Array, drop: Array) -> core.Roller:
-    """Return the drop of a raceway along its axis, plane across it."""
-    profile = core.SampledProfile(x, drop)
-    return core.Roller(radius=PLANE, length=float(x[-1] - x[0]), profile=profile)
 
 
 def _check_angle(angle: float) -> None:
@@ -60,8 +52,6 @@ class _Rollers(RollerBearing, Solvable):
     """Radii of crowns of both raceways [m]; None for straight ones."""
     free_ends: bool = True
     """Whether the ends of the rollers are free surfaces."""
-
-    leans: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Check the arguments."""
@@ -86,17 +76,11 @@ class _Rollers(RollerBearing, Solvable):
                 )
         check_flag("free_ends", self.free_ends)
         self._check_room()
-        for ring in RINGS:
-            self.drop(ring)
+        self.drop("inner")  # its profile covers it
 
     @abstractmethod
     def _check_pitch(self) -> None:
         """Raise an error unless pitch and angles are in range."""
-
-    @property
-    def apex(self) -> float | None:
-        """Distance of the apex of rollers and raceways from the middle of a roller [m]."""
-        return None
 
     @property
     def contact_angles(self) -> tuple[float, float]:
@@ -133,11 +117,12 @@ class _Rollers(RollerBearing, Solvable):
         lowest = float((self._profile().drop_at(along) + along**2 / (2 * radius)).min())
         return x**2 / (2 * radius) - min(0.0, lowest)
 
-    def drop(self, ring: Ring, laminae: int = 40) -> Array:
-        """Drop of profile and crown at the middles of laminae [m], infinite beyond the profile."""
-        x = laminae_of(self.length, laminae)
+    def _crown_points(self, ring: Ring) -> int:
+        return 0 if self.raceway_crown[RINGS.index(ring)] is None else PARABOLA
+
+    def _own_drop(self, x: Array) -> Array:
         profile = self._profile()
-        drops: Array = profile.drop_at(x) + self._crown(ring, x)
+        drops = profile.drop_at(x)
         if not np.isfinite(drops).any():
             raise ValueError(
                 f"profile must cover the roller of {millimetres(self.length)}, got {profile}"
@@ -147,32 +132,6 @@ class _Rollers(RollerBearing, Solvable):
     def motion(self, angles: Array) -> Rollers:
         """Return how rollers at these angles move with the inner ring."""
         return Rollers(self, angles)
-
-    def shape(self, ring: Ring) -> core.Shape:
-        """Return the gap between a roller and a raceway.
-
-        Parameters
-        ----------
-        ring : {"inner", "outer"}
-            Ring of the raceway.
-
-        Returns
-        -------
-        Shape
-            Shape for `nacre.solve`: x along the roller, y in the direction of rolling.
-        """
-        inner, outer = self.raceways
-        roller = core.Roller(
-            radius=self.radius,
-            length=self.length,
-            profile=self._profile(),
-            counter_radius=inner if ring == "inner" else -outer,
-            apex=self.apex,
-        )
-        if self.raceway_crown[RINGS.index(ring)] is None:
-            return roller
-        x = np.linspace(-0.5, 0.5, PARABOLA) * self.length
-        return roller + _across_plane(x, self._crown(ring, x))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -545,7 +504,6 @@ class SphericalRoller(RollerBearing, CurvedRaceways, Solvable):
     """Factor b_m of ISO 281 for the rating."""
 
     kind: ClassVar[str] = "spherical_roller"
-    leans: ClassVar[bool] = False
     aligns: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -643,10 +601,18 @@ class SphericalRoller(RollerBearing, CurvedRaceways, Solvable):
         raceway = super().curvature(ring) - 1 / self.radius
         return 1 / self._own_radius(core.real_array("x", x)) + raceway
 
-    def drop(self, ring: Ring, laminae: int = 40) -> Array:
-        """Drop of a roller from the raceway at the middles of laminae [m]."""
-        x = laminae_of(self.length, laminae)
-        return _rise(self.profile_radius, x) - _rise(self.grooves[RINGS.index(ring)], x)
+    def _profile(self) -> core.SampledProfile:
+        x = np.linspace(-0.5, 0.5, SAMPLES) * self.length
+        return core.SampledProfile(x, self._own_drop(x))
+
+    def _own_drop(self, x: Array) -> Array:
+        return _rise(self.profile_radius, x)
+
+    def _crown(self, ring: Ring, x: Array) -> Array:
+        return -_rise(self.grooves[RINGS.index(ring)], x)
+
+    def _crown_points(self, ring: Ring) -> int:
+        return SAMPLES
 
     def motion(self, angles: Array) -> Barrels:
         """Return how barrels at these angles move with the inner ring."""
@@ -657,27 +623,3 @@ class SphericalRoller(RollerBearing, CurvedRaceways, Solvable):
         # In the middle of an ellipse the load per length is 3 W/(4 a), and a = c W^(1/3).
         unit = self.ellipse(ring, 1.0).semi_axes[0]
         return min(self.length, 2 * WIDER * unit * math.sqrt(4 * unit * line / 3))
-
-    def shape(self, ring: Ring) -> core.Shape:
-        """Return the gap between a roller and a raceway.
-
-        Parameters
-        ----------
-        ring : {"inner", "outer"}
-            Ring of the raceway.
-
-        Returns
-        -------
-        Shape
-            Shape for `nacre.solve`: x along the roller, y in the direction of rolling.
-        """
-        inner, outer = self.raceways
-        x = np.linspace(-0.5, 0.5, SAMPLES) * self.length
-        barrel = core.SampledProfile(x, _rise(self.profile_radius, x))
-        roller = core.Roller(
-            radius=self.radius,
-            length=self.length,
-            profile=barrel,
-            counter_radius=inner if ring == "inner" else -outer,
-        )
-        return roller + _across_plane(x, -_rise(self.grooves[RINGS.index(ring)], x))

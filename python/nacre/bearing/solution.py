@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import among
+from nacre._tools.typing import AnyPath, among
 from nacre._tools.units import printable, rounded, symbol
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
@@ -141,15 +143,65 @@ class BearingReport(Result):
         )
 
 
-def stiffness_rows(tangent: Array) -> list[list[Any]]:
+def stiffness_rows(tangent: Array) -> list[list[object]]:
     """Return the rows of the table of a stiffness ``(5, 5)``, with names."""
     head = ["", *(f"{name}_{axis}" for name, axis in zip("δδδθθ", "xyzxy", strict=True))]
     names = [f"{name}_{axis}" for name, axis in zip("FFFMM", "xyzxy", strict=True)]
     return [head, *([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))]
 
 
+class Equilibrium(Tabular, is_base=True):
+    """Base of equilibria: displacements, forces and stiffness of a ring or of a shaft."""
+
+    displacement: tuple[float, float, float]
+    tilt: tuple[float, float]
+    force: tuple[float, float, float]
+    moment: tuple[float, float]
+    tangent: Array
+    report: BearingReport
+
+    @abstractmethod
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return names and values of the main numbers, with units."""
+
+    def _ended(self) -> tuple[str, str]:
+        """Return the row that says how the iteration ended."""
+        report = self.report
+        ended = f"{report.termination} after {report.iterations} steps"
+        return "ended", f"{ended}, balance {report.balance:.0e}"
+
+    def _vector_texts(self) -> dict[str, str]:
+        """Return the displacements and forces to the bit, by name."""
+        return {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
+
+    def _notes(self) -> dict[str, str]:
+        """Return the warnings, numbered."""
+        return {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
+
+    def _check_vectors(self) -> None:
+        """Raise a `ValueError` unless displacements, forces and stiffness have their lengths."""
+        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
+        if any(len(getattr(self, name)) != length for name, length in lengths):
+            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
+        if self.tangent.shape != (5, 5):
+            raise ValueError(f"tangent must have the shape (5, 5), got {self.tangent.shape}")
+
+    def __repr__(self) -> str:
+        """Return the main numbers in a line."""
+        rows = ", ".join(" ".join(row) for row in self._rows())
+        return printable(f"<{type(self).__name__}: {rows}>")
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all numbers are equal; NaN is equal to NaN."""
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return repr(self._state()) == repr(other._state())
+
+    __hash__ = None  # type: ignore[assignment]
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class BearingSolution(Tabular):
+class BearingSolution(Equilibrium):
     """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
 
     Elements of two rows are numbered row by row.
@@ -531,7 +583,7 @@ class BearingSolution(Tabular):
         return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
 
     @display.in_si
-    def save(self, path: Any) -> Any:
+    def save(self, path: AnyPath) -> Path:
         """Write a file, whole or not at all.
 
         Parameters
@@ -567,17 +619,15 @@ class BearingSolution(Tabular):
         return files.save(path, writers)
 
     def _comments(self) -> dict[str, object]:
-        vectors = {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
-        notes = {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
         errors = self.report.discretisation or {}
         error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
         verdict = " ".join(self.verdict.sentences)
         return {
             "verdict": verdict,
             "model": self.model,
-            **vectors,
+            **self._vector_texts(),
             **error_columns,
-            **notes,
+            **self._notes(),
         }
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
@@ -590,14 +640,19 @@ class BearingSolution(Tabular):
                     columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return columns
 
-    def _file_rows(self) -> Iterable[Iterable[Any]]:
+    def _file_rows(self) -> list[list[object]]:
+        return self._table(lambda _, value: value)
+
+    def _table(self, shown: Callable[[str, float], float]) -> list[list[object]]:
+        """Return the table of the elements, with numbers as they are shown."""
         columns = self._columns()
-        units = [symbol(row.si()) for row, _, _ in columns]
-        names = [name for _, name, _ in columns]
-        heads = zip(names, units, strict=True)
-        yield ["element", *(f"{name} [{unit}]" if unit else name for name, unit in heads)]
-        for j in range(self.bearing.elements):
-            yield [j, *(float(values[j]) for _, _, values in columns)]
+        units = [(name, symbol(row.si())) for row, name, _ in columns]
+        heads = [f"{name} [{unit}]" if unit else name for name, unit in units]
+        rows: list[list[object]] = [
+            [j, *(shown(row.name, float(values[j])) for row, _, values in columns)]
+            for j in range(self.bearing.elements)
+        ]
+        return [["element", *heads], *rows]
 
     @display.in_si
     def _sections(self) -> Sections:
@@ -607,7 +662,7 @@ class BearingSolution(Tabular):
         model = [row for row in rows if row[0] in ("contacts", "ended")]
         numbers = [*(row for row in rows if row not in model), *self._geometry()]
         tables = [
-            table("Elements and rings", self._element_rows()),
+            table("Elements and rings", self._table(self._rounded)),  # rounding is 0
             table(STIFFNESS, stiffness_rows(self.tangent)),
         ]
         errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
@@ -620,15 +675,6 @@ class BearingSolution(Tabular):
         dimensions = {"pitch diameter": self.bearing.pitch, "clearance": self.bearing.play}
         rows = [(name, display.number(value, "m")) for name, value in dimensions.items()]
         return [*rows, ("rating", display.number(float(self.bearing.capacity or 0.0), "N"))]
-
-    def _element_rows(self) -> list[list[Any]]:
-        """Return the table of the elements as it is printed: rounding is 0."""
-        head, *rows = ([*row] for row in self._file_rows())
-        names = ["", *(row.name for row, _, _ in self._columns())]
-        return [head] + [
-            [self._rounded(name, value) for name, value in zip(names, row, strict=True)]
-            for row in rows
-        ]
 
     def _pictures(self) -> list[Picture]:
         """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
@@ -669,7 +715,6 @@ class BearingSolution(Tabular):
                 rows.append((kinds[name].label, display.estimated(self, name, unit, digits)))
         if self.speed:
             rows.append((kinds["cage_speed"].label, display.number(self.cage_speed, "rad/s")))
-        report = self.report
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
         if self._sharp:
             contacts += "; ends are sharp: their pressure has no limit, and grows with the cells"
@@ -677,11 +722,7 @@ class BearingSolution(Tabular):
             *rows,
             ("loaded", f"{self.loaded} of {self.bearing.elements} elements"),
             ("contacts", contacts),
-            (
-                "ended",
-                f"{report.termination} after {report.iterations} steps, "
-                f"balance {report.balance:.0e}",
-            ),
+            self._ended(),
         ]
 
     def _printed(self, row: Quantity, name: str, values: Array) -> list[str]:
@@ -709,11 +750,6 @@ class BearingSolution(Tabular):
         straight = getattr(self.bearing, "profile", "") is None
         return straight and self.model == "solved" and bool(np.nanmax(self.edge_pressures) > 0)
 
-    def __repr__(self) -> str:
-        """Return the main numbers in a line."""
-        rows = ", ".join(" ".join(row) for row in self._rows())
-        return printable(f"<{type(self).__name__}: {rows}>")
-
     @display.in_si
     def __str__(self) -> str:
         """Return the verdict, the main numbers, and a table of the loaded elements."""
@@ -733,14 +769,6 @@ class BearingSolution(Tabular):
         verdict = self.verdict.sentences
         picture = notebook_picture(self._pictures()[:1])
         return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether all numbers are equal; NaN is equal to NaN."""
-        if not isinstance(other, BearingSolution):
-            return NotImplemented
-        return repr(self._state()) == repr(other._state())
-
-    __hash__ = None  # type: ignore[assignment]
 
     @classmethod
     def _names(cls) -> list[str]:
@@ -789,8 +817,9 @@ class BearingSolution(Tabular):
         if self.model not in ("solved", "iso16281"):
             raise ValueError(f"model must be one of nacre's, got {self.model!r}")
         count = self.bearing.elements
-        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(ARRAYS, (count, 2))
-        shapes |= {"angles": (count,), "tangent": (5, 5), "grid_sizes": (count, 2, 2)}
+        arrays = [name for name in ARRAYS if name != "tangent"]
+        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(arrays, (count, 2))
+        shapes |= {"angles": (count,), "grid_sizes": (count, 2, 2)}
         shapes |= dict.fromkeys(("lamina_loads", "lamina_pressures"), (count, 2, LAMINAE))
         for name, shape in shapes.items():
             value = getattr(self, name)
@@ -799,6 +828,4 @@ class BearingSolution(Tabular):
                 continue
             if np.shape(value) != shape:
                 raise ValueError(f"{name} must have the shape {shape}, got {np.shape(value)}")
-        lengths = zip(VECTORS, (3, 2, 3, 2), strict=True)
-        if any(len(getattr(self, name)) != length for name, length in lengths):
-            raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
+        self._check_vectors()

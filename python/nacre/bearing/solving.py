@@ -39,12 +39,6 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 Along = Sequence[float | None] | None
 
-CELLS = {True: (3 * LAMINAE, 48), False: (96, 96)}
-"""Cells of contacts of rollers and of balls by default.
-
-With these the load of a ball at a given approach is right to 1e-4, the peak pressure of a roller
-to 1e-3, and the pressure near its edge, where it is steep, to 2 %: measured against twice as many.
-"""
 STEEPEST = 0.02
 """Largest tilt without a warning: about a degree, where bearings bear minutes."""
 UNKNOWN_RATE = 0.75
@@ -121,9 +115,10 @@ class BearingOptions:
             raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
         one, other = core.vector("cells", 2, self.cells)
         cells = core.integer("cells", one), core.integer("cells", other)
-        if min(cells) < 8 or (bearing.rolls and cells[0] % LAMINAE):
-            multiple = f", the first a multiple of {LAMINAE}" if bearing.rolls else ""
-            raise ValueError(f"cells must be two numbers of at least 8{multiple}, got {cells!r}")
+        multiple = bearing.cells_multiple
+        if min(cells) < 8 or cells[0] % multiple:
+            words = f", the first a multiple of {multiple}" if multiple > 1 else ""
+            raise ValueError(f"cells must be two numbers of at least 8{words}, got {cells!r}")
         return replace(
             self, cells=cells, tolerance=tolerance, max_iterations=max_iterations, threads=threads
         )
@@ -184,16 +179,15 @@ def _conditions(
             f"moment must be None or 0: a spherical roller bearing aligns itself and carries none, "
             f"got {ring.moment!r}"
         )
-    axial = not bearing.rolls or bearing.nominal_angle > 0
-    if not axial:
+    if not bearing.carries_thrust:
         loads[2], moved[2] = loads[2] or None, moved[2] or None
-    if not axial and (loads[2] is not None or moved[2] is not None):
+    if not bearing.carries_thrust and (loads[2] is not None or moved[2] is not None):
         name, value = ("force", loads[2]) if moved[2] is None else ("displacement", moved[2])
         raise ValueError(
             f"{name} along z must be None or 0: rollers without a contact angle carry none, "
             f"got {value!r}"
         )
-    if bearing.rows == 1 and not bearing.leans and loads[2] is not None:
+    if bearing.rows == 1 and bearing.needs_thrust and loads[2] is not None:
         _check_cone(bearing, math.hypot(*(loads[k] or 0.0 for k in range(2))), loads[2])
     return as_arrays(loads, moved)
 
@@ -212,7 +206,7 @@ def largest_of(bearing: Bearing) -> dict[str, float]:
 def _check_cone(bearing: Bearing, radial: float, axial: float) -> None:
     """Raise a `ValueError` unless an axial force keeps the rings of a bearing together."""
     pushed = radial * math.tan(bearing.nominal_angle)
-    if bearing.nominal_angle > 0 and axial < pushed:
+    if axial < pushed:
         raise ValueError(
             f"force along z must be at least {pushed:.6g} N, by which the radial force pushes "
             f"the rings apart, got {axial!r} N"
@@ -231,7 +225,7 @@ def check_sides(
     A row carries at positive angles towards its own side alone. Balls that nothing but their
     centrifugal force presses on the outer ring are at its bottom. A larger `remedy` helps.
     """
-    if bearing.leans or not bearing.nominal_angle:
+    if not bearing.needs_thrust:
         return
     angles = problem.kinematics.angles(problem.kinematics.ring_motion(state.ring), state.own)[:, 0]
     angles = np.repeat([1.0, -1.0][: bearing.rows], bearing.count) * angles
@@ -407,7 +401,7 @@ def solution_of(
         approaches=places[..., 0].copy(),
         tilts=places[..., 1].copy(),
         loads=loads.copy(),
-        moments=force[..., 1] * bearing.leans,
+        moments=force[..., 1] * bearing.carries_moments,
         peak_pressures=peaks,
         edge_pressures=edges,
         contact_angles=normals,
@@ -430,7 +424,7 @@ def _discretisation(
     same load and moment. None where the pressure has no limit, or half the cells do not carry them.
     """
     bearing = law.bearing
-    pressures = [peaks, edges] if bearing.rolls else [peaks]
+    pressures = [peaks, edges] if isinstance(bearing, RollerBearing) else [peaks]
     names = ("peak_pressure", "edge_pressure")
     errors: dict[str, float | None] = dict.fromkeys(names[: len(pressures)], 0.0)
     heaviest = {int(np.unravel_index(field.argmax(), field.shape)[0]) for field in pressures}
@@ -491,8 +485,8 @@ def _notes(
     if model == "iso16281":
         if bearing.layered:
             yield "layers are not counted: the contacts of ISO/TS 16281 are bare"
-        moduli = np.array(bearing.modulus)
-        if bearing.rolls and np.abs(moduli / STANDARD - 1).max() > 0.05:
+        softer = np.abs(np.array(bearing.modulus) / STANDARD - 1)
+        if isinstance(bearing, RollerBearing) and softer.max() > 0.05:
             yield "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
         return
     texts: dict[str, str] = {}

@@ -16,7 +16,7 @@ import numpy as np
 import nacre._core as core
 from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import GROOVES, is_thrust
-from nacre.bearing.kinds import BallBearing, RollerBearing, checked_bearing
+from nacre.bearing.kinds import BallBearing, CurvedRaceways, RollerBearing, checked_bearing
 from nacre.hertz import Ellipse, contact_modulus
 from nacre.results import display
 from nacre.results.quantities import STATIC_LOAD
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 STEEL = core.Elastic(young=207e9, poisson=0.3)
 """Steel of ISO 76:2006: with it Hertz's formulae give all rows of its table 1 that were read."""
-PRESSURE = 4.2e9
-"""Pressure of the static rating of ball bearings [Pa], ISO 76:2006, 3.2."""
 SHARE = 5.0
 """Load of the heaviest element over the mean one, ``Q Z cos α/F``: ISO 76:2006, as of balls."""
 AXIAL = {5: 0.52, 10: 0.50, 15: 0.46, 20: 0.42, 25: 0.38, 30: 0.33, 35: 0.29, 40: 0.26, 45: 0.22}
@@ -98,7 +96,7 @@ def static_rating(bearing: Bearing) -> float:
     if isinstance(bearing, RollerBearing):
         size = bearing.elements * bearing.length * bearing.diameter * 1e6
         return float(44 * (1 - bearing.gamma) * size * math.cos(bearing.nominal_angle))
-    return total_load(bearing, element_load(bearing, PRESSURE), SHARE)
+    return total_load(bearing, element_load(bearing, bearing.standards.static_pressure), SHARE)
 
 
 def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) -> float:
@@ -132,7 +130,9 @@ def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) 
     1600.0
     """
     bearing = checked_bearing(bearing)
-    if (bearing.rolls and bearing.nominal_angle) or bearing.aligns or is_thrust(bearing):
+    is_roller = isinstance(bearing, RollerBearing)
+    is_barrel = is_roller and isinstance(bearing, CurvedRaceways)
+    if is_thrust(bearing) or is_barrel or (is_roller and bearing.nominal_angle):
         raise ValueError(
             f"bearing must be a cylindrical roller bearing, or a ball bearing of a contact angle "
             f"up to 45°, for the factors of ISO 76, got a {type(bearing).__name__}"
@@ -142,7 +142,7 @@ def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) 
         if not (math.isfinite(force) and force >= 0):
             raise ValueError(f"{name} must be finite and at least 0, got {force!r}")
     radial, axial = forces["radial"], forces["axial"]
-    if bearing.rolls:
+    if is_roller:
         if axial:
             raise ValueError(f"axial must be 0 of rollers without a contact angle, got {axial!r}")
         return radial

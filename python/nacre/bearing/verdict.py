@@ -28,10 +28,6 @@ if TYPE_CHECKING:
 MILLION = 1e6
 MINUTES = 60.0
 """Those of an hour."""
-STATIC = {True: 4.0e9, False: 4.2e9}
-"""Pressure of the static rating of roller bearings, and of ball bearings [Pa], ISO 76:2006.
-
-Self-aligning ball bearings, of 4.6 GPa, are not among nacre's."""
 LEVELS = ("bad", "fair", "good", "unknown")
 """Levels, the worst first; a bearing without load has none."""
 UNKNOWN = "The error of the peak pressure is not known: a warning says why."
@@ -52,7 +48,7 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     peak, edge = (_Pressure.of(solution, name) for name in ("peak_pressure", "edge_pressure"))
     if not peak.value > 0:
         return Verdict("unknown", lives, tuple(bare), None, None, None)
-    factor = STATIC[solution.bearing.rolls] / peak.value
+    factor = solution.bearing.standards.static_pressure / peak.value
     level = level_of(factor, peak.share)
     pressure, has_edge_stress = _compared(peak, factor), edge.largest >= peak.value
     sentences = [pressure, lives] if level == "bad" else [lives, pressure]

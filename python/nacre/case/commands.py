@@ -143,9 +143,9 @@ def solve(
         check_direction(arguments, **(case_file.stress() or {}))
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
-    solved = _solve_wear if case_file.kind == "wear" else _solve
+    solve_contact = _solve_wear if case_file.kind == "wear" else _solve
     with nacre.display_units(case_file.units):
-        solved(case, case_file, arguments, save or [], as_json)
+        solve_contact(case, case_file, arguments, save or [], as_json)
 
 
 def _read_case(case: Path, units: str | None) -> Case:

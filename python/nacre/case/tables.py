@@ -37,7 +37,7 @@ Counts = Annotated[list[Count], TWO]
 Flags = Annotated[list[bool], TWO]
 
 
-def with_words(words: str) -> Any:
+def with_words(words: str) -> object:
     """Return words for a type of values, in the reference and in errors."""
     return Field(json_schema_extra={"words": words})
 

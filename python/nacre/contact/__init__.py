@@ -71,7 +71,7 @@ def solve(
 ) -> Solution:
     """Press a shape into a body, in one call: choose a grid where none is given, plan, solve.
 
-    By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
+    By default the grid of a height map is its own. Other shapes get a grid that holds the whole
     contact, with 64 cells across its narrower width, oblong where the contact is long, and a margin
     of a quarter of the contact on every side. The cells are divided until the estimated error of
     the peak pressure (`Report.discretisation`) is at most 1 %; where that needs more than 2²²
@@ -480,9 +480,9 @@ def wear(
     counter_rate: Rate = 0.0,
     sliding: float | None = None,
     cycles: float | None = None,
-    slide: Mapping[str, Any] | None = None,
+    slide: Mapping[str, object] | None = None,
     passes: float | None = None,
-    roll: Mapping[str, Any] | None = None,
+    roll: Mapping[str, object] | None = None,
     slip: Matrix | None = None,
     steps: int | npt.ArrayLike | Literal["auto"] = "auto",
     step_tolerance: float = 1e-3,
@@ -543,9 +543,9 @@ def wear(
         which never do.
     thickness : {"frozen", "first order"}, optional
         How thick the layers are in the elastic contact: as before wear, or, to first order in the
-        depth, thinner in each cell of the top layers by what is worn there. That takes three to
-        five times as long. Slips of `slide` and `roll`, stiffness and stresses of the solutions are
-        those of layers as thick as before.
+        depth, thinner in each cell of the top layers by what is worn there. That takes four times
+        as long, 1.3 times in line contact. Slips of `slide` and `roll`, stiffness, gradients and
+        stresses of the solutions are those of layers as thick as before.
     initial : WearHistory or array_like, optional
         History to go on from, by the distance that is given; or depth removed from the body before,
         ``(nx, ny)`` [m].
@@ -575,9 +575,9 @@ def wear(
 
     Notes
     -----
-    The rate is one of a model: measured rates scatter by factors of two and more. Layers are as
-    thick in the elastic contact as before they wore; `WearReport.thickness_error` says what that
-    costs.
+    The rate is one of a model: measured rates scatter by factors of two and more.
+    `WearReport.thickness_error` says what the `thickness` of the layers costs. To first order, the
+    peak under a roller errs by 0.3 % where 40 % of a coat are worn, under a ball by 1.5 %.
 
     Examples
     --------
@@ -758,7 +758,7 @@ class Contact:
 
     def solve_many(
         self,
-        cases: Iterable[Mapping[str, Any]],
+        cases: Iterable[Mapping[str, object]],
         *,
         hardness: float | Matrix | None = None,
         compliance: float | Matrix | None = None,
@@ -822,7 +822,7 @@ class Contact:
             hardness, compliance, tolerance, max_iterations, algorithm, None, progress, check
         )
         outcomes, failure = self._plan.solve_many(shape_motions, options)
-        solutions: list[Any] = []
+        solutions: list[Solution | None] = []
         for number, ((shape, _), outcome) in enumerate(zip(shape_motions, outcomes, strict=True)):
             solution = None
             if isinstance(outcome, core.Solved):
@@ -837,7 +837,7 @@ class Contact:
         if failure is not None:
             failure.solutions = solutions  # type: ignore[attr-defined]
             raise failure
-        return solutions
+        return [solution for solution in solutions if solution is not None]
 
     @overload
     def slide(
@@ -1000,9 +1000,9 @@ class Contact:
         counter_rate: Rate = 0.0,
         sliding: float | None = None,
         cycles: float | None = None,
-        slide: Mapping[str, Any] | None = None,
+        slide: Mapping[str, object] | None = None,
         passes: float | None = None,
-        roll: Mapping[str, Any] | None = None,
+        roll: Mapping[str, object] | None = None,
         slip: Matrix | None = None,
         steps: int | npt.ArrayLike | Literal["auto"] = "auto",
         step_tolerance: float = 1e-3,
@@ -1077,9 +1077,8 @@ class Contact:
 
     def __repr__(self) -> str:
         """Return the call that makes the plan."""
-        coefficients: Any = self.coefficients
-        if coefficients is not None and coefficients.size <= MOST_PRINTED:
-            coefficients = coefficients.tolist()
+        full = self.coefficients
+        coefficients = full if full is None or full.size > MOST_PRINTED else full.tolist()
         return (
             f"Contact({self.body!r}, {self.grid!r}, counterbody={self.counterbody!r}, "
             f"coefficients={coefficients!r}, threads={self._plan.asked_threads()!r})"
@@ -1092,7 +1091,9 @@ class Contact:
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
 
 
-def _initial_state(initial: Any) -> core.Solved | Matrix | None:
+def _initial_state(
+    initial: Solution | FrictionSolution | Matrix | None,
+) -> core.Solved | Matrix | None:
     """Return what the compiled module starts a solve from."""
     if isinstance(initial, FrictionSolution):
         initial = initial.normal
@@ -1134,7 +1135,7 @@ def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> So
 
 
 def _mappings(
-    words: tuple[str, str, str, str], entries: Any, names: Sequence[str]
+    words: tuple[str, str, str, str], entries: Iterable[Mapping[str, object]], names: Sequence[str]
 ) -> list[dict[str, Any]]:
     """Return cases or steps as dictionaries with these keys.
 

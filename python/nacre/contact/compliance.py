@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import copyreg
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, Self, TypeVar, overload
 
 import numpy as np
-import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Body, Field, Layers, Matrix, Vector
@@ -15,7 +14,7 @@ from nacre._tools.typing import Body, Field, Layers, Matrix, Vector
 if TYPE_CHECKING:
     from scipy.sparse.linalg import LinearOperator
 
-Value = TypeVar("Value")
+Value = TypeVar("Value", covariant=True)
 Method = Literal["exact", "plain", "difference", "image", "spectral"]
 
 
@@ -23,7 +22,7 @@ Method = Literal["exact", "plain", "difference", "image", "spectral"]
 def frequency_response(body: Body, wavenumber: float) -> float: ...
 @overload
 def frequency_response(body: Body, wavenumber: Vector | Matrix) -> Field: ...
-def frequency_response(body: Body, wavenumber: object) -> Any:
+def frequency_response(body: Body, wavenumber: object) -> float | Field:
     """Frequency response: normal surface displacement per unit pressure of one wavenumber.
 
     Parameters
@@ -71,7 +70,7 @@ class SurfaceCompliance(NamedTuple, Generic[Value]):
 def surface_compliance(body: Layers, wavenumber: float) -> SurfaceCompliance[float]: ...
 @overload
 def surface_compliance(body: Layers, wavenumber: Vector | Matrix) -> SurfaceCompliance[Field]: ...
-def surface_compliance(body: Layers, wavenumber: object) -> SurfaceCompliance[Any]:
+def surface_compliance(body: Layers, wavenumber: object) -> SurfaceCompliance[float | Field]:
     """Surface displacements per unit traction of one wavenumber, normal and lateral.
 
     With the x axis along the wave, under pressure p and tractions q_x, q_y on the body::
@@ -371,7 +370,7 @@ class Convolution:
         shape = self.shape
         cells = shape[0] * shape[1]
 
-        def apply(pressure: npt.NDArray[Any]) -> Field:
+        def apply(pressure: Field) -> Field:
             return self.apply(pressure.reshape(shape)).ravel()
 
         return LinearOperator((cells, cells), matvec=apply, rmatvec=apply, dtype=np.float64)

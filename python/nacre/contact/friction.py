@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.solution import NOT_COUNTED, Solution
-from nacre.contact.stresses import Stressed, depth_pictures
+from nacre.contact.stresses import DepthOptions, Stressed, depth_pictures
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
@@ -117,7 +117,7 @@ class FrictionReport(Result):
         return self.termination == "converged"
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         checked_warnings = cls._checked({"warnings": state.pop("warnings") or ()})
         known = {name: value for name, value in state.items() if value is not None}
         return dataclasses.replace(super()._restored(known), **checked_warnings)
@@ -390,7 +390,7 @@ class FrictionSolution(Result, Stressed):
         normal = [row for row in self.normal._rows() if row[0] != "ended"]
         return [*normal, *_rows(self)]
 
-    def _sections(self, **stress: Any) -> Sections:
+    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
         """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
         normal = self.normal._sections()
         friction = {"friction": self.friction, "direction": self.direction}
@@ -419,7 +419,7 @@ class FrictionSolution(Result, Stressed):
         """Return the SI unit of a quantity of this contact."""
         return row.si(line=self.grid.is_line, rolls=self.direction is not None)
 
-    def _attributes(self) -> dict[str, Any]:
+    def _attributes(self) -> dict[str, object]:
         """Return what files say of the contact besides its numbers and fields."""
         report, friction = self.report, self.friction
         names = ("termination", "violation", "imbalance", "tolerance")
@@ -434,7 +434,7 @@ class FrictionSolution(Result, Stressed):
     def _names(cls) -> list[str]:
         return ["normal", "friction", *VECTORS, "motion", "report"]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         normal = self.normal.to_dict()
         for key in values.heading("Solution"):
             del normal[key]
@@ -449,7 +449,7 @@ class FrictionSolution(Result, Stressed):
         }
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         if not isinstance(state["normal"], dict):
             raise ValueError(f"normal must be a dict of named fields, got {state['normal']!r}")
         with values.refusing(cls.__name__):
@@ -501,7 +501,7 @@ class History(list[FrictionSolution], Warned):
         state = self.to_dict()
         state["steps"] = [dict(step) for step in state["steps"]]
         arrays = [files.take_arrays(step, WITH_FRICTION) for step in state["steps"]]
-        fields: dict[str, Any] = {}
+        fields: dict[str, list[object]] = {}
         for row in WITH_FRICTION:
             columns = [step.get(row.name) for step in arrays]
             if row.follows or all(values is not None for values in columns):
@@ -512,10 +512,10 @@ class History(list[FrictionSolution], Warned):
                         row.put(step, values.tolist())
         return self._dataset(fields, state)
 
-    def _dataset(self, fields: dict[str, Any], state: dict[str, Any]) -> xarray.Dataset:
+    def _dataset(self, fields: Mapping[str, object], state: Mapping[str, object]) -> xarray.Dataset:
         """Return the Dataset of the numbers, and of these fields."""
         steps = checked(self)
-        columns: dict[str, Any] = {}
+        columns: dict[str, object] = {}
         for row in WITH_FRICTION:
             if row.name in fields:
                 values = np.array(fields[row.name])
@@ -525,7 +525,7 @@ class History(list[FrictionSolution], Warned):
                 dims = ("step", "component") if row.dims else ("step",)
                 columns[row.name] = dims, np.array([row.of(step) for step in steps])
         columns["termination"] = "step", [step.report.termination for step in steps]
-        coordinates: dict[str, Any] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
+        coordinates: dict[str, object] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
         if fields:
             coordinates |= {"x": steps[0].x, "y": steps[0].y}
         units = ((row, steps[0]._si(row)) for row in WITH_FRICTION)
@@ -605,7 +605,7 @@ class History(list[FrictionSolution], Warned):
         writers = files.tabular(self, self._table())
         return files.save(path, writers | files.pictures(self.plot) | writer(self))
 
-    def _sections(self, **stress: Any) -> Sections:
+    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
         """Return what stands in a report: the last step, and the numbers of all."""
         last = checked(self)[-1]._sections(**stress)
         forces = np.array([step.force for step in self])
@@ -626,7 +626,7 @@ class History(list[FrictionSolution], Warned):
             warnings=self.warnings,
         )
 
-    def _table(self) -> list[list[Any]]:
+    def _table(self) -> list[list[object]]:
         """Return the numbers of each step, after their headings."""
         first = checked(self)[0]
         quantities = [row for row, _ in tables.numbers(first)]
@@ -649,7 +649,7 @@ class History(list[FrictionSolution], Warned):
         return values.heading("History") | {"steps": [step._state() for step in self]}
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+    def from_dict(cls, data: Mapping[str, object]) -> Self:
         """Return the history whose named state `to_dict` returned, to the bit.
 
         Parameters
@@ -687,10 +687,15 @@ class History(list[FrictionSolution], Warned):
         last = f", the last {self[-1]!r}" if self else ""
         return f"<History of {len(self)} steps{last}>"
 
-    def __getitem__(self, place: Any) -> Any:
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> FrictionSolution: ...
+    @overload
+    def __getitem__(self, place: slice) -> Self: ...
+    def __getitem__(self, place: SupportsIndex | slice) -> FrictionSolution | Self:
         """Return a step, or the history of some of them."""
-        selection = super().__getitem__(place)
-        return type(self)(selection) if isinstance(place, slice) else selection
+        if isinstance(place, slice):
+            return type(self)(super().__getitem__(place))
+        return super().__getitem__(place)
 
     def __add__(self, other: Any) -> Any:
         """Return the history of these steps and others."""

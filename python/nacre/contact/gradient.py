@@ -6,17 +6,20 @@ import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import nacre._core as core
 from nacre._tools.typing import Field, Pair
 from nacre.results import display
 from nacre.results.base import Fields, same
 
-Output = str | tuple[str, float] | tuple[str, Pair] | dict[str, Any]
+if TYPE_CHECKING:
+    from nacre.contact.solution import Solution
+
+Output = str | tuple[str, float] | tuple[str, Pair] | Mapping[str, object]
 """Output of a contact, as `Solution.gradient` names it."""
 
-WORDS: dict[str, Any] = {
+WORDS: dict[str, object] = {
     "approach": "approach",
     "tilt[0]": {"tilt": 0},
     "tilt[1]": {"tilt": 1},
@@ -31,7 +34,7 @@ WORDS: dict[str, Any] = {
     "contact_extent": "contact_extent",
 }
 """Outputs that a word names, as the compiled module describes them."""
-MEASURES: dict[str, Any] = {
+MEASURES: dict[str, object] = {
     **{name: {"component": k} for k, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))},
     "von_mises": "von_mises",
     **{f"principal[{k}]": {"principal": k} for k in range(3)},
@@ -60,7 +63,7 @@ def described(output: Output) -> tuple[str, object]:
         return output, WORDS[output]
     if isinstance(output, dict):
         return _stress(output)
-    value: Any
+    value: object
     try:
         word, value = output
     except (TypeError, ValueError):
@@ -85,7 +88,7 @@ def _stress(table: Mapping[str, object]) -> tuple[str, object]:
     if "stress" not in table:
         raise ValueError('a stress must have the key "stress"')
     word = table["stress"]
-    if word not in MEASURES:
+    if not isinstance(word, str) or word not in MEASURES:
         raise ValueError(f'stress must be {_quoted(MEASURES)}, got "{word}"')
     keys = [key for key in PLACES if key in table]
     if len(keys) != 1:
@@ -142,12 +145,12 @@ def _numbers(name: str, values: object, count: int) -> list[float]:
 class MethodCall:
     """The call of a method of `Solution` that makes a value, for pickles."""
 
-    solution: Any
+    solution: object
     method: str
     arguments: tuple[object, ...]
     keywords: dict[str, object]
 
-    def reduced(self) -> tuple[Any, tuple[Any, ...]]:
+    def reduced(self) -> tuple[object, tuple[object, ...]]:
         """Return a callable and arguments that make the value again."""
         return operator.methodcaller(self.method, *self.arguments, **self.keywords), (
             self.solution,
@@ -310,29 +313,32 @@ class Direction(Fields):
 
 
 def gradients(
-    solution: object,
+    solution: Solution,
     method: str,
     outputs: Sequence[object],
     named_outputs: Sequence[tuple[str, object]],
     wrt: Sequence[str] | None,
-    **options: Any,
+    shape: core.Shape | None,
+    tolerance: float,
 ) -> list[Gradient]:
     """Return the gradients that a method of the solution makes of outputs, which are told apart.
 
     Parameters
     ----------
     solution
-        Solution, whose shape stands for one that the options do not give.
+        Solution.
     method, outputs
         Name of the method, and what it was given.
-    told
+    named_outputs
         Name of each output, and its description or its weights of the pressures.
     wrt
         Paths of the parameters, or None for all.
-    options
-        Shape and tolerance.
+    shape
+        Shape; None for that of the solution.
+    tolerance
+        Tolerance.
     """
-    linear, keywords = linearisation(solution, **options)
+    linear, keywords = linearisation(solution, shape, tolerance)
     derivatives = linear.gradients([output for _, output in named_outputs], wrt)
     return [
         Gradient(
@@ -352,8 +358,8 @@ def gradients(
 
 
 def linearisation(
-    solution: Any, shape: core.Shape | None, tolerance: float
-) -> tuple[core.Linear, dict[str, Any]]:
+    solution: Solution, shape: core.Shape | None, tolerance: float
+) -> tuple[core.Linear, dict[str, object]]:
     """Return the linearisation of a solution, and its options with the shape that is known."""
     shape = solution._shape if shape is None else shape
     linear = core.Linear(solution._solved, shape, tolerance)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import math
 import os
+import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, overload
+from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +27,7 @@ from nacre.contact.gradient import (
     gradients,
     linearisation,
 )
-from nacre.contact.stresses import Stressed, depth_pictures
+from nacre.contact.stresses import DepthOptions, Stressed, depth_pictures
 from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
 from nacre.results.quantities import CONTACT, Quantity
@@ -49,7 +50,7 @@ Parts = tuple[dict[str, Any], core.Grid, Planned, Planned | None]
 State = tuple[str, core.Grid, Planned, Planned | None]
 """JSON text of a report's state, its grid and its bodies."""
 
-BODIES: dict[str, Any] = {
+BODIES: dict[str, type | types.UnionType] = {
     "grid": core.Grid,
     "body": Planned,
     "counterbody": Planned | None,
@@ -208,7 +209,7 @@ class Report(Result):
         return state
 
     @classmethod
-    def _parts(cls, data: Any) -> State:
+    def _parts(cls, data: object) -> State:
         """Return the parts of a report with this state, which the compiled module checks."""
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
@@ -220,8 +221,8 @@ class Report(Result):
                 raise ValueError(f'report: the value of the key "{name}" does not fit: {encoded!r}')
             bodies.append(value)
         for name, keys in NESTED.items():
-            if isinstance(state[name], Mapping):
-                state[name] = values.with_names(name, state[name], keys)
+            if isinstance(part := state[name], Mapping):
+                state[name] = values.with_names(name, part, keys)
         state |= {name: None for name in ENDLESS if state[name] == math.inf}
         return as_text("Report", state), *bodies
 
@@ -557,8 +558,7 @@ class Solution(Result, Stressed):
         """
         outputs = output if isinstance(output, list) else [output]
         named_outputs = [described(one) for one in outputs]
-        options: dict[str, Any] = {"shape": shape, "tolerance": tolerance}
-        all_gradients = gradients(self, "gradient", outputs, named_outputs, wrt, **options)
+        all_gradients = gradients(self, "gradient", outputs, named_outputs, wrt, shape, tolerance)
         return all_gradients if isinstance(output, list) else all_gradients[0]
 
     def jvp(
@@ -646,9 +646,8 @@ class Solution(Result, Stressed):
         >>> round(total["load"] * 10.0 / total.value, 6)
         1.0
         """
-        options: dict[str, object] = {"shape": shape, "tolerance": tolerance}
         named_outputs = [("weighted pressure", cotangent)]
-        return gradients(self, "vjp", [cotangent], named_outputs, wrt, **options)[0]
+        return gradients(self, "vjp", [cotangent], named_outputs, wrt, shape, tolerance)[0]
 
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
         """Draw map, sections and main numbers; needs ``nacre-contact[plot]``.
@@ -779,7 +778,7 @@ class Solution(Result, Stressed):
         *,
         depths: float | Vector | None = None,
         whole: bool = False,
-        **options: Any,
+        **options: object,
     ) -> Path:
         """Write a file, whole or not at all; needs ``nacre-contact[files]``.
 
@@ -871,7 +870,7 @@ class Solution(Result, Stressed):
         """Return names and values of the main numbers, with units."""
         return _rows(self)
 
-    def _sections(self, **stress: Any) -> Sections:
+    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
         """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
         pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
         numbers = [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]

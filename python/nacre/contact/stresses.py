@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypedDict, TypeVar, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -27,10 +27,14 @@ from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdi
 if TYPE_CHECKING:
     import xarray
 
+    from nacre.contact.solution import Solution
+
 Array = npt.NDArray[np.float64]
 Depths = float | Sequence[float] | Real
 Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
+Extreme = tuple[str, str, float, float, float, float, float, float]
+"""Cells of a row of the table of extremes, as `EXTREMES` names them."""
 Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
@@ -64,6 +68,20 @@ class StressOptions:
     residual: ByLayer | None
     threads: int | None
     progress: Progress | None
+
+
+class SlidingOptions(TypedDict, total=False):
+    """Keywords of the stress below a contact that say how it slides."""
+
+    friction: float
+    direction: Direction | None
+    residual: ByLayer | None
+
+
+class DepthOptions(SlidingOptions, total=False):
+    """Keywords of the picture of the stress over depth."""
+
+    body: Member
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,7 +288,7 @@ class Stress(Result, Warned):
         return [self._shaped(one) for one in core.stress_invariants(self.__dict__, name)]
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         try:
             return cls(**core.checked_stress(state | {"body": values.decode(state["body"])}))
         except TypeError as error:
@@ -327,13 +345,13 @@ class _Extremes(Result):
         errors = {name: error for name, error in errors.items() if error is not None}
         return cls(**fields | peaks | {"uncertainty": errors})
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         state = super()._state()
         for name in self._PEAKS:
-            if state[name] is not None:
-                value, place = state[name]
+            if (peak := getattr(self, name)) is not None:
+                value, place = peak
                 error = self.uncertainty.get(name)
-                state[name] = {"value": value, "at": place, "uncertainty": error}
+                state[name] = {"value": value, "at": list(place), "uncertainty": error}
         return state
 
 
@@ -484,7 +502,7 @@ class StressSummary(Tabular, Warned):
         return cls(**fields | parts)
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         contact = cls._checked({name: state.pop(name) for name in cls._LATER})
         fields = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
         return cls._from_fields(fields, **contact)
@@ -510,23 +528,27 @@ class StressSummary(Tabular, Warned):
             Part and name of each extreme, value, uncertainty, position and safety factor over
             ``row``; NaN where there is none.
         """
-        heads, *rows = self._file_rows()
-        variables = {name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)}
+        rows = list(self._extremes())
+        variables = {
+            column.name: ("row", [row[k] for row in rows]) for k, column in enumerate(EXTREMES)
+        }
         table = [(row, row.unit) for row in EXTREMES]
         attributes = {name: str(value) for name, value in self._comments().items()}
         title = "extremes of the stress"
         return files.dataset(title, table, variables, {}, self.to_dict(), **attributes)
 
-    def _comments(self) -> dict[str, Any]:
+    def _comments(self) -> dict[str, object]:
         """Return what stands beside the table."""
         warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
         verdict = " ".join(self.verdict.sentences)
         state = {"finished": self.finished, "friction": self.friction}
         return {"verdict": verdict, **state, **warnings}
 
-    def _file_rows(self) -> list[tuple[Any, ...]]:
-        """Return the rows of the table, the heading first."""
-        rows: list[tuple[Any, ...]] = [tuple(row.name for row in EXTREMES)]
+    def _file_rows(self) -> list[Sequence[object]]:
+        return [[row.name for row in EXTREMES], *self._extremes()]
+
+    def _extremes(self) -> Iterator[Extreme]:
+        """Yield the rows of the table, without the heading."""
         parts: list[LayerStress | InterfaceStress] = [*self.layers, *self.interfaces]
         for part in parts:
             for name in part._PEAKS:
@@ -536,13 +558,15 @@ class StressSummary(Tabular, Warned):
                 error = part.uncertainty.get(name, np.nan)
                 factor = getattr(part, FACTORS.get(name, ""), None)
                 limit = np.nan if factor is None else factor
-                rows.append((display.part(part), name, value, error, *place, limit))
-        return rows
+                yield display.part(part), name, value, error, *place, limit
 
     def _sections(self) -> Sections:
-        (part, name, value, _, *rest), *rows = self._file_rows()
-        cells = [(*r[:3], display.share(r[3], r[2]) if r[3] == r[3] else "", *r[4:]) for r in rows]
-        extremes = table("Extremes", [(part, name, value, "±", *rest), *cells], EXTREMES)
+        heads = ["±" if row.name == "uncertainty" else row.name for row in EXTREMES]
+        cells = [
+            (*row[:3], display.share(row[3], row[2]) if row[3] == row[3] else "", *row[4:])
+            for row in self._extremes()
+        ]
+        extremes = table("Extremes", [heads, *cells], EXTREMES)
         notes = [("traction", text) for text in _notes(self)]
         model = [("theory", STRESSES), ("±", SIZE_ERRORS)]
         return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
@@ -584,7 +608,7 @@ class StressPlan:
 
     _plan: core.StressPlan = field(compare=False)
     """Plan of the compiled module."""
-    _solution: Any
+    _solution: Stressed
     """Solution, which is pickled in place of the plan."""
     _member: Member
     """Body of the solution."""
@@ -703,7 +727,7 @@ class StressPlan:
         """Return which body the plan is of."""
         return f"<StressPlan of the {self._member}>"
 
-    def __reduce__(self) -> tuple[Any, tuple[Member, int | None]]:
+    def __reduce__(self) -> tuple[object, tuple[Member, int | None]]:
         """Return the method of the solution that makes the plan again, and its arguments."""
         return self._solution.stress_plan, (self._member, self._threads)
 
@@ -711,8 +735,13 @@ class StressPlan:
 class Stressed:
     """Stresses below a solved contact, with or without friction."""
 
-    _solved: Any
+    _solved: core.Solved | core.FrictionSolved
     report: Any
+
+    @property
+    def _normal(self) -> Solution:
+        """Contact below the traction; without friction this one."""
+        return cast("Solution", getattr(self, "normal", self))
 
     def stress(
         self,
@@ -940,7 +969,9 @@ class Stressed:
         """Return the traction on a body over the pressure, of arguments that were accepted."""
         if friction == 0:
             return (0.0, 0.0)
-        x, y = self.report.rolling_direction if direction is None else direction
+        rolling = self._normal.report.rolling_direction if direction is None else direction
+        assert rolling is not None  # the compiled module refuses friction without a direction
+        x, y = rolling
         scale = float(friction) / np.hypot(x, y) * (1 if body == "body" else -1)
         return (float(scale * x), float(scale * y))
 
@@ -1063,10 +1094,10 @@ def check_limits(name: str, limits: Sequence[float | None], body: core.HalfSpace
 
 
 def _check_limits_of(
-    solution: Any, member: Member, yield_stress: ByLayer | None, strength: ByLayer | None
+    solution: Stressed, member: Member, yield_stress: ByLayer | None, strength: ByLayer | None
 ) -> None:
     """Raise an error unless limits of a body of a solution are in the units of the moduli."""
-    report = getattr(solution, "normal", solution).report
+    report = solution._normal.report
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     if isinstance(body, core.HalfSpace):
         for name, limits in (("yield_stress", yield_stress), ("strength", strength)):
@@ -1080,12 +1111,19 @@ def _warned(result: StressResult) -> StressResult:
     return result
 
 
-def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> Iterator[Picture]:
+def depth_pictures(
+    solution: Stressed,
+    bare: Stressed | None = None,
+    *,
+    body: Member = "body",
+    **sliding: Unpack[SlidingOptions],
+) -> Iterator[Picture]:
     """Yield the picture of the von Mises stress against depth below the largest pressure.
 
-    There is none of bodies without stresses, of surfaces that have yielded and of large grids.
+    A `bare` solution, without the layers, is drawn beside the coated one. There is none of bodies
+    without stresses, of surfaces that have yielded and of large grids.
     """
-    normal = getattr(solution, "normal", solution)
+    normal = solution._normal
     member = normal.report.counterbody if body == "counterbody" else normal.report.body
     if (
         not isinstance(member, core.HalfSpace)
@@ -1102,21 +1140,33 @@ def depth_pictures(solution: Any, *, body: Member = "body", **sliding: Any) -> I
     ends = sorted({*faces, *(inset or ())})
     count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
     counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
-    plan, (x, y) = solution.stress_plan(body), normal.peak_position
     parts = zip(pairwise(ends), counts, strict=True)
     within = np.concatenate([np.linspace(top, end, n, endpoint=False) for (top, end), n in parts])
-    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces[1:]), "above"))
-    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
-    depths = np.concatenate([within, faces[1:]])
-    # An interface occurs twice: its upper side, which comes last here, stands first.
-    order = np.lexsort((-np.arange(depths.size), depths))
-    curve = Curve(depths[order], np.concatenate([one.von_mises for one in fields])[order])
+    curve = _over_depth(solution, body, within, faces[1:], sliding)
+    curves = [Curve(*curve, "" if bare is None else "coated")]
+    if bare is not None:
+        sliding.pop("residual", None)
+        curve = _over_depth(bare, body, within, faces[1:], sliding)
+        curves.append(Curve(*curve, "bare", "dashed"))
     axes = Axis("depth", "m"), Axis("von Mises stress", "Pa")
     words = ["Von Mises stress below the largest pressure"]
     words += ["dotted: interfaces"] if faces[1:-1] else []
     words += ["inset: the first three thicknesses of the coat"] if inset else []
     caption = "; ".join(words) + "."
-    yield Picture(caption, lines([curve], axes, faces[1:-1], inset))
+    yield Picture(caption, lines(curves, axes, faces[1:-1], inset))
+
+
+def _over_depth(
+    solution: Stressed, body: Member, within: Array, faces: list[float], sliding: SlidingOptions
+) -> tuple[Array, Array]:
+    """Return depths and von Mises stresses; faces are there twice, for their two sides."""
+    plan, (x, y) = solution.stress_plan(body), solution._normal.peak_position
+    sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces), "above"))
+    fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
+    depths = np.concatenate([within, faces])
+    # The upper side of a face, which comes last here, stands first.
+    order = np.lexsort((-np.arange(depths.size), depths))
+    return depths[order], np.concatenate([one.von_mises for one in fields])[order]
 
 
 def _notes(summary: StressSummary) -> list[str]:
@@ -1129,9 +1179,9 @@ def _notes(summary: StressSummary) -> list[str]:
     return sliding if summary.finished else [*sliding, UNFINISHED]
 
 
-def doubt_of(solution: Any) -> str | None:
+def doubt_of(solution: Stressed) -> str | None:
     """Return what leaves the pressure of a solution without a certain value, or None."""
-    normal = getattr(solution, "normal", solution)
+    normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
     return None if SINGULAR.isdisjoint(normal.report.warning_kinds) else NO_LIMIT

@@ -145,7 +145,7 @@ class Sliding:
     """Motion along z, for rolling."""
 
     @staticmethod
-    def _rest(keywords: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
+    def _rest(keywords: Mapping[str, object], names: Sequence[str]) -> dict[str, Any]:
         """Return those keywords that are no options, which must be among the names."""
         options = ("tolerance", "max_convolutions", "coupling")
         rest = {key: value for key, value in keywords.items() if key not in options}
@@ -293,8 +293,9 @@ class WearReport(Result):
     thickness_error: float | None
     """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
 
-    That of layers as thick as before, or of thinner ones to first order. It is found with layers
-    that are thinner by the mean of the depths; None without a layer that wears.
+    That of layers as thick as before, or of thinner ones to first order: the root of its mean
+    square within the contact, found with layers that are thinner by the mean of the depths. None
+    without a layer that wears.
     """
     regrids: int
     """Number of times that the grid grew."""
@@ -517,7 +518,7 @@ class WearHistory(Result):
         """
         state, packed = _packed(self.to_dict())
         last = self.states[-1]
-        columns: dict[str, Any] = {
+        columns: dict[str, object] = {
             row.name: (row.dims, getattr(self, row.name))
             for row in WEAR
             if row.dims[:1] == ("step",)
@@ -559,7 +560,7 @@ class WearHistory(Result):
                 raise ValueError("states must hold one at least")
             return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **parts)  # type: ignore[arg-type]
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         return {
             "states": [
                 state._state() | {"solution": _bare(state.solution)} for state in self.states
@@ -666,7 +667,7 @@ class WearHistory(Result):
         writers = files.tabular(self, self._table(), **comments)
         return files.save(path, writers | files.pictures(self.plot) | writer(self))
 
-    def _table(self) -> list[list[Any]]:
+    def _table(self) -> list[list[object]]:
         """Return the numbers of each state, after their headings."""
         heads, columns = ["step"], [np.arange(len(self.states))]
         for row in (row for row in WEAR if row.dims[:1] == ("step",)):
@@ -757,7 +758,7 @@ PACKED = "packed"
 """Name of the variable that holds all arrays of a history of wear, one after the other."""
 
 
-def _bare(solution: Solution) -> dict[str, Any]:
+def _bare(solution: Solution) -> dict[str, object]:
     state = solution.to_dict()
     return {key: value for key, value in state.items() if key not in values.heading("Solution")}
 
@@ -941,7 +942,7 @@ def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) ->
     return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
 
 
-def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> dict[str, str]:
+def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) -> dict[str, str]:
     """Return the inputs in words."""
     named = {
         "shape": shape,
@@ -958,7 +959,7 @@ def _inputs(shape: Any, motion: Motion, bodies: Wearing, sliding: Sliding) -> di
     return {name: _words(value) for name, value in named.items() if value is not None}
 
 
-def _words(value: Any) -> str:
+def _words(value: object) -> str:
     """Return a value in words, with the check sum of what they leave out of arrays."""
     text = str(value)
     if "..." not in text:
@@ -1029,4 +1030,4 @@ NOT_SETTLED = (
 MOST_THINNING = 0.05
 """Error of the pressure by layers of constant thickness from which on there is a warning."""
 FIRST_ORDER = 0.4
-"""Part of the thickness up to which thinner layers have been compared with exact ones: 0.3 %."""
+"""Part of the thickness up to which thinner layers were compared with exact ones: 0.3 to 1.6 %."""

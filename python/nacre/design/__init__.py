@@ -92,13 +92,13 @@ def coating_chart(
     """
     contact_options, study = _split_options(options)
 
-    def case(thickness: float, young: float) -> dict[str, Any]:
+    def case(thickness: float, young: float) -> dict[str, object]:
         coating = core.Layer(core.Elastic(young, poisson), thickness)
         return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **contact_options}
 
-    sliding: dict[str, Any] = {"friction": friction, "direction": direction}
-    check_direction({"shape": shape, **contact_options}, **sliding)
-    stress = {**sliding, "refine": refine if _refinable(contact_options) else None}
+    check_direction({"shape": shape, **contact_options}, friction, direction)
+    refine = refine if _refinable(contact_options) else None
+    stress = {"friction": friction, "direction": direction, "refine": refine}
     outputs = ["peak_pressure", "coating_tension", "interface_shear", "contact_area", "approach"]
     parameters = {"thickness": thickness, "young": young}
     dataset = sweep(case, parameters, outputs=outputs, stress=stress, **study)
@@ -110,14 +110,14 @@ def coating_chart(
     return dataset
 
 
-def _refinable(contact_options: Mapping[str, Any]) -> bool:
+def _refinable(contact_options: Mapping[str, object]) -> bool:
     """Whether the stresses of a contact can be refined."""
     grid = contact_options.get("grid")
     has_cell_fields = any(
         contact_options.get(name) is not None
         for name in ("hardness", "indentation", "coefficients", "compliance")
     )
-    return not has_cell_fields and (grid is None or not any(grid.periodic))
+    return not (has_cell_fields or (isinstance(grid, core.Grid) and any(grid.periodic)))
 
 
 def load_curve(
@@ -206,7 +206,7 @@ def tilt_curve(
     """
     contact_options, study = _split_options(options)
 
-    def case(tilt: float) -> dict[str, Any]:
+    def case(tilt: float) -> dict[str, object]:
         return {"shape": shape, "body": body, "load": load, "tilt": (tilt, None), **contact_options}
 
     outputs = ("moment", "eccentricity", "approach", "peak_pressure")
@@ -257,7 +257,7 @@ def force_table(
     """
     contact_options, study = _split_options(options)
 
-    def case(approach: float, tilt_x: float, tilt_y: float) -> dict[str, Any]:
+    def case(approach: float, tilt_x: float, tilt_y: float) -> dict[str, object]:
         motion = {"approach": approach, "tilt": (tilt_x, tilt_y)}
         return {"shape": shape, "body": body, **motion, **contact_options}
 

@@ -8,7 +8,7 @@ import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,12 +16,13 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.paths import DIFFERENTIABLE, holder, put
 from nacre.contact import Contact
-from nacre.contact.gradient import Gradient
+from nacre.contact.gradient import Gradient, Output
 from nacre.contact.solution import Solution
 from nacre.studies import ARGUMENTS
 
 Array = npt.NDArray[np.float64]
-Outputs = Sequence[str] | Mapping[str, Any]
+Value = TypeVar("Value")
+Outputs = Sequence[str] | Mapping[str, Output]
 
 ACCURATE = 1e-10
 """Tolerance of solves: errors of a solution enter its derivatives linearly."""
@@ -62,15 +63,15 @@ class Point:
             warnings.warn(sentence, core.NacreWarning, stacklevel=2)
 
 
-class Recent:
+class Recent(Generic[Value]):
     """Values of the last keys; threads may share it."""
 
     def __init__(self, most: int) -> None:
         self.most = most
-        self.values: OrderedDict[Hashable, Any] = OrderedDict()
+        self.values: OrderedDict[Hashable, Value] = OrderedDict()
         self.lock = threading.Lock()
 
-    def at(self, key: Hashable, make: Callable[[], Any]) -> Any:
+    def at(self, key: Hashable, make: Callable[[], Value]) -> Value:
         """Return the value of a key, made where it is not known."""
         with self.lock:
             if key in self.values:
@@ -111,8 +112,8 @@ class Differentiable:
         self.outputs = _outputs_by_name(outputs)
         self.arguments = {"tolerance": ACCURATE, **settings}
         self.shape: core.Shape | None = self.arguments.pop("shape", None)
-        self.points = Recent(keep)
-        self.plans = Recent(PLANS)
+        self.points: Recent[Point] = Recent(keep)
+        self.plans: Recent[Contact] = Recent(PLANS)
 
     def check(self, names: Iterable[str], gap: bool) -> None:
         """Check the paths of parameters, before there are any numbers."""
@@ -130,8 +131,7 @@ class Differentiable:
         """Return the solved contact at a vector."""
         x = np.ascontiguousarray(x, dtype=np.float64)
         digest = hashlib.sha256(x.tobytes()).digest()
-        state: Point = self.points.at((names, len(x), digest), lambda: self._solved(names, x))
-        return state
+        return self.points.at((names, len(x), digest), lambda: self._solved(names, x))
 
     def values(self, names: tuple[str, ...], x: Array) -> tuple[Array, Array]:
         """Return the pressures of the cells and the outputs."""
@@ -143,7 +143,7 @@ class Differentiable:
         by_name = {name: gradient.value for name, gradient in gradients.items()}
         for name, one in self.outputs.items():
             if name not in by_name:
-                by_name[name] = READ[one](point.solution)
+                by_name[name] = READ[str(one)](point.solution)
             if one == "approach":
                 by_name[name] += point.lowest
         pressure: Array = point.solution.pressure.ravel()
@@ -240,7 +240,7 @@ def _row(gradient: Gradient, names: tuple[str, ...], size: int) -> Array:
     return np.concatenate([np.array(numbers, dtype=np.float64), gap])
 
 
-def _outputs_by_name(outputs: Outputs) -> dict[str, Any]:
+def _outputs_by_name(outputs: Outputs) -> dict[str, Output]:
     """Return outputs by name; a word is its own name."""
     if isinstance(outputs, Mapping):
         by_name = dict(outputs)

@@ -9,13 +9,14 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import nacre._core as core
 from nacre._tools.extras import extra
 from nacre._tools.progress import lasting
+from nacre.contact.gradient import Output
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
@@ -25,7 +26,7 @@ from nacre.results.base import Fields
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Limits = Sequence[tuple[object, float]]
+Limits = Sequence[tuple[Output, float]]
 
 RESTARTS = 3
 """Fresh starts where the last search ended, until one gains less than the tolerance."""
@@ -162,7 +163,7 @@ def optimise(
     build: Build,
     start: Mapping[str, float],
     *,
-    objective: object,
+    objective: Output,
     cases: Sequence[Mapping[str, object]],
     bounds: Bounds | None = None,
     constraints: Limits = (),
@@ -281,7 +282,8 @@ def optimise(
         elif tell is not None:
             tell(f"{problem.solves} solves, objective {row['objective']:.5g}")
 
-    with lasting("optimum", progress) as tell, warnings.catch_warnings():
+    quiet = (lambda _: None) if isinstance(progress, bool) else progress
+    with lasting("optimum", quiet) as tell, warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
         try:
             for stage in grids:
@@ -335,7 +337,7 @@ def _cases(cases: object) -> list[dict[str, object]]:
     return [dict(case) for case in cases]
 
 
-def _limits(constraints: Any) -> list[tuple[object, float]]:
+def _limits(constraints: Limits) -> list[tuple[Output, float]]:
     for pair in constraints:
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"constraints must be pairs of an output and its limit, got {pair!r}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.paths import DIFFERENTIABLE, numbers, put
 from nacre.contact import Contact, solve
+from nacre.contact.gradient import Output
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Scale
 from nacre.studies import ARGUMENTS
@@ -50,9 +51,9 @@ class Problem:
 
     build: Build
     scales: list[Scale]
-    objective: Any
-    cases: list[dict[str, Any]]
-    limits: list[tuple[object, float]]
+    objective: Output
+    cases: Sequence[Mapping[str, object]]
+    limits: list[tuple[Output, float]]
     across: float
     most: float = math.inf
     tolerance: float = 1e-4

@@ -61,8 +61,8 @@ def shakedown(history: Real, *, rule: Rule = "von_mises") -> Shakedown:
 
     >>> pull = np.zeros((2, 6))
     >>> pull[1, 1] = 1.0
-    >>> found = nacre.fatigue.shakedown(pull)
-    >>> round(float(found.first_yield / found.shear_yield), 12)
+    >>> limits = nacre.fatigue.shakedown(pull)
+    >>> round(float(limits.first_yield / limits.shear_yield), 12)
     2.0
     """
     if not among(rule, get_args(Rule)):

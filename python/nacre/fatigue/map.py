@@ -55,8 +55,8 @@ class ShakedownMap(Tabular, Warned):
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> grid = nacre.Grid.line(96, 3e-4)
     >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
-    >>> found = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
-    >>> found.limits.round(1)
+    >>> shakedown_map = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
+    >>> shakedown_map.limits.round(1)
     array([[4. , 3.2]])
     """
 

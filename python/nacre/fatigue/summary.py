@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, cast, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +38,8 @@ Peak = tuple[float, Place]
 """Value, and point (x, y, z) where it occurs."""
 Balanced = tuple[float, Place, tuple[float, float]]
 """Yield stress in shear, point, and residual stresses along x and y."""
+Need = tuple[str, str, float, float, float, float, float]
+"""Cells of a row of the table of what is needed, as `FATIGUE` names them."""
 
 DEPTHS = np.r_[0.03, 0.07, 0.12:1.38:0.09, 1.5, 1.75, 2.1, 2.6]
 """Depths in a body, in half-widths of the contact: maxima are at .3 to .8 of them as a rule."""
@@ -124,7 +126,7 @@ class LayerFatigue(Result):
         return {**first, "orthogonal_shear": self.orthogonal_shear, **self.criteria}
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         return cls(
             **read_fields(
                 cls.__name__,
@@ -244,7 +246,7 @@ class FatigueSummary(Tabular, Warned):
         return state
 
     @classmethod
-    def _restored(cls, state: dict[str, Any]) -> Self:
+    def _restored(cls, state: dict[str, object]) -> Self:
         return cls(
             **read_fields(
                 cls.__name__,
@@ -330,9 +332,9 @@ class FatigueSummary(Tabular, Warned):
             Part and name of each value, place and safety factor over ``row``, NaN where there is
             none; values over ``depth`` by the names of `profiles`.
         """
-        heads, *rows = self._file_rows()
+        rows = list(self._needs())
         variables: dict[str, object] = {
-            name: ("row", [row[k] for row in rows]) for k, name in enumerate(heads)
+            column.name: ("row", [row[k] for row in rows]) for k, column in enumerate(FATIGUE)
         }
         table = [(row, row.unit) for row in (*FATIGUE, *PROFILE)]
         profiles = {name: ("depth", column) for name, column in self.profiles.items()}
@@ -353,18 +355,19 @@ class FatigueSummary(Tabular, Warned):
             **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)},
         }
 
-    def _file_rows(self) -> list[tuple[Any, ...]]:
-        """Return the rows of the table, the heading first."""
-        rows: list[tuple[Any, ...]] = [tuple(row.name for row in FATIGUE)]
+    def _file_rows(self) -> list[Sequence[object]]:
+        return [[row.name for row in FATIGUE], *self._needs()]
+
+    def _needs(self) -> Iterator[Need]:
+        """Yield the rows of the table, without the heading."""
         for layer in self.layers:
             for name, (value, place) in layer._peaks().items():
                 factor = layer.safety_factors.get(name, np.nan)
-                rows.append((display.part(layer), name, value, *place, factor))
+                yield display.part(layer), name, value, *place, factor
         for face in self.interfaces:
             for name in ("shear_range", "tension"):
                 value = getattr(face, name)
-                rows.append((display.part(face), name, value, np.nan, np.nan, face.depth, np.nan))
-        return rows
+                yield display.part(face), name, value, np.nan, np.nan, face.depth, np.nan
 
     def _sections(self) -> Sections:
         labels = {row.name: row.label for row in PROFILE}
@@ -454,7 +457,7 @@ def _yields(layer: LayerFatigue) -> str:
 
 
 def read_fields(
-    kind: str, state: Mapping[str, Any], **readers: Callable[[Any], Any]
+    kind: str, state: Mapping[str, object], **readers: Callable[[Any], object]
 ) -> dict[str, Any]:
     """Return the fields of a kind of result from plain data; wrong ones are a `ValueError`."""
     fields = {}
@@ -481,12 +484,11 @@ def flag(truth: object) -> bool:
     return truth
 
 
-def rule_of(name: Any) -> Rule:
+def rule_of(name: object) -> Rule:
     """Return a condition of yield, or raise."""
     if not among(name, get_args(Rule)):
         raise ValueError(f"{name!r} is no condition of yield")
-    rule: Rule = name
-    return rule
+    return cast(Rule, name)
 
 
 def numbers(sequence: Iterable[float]) -> Array:
@@ -494,21 +496,21 @@ def numbers(sequence: Iterable[float]) -> Array:
     return np.array([float(one) for one in sequence])
 
 
-def _by_name(entries: Mapping[str, Any]) -> dict[str, float]:
+def _by_name(entries: Mapping[str, float]) -> dict[str, float]:
     return {name: float(one) for name, one in entries.items()}
 
 
-def _balanced(entry: Any) -> Balanced:
+def _balanced(entry: tuple[float, Iterable[float], Iterable[float]]) -> Balanced:
     value, place, (x, y) = entry
     return float(value), _place(place), (float(x), float(y))
 
 
-def _place(coordinates: Any) -> Place:
+def _place(coordinates: Iterable[float]) -> Place:
     x, y, z = (float(value) for value in coordinates)
     return x, y, z
 
 
-def _peak(entry: Any) -> Peak:
+def _peak(entry: tuple[float, Iterable[float]]) -> Peak:
     value, place = entry
     return float(value), _place(place)
 

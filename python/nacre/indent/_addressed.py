@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.paths import numbers, with_half_spaces
+from nacre._tools.paths import numbers
 from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]
@@ -34,8 +34,10 @@ class System:
         adhesion: core.Adhesion | None = None,
     ) -> System:
         """Return the system of these arguments, elastic materials as half-spaces."""
-        bodies = {"body": body, "counterbody": counterbody}
-        return cls(tip=tip, adhesion=adhesion, **with_half_spaces(bodies))
+        half_space = core.HalfSpace(body) if isinstance(body, core.Elastic) else body
+        if isinstance(counterbody, core.Elastic):
+            counterbody = core.HalfSpace(counterbody)
+        return cls(half_space, tip, counterbody, adhesion)
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""

@@ -60,12 +60,12 @@ def quantities(
     """
     if spring_constant is not None and choices["depth"] is None:
         choices = {**choices, "depth": _height(where, table)}
-    chosen = {
+    columns = {
         quantity: _signed_column(where, table, quantity, one) for quantity, one in choices.items()
     }
-    rows = _filled(table, [index for _, index in chosen.values() if index is not None])
+    rows = _filled(table, [index for _, index in columns.values() if index is not None])
     by_quantity: dict[str, Array | None] = {}
-    for quantity, (sign, index) in chosen.items():
+    for quantity, (sign, index) in columns.items():
         by_quantity[quantity] = None
         if index is not None:
             size = sign * _unit(where, table, quantity, index, units)

@@ -216,9 +216,9 @@ def others(model: Model, start: Array) -> list[Array]:
     Where no thickness is free, of the first modulus.
     """
     logs = [u.name for u in model.unknowns if u.is_log]
-    chosen = [name for name in logs if name.endswith(".thickness")] or logs[:1]
+    shifted_names = [name for name in logs if name.endswith(".thickness")] or logs[:1]
     places = []
-    for name in chosen:
+    for name in shifted_names:
         for shift in (math.log(3.0), -math.log(3.0)):
             x = start.copy()
             x[model.names.index(name)] += shift

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,9 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import plain
 from nacre.results.verdict import DIGITS, Level, Verdict, number
+
+if TYPE_CHECKING:
+    from nacre.indent.solution import IndentSolution
 
 Array = npt.NDArray[np.float64]
 
@@ -37,7 +40,7 @@ class Reading:
     """Whether the indentation has adhesion, which the loads here have not."""
 
 
-def apparent_modulus(solution: Any) -> Reading | None:
+def apparent_modulus(solution: IndentSolution) -> Reading | None:
     """Return the readings of an indentation up to its largest depth, or None without a film.
 
     With a stiffness E' = E/(1 − ν²) of the tip, loads at one depth are as 1/(1/E'_film + 1/E'_tip).
@@ -53,8 +56,8 @@ def apparent_modulus(solution: Any) -> Reading | None:
         .number("load")
         for one in (body, core.HalfSpace(film))
     )
-    tip = solution.counterbody
-    compliance = 0.0 if tip is None else 1 / tip.substrate.plane_strain_modulus
+    tip = solution.counterbody and solution.counterbody.substrate
+    compliance = 1 / tip.plane_strain_modulus if isinstance(tip, core.Elastic) else 0.0
     reduced = loads / bare / (1 / film.plane_strain_modulus + compliance)
     # Beyond the tip's own stiffness no film can be read.
     left = 1 / reduced - compliance

@@ -56,7 +56,7 @@ class Curve:
 
     Notes
     -----
-    Any consistent units will do; those of `read` are SI. The arrays cannot be written to.
+    All consistent units will do; those of `read` are SI. The arrays cannot be written to.
 
     Examples
     --------

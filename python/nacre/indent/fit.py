@@ -72,7 +72,7 @@ def fit(
     adhesion : Adhesion, optional
         Adhesion within the contact (JKR) or outside (DMT).
     nuisance : sequence of str
-        Any of "contact_point", "drift" (curves with a time), "compliance", "force_offset" and
+        Some of "contact_point", "drift" (curves with a time), "compliance", "force_offset" and
         "force_slope". The last two need points before contact.
     noise : {"auto", "relative", "absolute"}
         Noise of the force: a share of each force, or the same at each point. By default the

@@ -6,10 +6,10 @@ import copyreg
 import math
 import types
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,14 @@ from nacre.results.verdict import Verdict
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+    from typing_extensions import TypeVar
+
+    Value = TypeVar("Value", bound=float | Field, default=Any)
+    """A float of one contact, or an array of several."""
+else:
+    from typing import TypeVar
+
+    Value = TypeVar("Value")
 
 Variable = Literal["load", "approach", "radius"]
 Branch = Literal["stable", "unstable"]
@@ -68,7 +76,7 @@ def holds(*arguments: object) -> bool:
 
 
 @dataclass(frozen=True)
-class StateDerivative(Fields):
+class StateDerivative(Fields, Generic[Value]):
     """Derivatives of contacts of an indentation with respect to one parameter, in their shape.
 
     Examples
@@ -81,15 +89,15 @@ class StateDerivative(Fields):
     -0.666667
     """
 
-    radius: Any
+    radius: Value
     """Derivative of the contact radius."""
-    load: Any
+    load: Value
     """Derivative of the load."""
-    approach: Any
+    approach: Value
     """Derivative of the approach."""
-    stiffness: Any
+    stiffness: Value
     """Derivative of the stiffness."""
-    outer_radius: Any
+    outer_radius: Value
     """Derivative of the radius up to which the surfaces attract each other."""
     _states: core.IndentStates
     """Contacts of the compiled module."""
@@ -112,7 +120,7 @@ class StateDerivative(Fields):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IndentSolution(Tabular, Warned):
+class IndentSolution(Tabular, Warned, Generic[Value]):
     """Contacts of an indentation, with all that they depend on.
 
     `Indentation.at` and `nacre.indent.solve` return it. Numbers have the shape of the load,
@@ -143,16 +151,16 @@ class IndentSolution(Tabular, Warned):
     """Branch of the contacts, "stable" or "unstable"."""
     control: Control
     """What is held while the tip is pulled off."""
-    load: Any
+    load: Value
     """Load [N], below 0 where the tip is pulled."""
-    approach: Any
+    approach: Value
     """Approach [m]."""
-    radius: Any
+    radius: Value
     """Contact radius [m]."""
-    stiffness: Any
+    stiffness: Value
     """Stiffness of this contact area [N/m]: that of unloading, and without adhesion the slope of
     the curve."""
-    outer_radius: Any
+    outer_radius: Value
     """Radius up to which the surfaces attract each other [m].
 
     It is that of the contact except for Maugis's adhesion.
@@ -215,14 +223,16 @@ class IndentSolution(Tabular, Warned):
         return self
 
     @cached_property
-    def stiffness_slope(self) -> Any:
+    def stiffness_slope(self) -> Value:
         """Derivative of the stiffness with respect to the contact radius [N/m^2]."""
-        return self._states.number("stiffness_slope")
+        slope: Value = self._states.number("stiffness_slope")
+        return slope
 
     @cached_property
-    def central_pressure(self) -> Any:
+    def central_pressure(self) -> Value:
         """Pressure on the axis [Pa], infinite below a sharp tip."""
-        return self.pressure(0.0)
+        pressure: Value = self.pressure(0.0)
+        return pressure
 
     def pressure(self, r: Numbers) -> Any:
         """Return the pressure [Pa] at distances r from the axis [m].
@@ -270,7 +280,7 @@ class IndentSolution(Tabular, Warned):
         """
         return dict(self._states.stress(r, z))
 
-    def derivatives(self, wrt: Sequence[str] | None = None) -> dict[str, StateDerivative]:
+    def derivatives(self, wrt: Sequence[str] | None = None) -> dict[str, StateDerivative[Value]]:
         """Differentiate the contacts with respect to parameters, where what was given is held.
 
         Parameters
@@ -579,6 +589,24 @@ class Indentation:
         """Paths of the parameters with respect to which there are derivatives."""
         return self._planned.parameters()
 
+    @overload
+    def at(
+        self,
+        *,
+        load: float | None = None,
+        approach: float | None = None,
+        radius: float | None = None,
+        branch: Branch = "stable",
+    ) -> IndentSolution[float]: ...
+    @overload
+    def at(
+        self,
+        *,
+        load: Vector | Matrix | None = None,
+        approach: Vector | Matrix | None = None,
+        radius: Vector | Matrix | None = None,
+        branch: Branch = "stable",
+    ) -> IndentSolution[Field]: ...
     def at(
         self,
         *,
@@ -608,13 +636,14 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        arguments: dict[object, object] = {"load": load, "approach": approach, "radius": radius}
-        return self._at(arguments, branch, "load")
+        return self._at({"load": load, "approach": approach, "radius": radius}, branch, "load")
 
-    def _at(self, arguments: dict[Any, Any], branch: Branch, control: Control) -> IndentSolution:
-        states = self._planned.at(branch, **arguments)
+    def _at(
+        self, numbers: Mapping[Variable, object], branch: Branch, control: Control
+    ) -> IndentSolution:
+        states = self._planned.at(branch, **{str(name): one for name, one in numbers.items()})
         # What was given is the value that is not None.
-        name = next(name for name, value in arguments.items() if value is not None)
+        name = next(name for name, value in numbers.items() if value is not None)
         return IndentSolution._of(self, states, name, branch, control)
 
     def curve(self, *, approach: Vector, wrt: Sequence[str] = ()) -> IndentCurve:
@@ -769,5 +798,4 @@ def solve(
     if not among(control, get_args(Control)):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
-    arguments: dict[Any, Any] = {"load": load, "approach": approach, "radius": radius}
-    return test._at(arguments, branch, control)
+    return test._at({"load": load, "approach": approach, "radius": radius}, branch, control)

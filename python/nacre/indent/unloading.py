@@ -185,8 +185,8 @@ def oliver_pharr(
     deepest, size = float(branch.depth.max()), float(branch.force.max())
     first = int(np.argmax(branch.force <= high * size))
     below = np.flatnonzero(branch.force[first:] < low * size)
-    chosen = slice(first, first + int(below[0]) if below.size else None)
-    depth, force = branch.depth[chosen], branch.force[chosen]
+    span = slice(first, first + int(below[0]) if below.size else None)
+    depth, force = branch.depth[span], branch.force[span]
     if depth.size <= LEAST_POINTS or np.ptp(depth) == 0:
         raise ValueError(
             f"curve must have more than {LEAST_POINTS} points of its unloading between {low:g} and "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -115,7 +115,9 @@ def bearing_pair(solution: PairSolution) -> dict[str, Axes]:
     names = [[f"{which} {part}" for part in parts] for which in ("first", "second")]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 0.8 * WIDTH), layout="constrained")
-        polar: Any = {row[0]: {"projection": "polar"} for row in names}
+        polar: dict[str | tuple[str, ...], dict[str, object]] = {
+            row[0]: {"projection": "polar"} for row in names
+        }
         panels: dict[str, Axes] = figure.subplot_mosaic(
             names,  # type: ignore[arg-type]  # Matplotlib's types know no lists of lists
             width_ratios=[1, 1.5],

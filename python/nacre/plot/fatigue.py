@@ -81,14 +81,14 @@ def fatigue_depth(summary: FatigueSummary, *, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = None) -> Axes:
+def shakedown_map(limits: ShakedownMap, *, label: str = "", axes: Axes | None = None) -> Axes:
     """Draw the shakedown limits of each layer over the coefficient of friction.
 
     Below a solid line the layer shakes down; below the thin one of its colour nothing yields.
 
     Parameters
     ----------
-    found
+    limits
         Map of `nacre.fatigue.shakedown_map`.
     label
         Words before the names of the layers in the legend, for several maps in one picture.
@@ -111,20 +111,20 @@ def shakedown_map(found: ShakedownMap, *, label: str = "", axes: Axes | None = N
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> grid = nacre.Grid.line(96, 3e-4)
     >>> solution = nacre.solve(nacre.Cylinder(5e-3), steel, load=1e5, grid=grid)
-    >>> found = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
-    >>> plot.shakedown_map(found).get_ylabel()
+    >>> shakedown_map = nacre.fatigue.shakedown_map(solution, friction=[0.0, 0.2])
+    >>> plot.shakedown_map(shakedown_map).get_ylabel()
     'peak pressure / shear yield stress'
     """
-    order = np.argsort(found.friction)
-    friction = found.friction[order]
+    order = np.argsort(limits.friction)
+    friction = limits.friction[order]
     with styled():
         axes = checked_axes(axes) or new_axes(0.75, 0.5)
         drawn = sum(not str(line.get_label()).startswith("_") for line in axes.lines)
-        for number, name in enumerate(found.names):
+        for number, name in enumerate(limits.names):
             colour = COLOURS[(drawn + number) % len(COLOURS)]
             line_label = f"{label}, {name}" if label else name
-            axes.plot(friction, found.limits[number][order], color=colour, label=line_label)
-            axes.plot(friction, found.first_yield[number][order], color=colour, linewidth=0.6)
+            axes.plot(friction, limits.limits[number][order], color=colour, label=line_label)
+            axes.plot(friction, limits.first_yield[number][order], color=colour, linewidth=0.6)
         axes.set(xlabel="coefficient of friction", ylabel="peak pressure / shear yield stress")
         axes.set_ylim(bottom=0.0)
         axes.set_title("shakedown limits; thin: first yield")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 LETTERS = 96
 """Letters of a line of a report; longer ones are wrapped."""
-KEEP: dict[str, Any] = {"drop_whitespace": False, "subsequent_indent": "    "}
-"""Arguments of `textwrap.wrap` that keep the columns of tables."""
+KEEP = textwrap.TextWrapper(LETTERS, drop_whitespace=False, subsequent_indent="    ")
+"""Wrapping that keeps the columns of tables."""
 
 
 def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
@@ -59,8 +59,8 @@ def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
         upper.set_xlabel("")
         _residuals(fit, lower, curve)
         figure.align_ylabels()
-    result: Axes = upper
-    return result
+    axes_of_forces: Axes = upper
+    return axes_of_forces
 
 
 def contacts(solution: IndentSolution, axes: Axes | None = None) -> Axes:
@@ -118,7 +118,7 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
     path
         File, whose ending is the format: ``.pdf``, ``.png``, ``.svg``.
     """
-    rows = [part for line in str(fit).splitlines() for part in textwrap.wrap(line, LETTERS, **KEEP)]
+    rows = [part for line in str(fit).splitlines() for part in KEEP.wrap(line)]
     rows += ["", *_comparison(fit)]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")

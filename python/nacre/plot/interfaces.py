@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._core import integer
 from nacre._tools.extras import extra
+from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
 from nacre.plot.stress import around, body_of, colourbar
 from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, new_axes, outline, styled
@@ -19,7 +20,7 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     from nacre.contact.solution import Solution
-    from nacre.contact.stresses import Stress
+    from nacre.contact.stresses import SlidingOptions, Stress
 
 Array = npt.NDArray[np.float64]
 
@@ -30,7 +31,9 @@ def interface_map(
     quantity: Literal["shear", "normal"] = "shear",
     *,
     axes: Axes | None = None,
-    **options: Any,
+    body: Member = "body",
+    threads: int | None = None,
+    **options: Unpack[SlidingOptions],
 ) -> Axes:
     """Draw the traction at an interface from above, with the outline of the contact.
 
@@ -48,7 +51,7 @@ def interface_map(
         "normal": tension positive.
     axes
         Axes to draw into; a new figure by default.
-    options
+    body, threads, options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `threads`.
 
     Returns
@@ -76,13 +79,13 @@ def interface_map(
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")
     if quantity not in ("shear", "normal"):
         raise ValueError(f"quantity must be 'shear' or 'normal', got {quantity!r}")
-    depths = body_of(solution, options).interfaces
+    depths = body_of(solution, body).interfaces
     if not depths:
         raise ValueError("a solution must have layers for a map of an interface, got a bare body")
     if not 0 <= interface < len(depths):
         raise ValueError(f"interface must be from 0 to {len(depths) - 1}, got {interface}")
     depth = depths[interface]
-    field = solution.stress(depth, side="above", **options)
+    field = solution.stress(depth, side="above", body=body, threads=threads, **options)
     values = field.zz if quantity == "normal" else np.hypot(field.xz, field.yz)
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
     window = [np.array(side) for side in ends]

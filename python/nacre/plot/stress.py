@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._core import HalfSpace, integer
 from nacre._tools.extras import extra
+from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
 from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, look, new_axes, styled
 
@@ -20,7 +21,7 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     from nacre.contact.solution import Solution
-    from nacre.contact.stresses import Stress
+    from nacre.contact.stresses import SlidingOptions, Stress
 
 Array = npt.NDArray[np.float64]
 
@@ -50,7 +51,9 @@ def stress_section(
     depth: float | None = None,
     rows: int = 60,
     axes: Axes | None = None,
-    **options: Any,
+    body: Member = "body",
+    threads: int | None = None,
+    **options: Unpack[SlidingOptions],
 ) -> Axes:
     """Draw a vertical section, with the interfaces.
 
@@ -75,7 +78,7 @@ def stress_section(
         Number of depths that are evaluated; every layer gets at least four.
     axes
         Axes to draw into; a new figure by default.
-    options
+    body, threads, options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
 
     Returns
@@ -100,10 +103,11 @@ def stress_section(
     _check(quantity)
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
-    body, bottom = _reach(solution, depth, options)
-    edges = _edges(body, bottom, integer("rows", rows))
-    line: dict[str, Any] = {"y": at} if along == "x" else {"x": at}
-    field = solution.stress(0.5 * (edges[1:] + edges[:-1]), **line, **options)
+    half_space, bottom = _reach(solution, depth, body)
+    edges = _edges(half_space, bottom, integer("rows", rows))
+    x, y = (None, at) if along == "x" else (at, None)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    field = solution.stress(middles, body=body, x=x, y=y, threads=threads, **options)
     values = _values(field, quantity)
     centres = field.x if along == "x" else field.y
     grid = solution.report.grid
@@ -113,7 +117,7 @@ def stress_section(
     (across, down), same = lengths([(low, high), (0.0, bottom)])
     inside = np.isfinite(values)
     if not inside.any():
-        raise ValueError(f"at must be in the body, whose ends are {body.ends}, got {at:g}")
+        raise ValueError(f"at must be in the body, whose ends are {half_space.ends}, got {at:g}")
     highest = float(np.abs(values).max(initial=0.0, where=inside))
     scale = Scale.of(highest, "Pa")
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
@@ -131,7 +135,7 @@ def stress_section(
             rasterized=True,
         )
         axes.grid(visible=False)
-        for interface in body.interfaces:
+        for interface in half_space.interfaces:
             if interface < bottom:
                 for colour, width in (("white", 2.0), ("black", 0.9)):
                     axes.axhline(down.factor * interface, color=colour, linewidth=width)
@@ -143,7 +147,7 @@ def stress_section(
         axes.set_ylim(down.factor * bottom, 0.0)
         return mesh
 
-    enlarged = enlarged_depth(body.interfaces, bottom) if axes is None else 0.0
+    enlarged = enlarged_depth(half_space.interfaces, bottom) if axes is None else 0.0
     with styled():
         axes = axes or new_axes(0.75, 0.75 if enlarged else 0.45)
         mesh = draw(axes, bottom, down)
@@ -176,7 +180,9 @@ def stress_depth(
     depth: float | None = None,
     points: int = 80,
     axes: Axes | None = None,
-    **options: Any,
+    body: Member = "body",
+    threads: int | None = None,
+    **options: Unpack[SlidingOptions],
 ) -> Axes:
     """Draw stresses against depth below a point, with both sides of every interface.
 
@@ -197,7 +203,7 @@ def stress_depth(
         Number of depths that are evaluated; every layer gets at least four.
     axes
         Axes to draw into; a new figure by default.
-    options
+    body, threads, options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
 
     Returns
@@ -222,19 +228,20 @@ def stress_depth(
         raise ValueError("quantities must hold at least one name, got none")
     for quantity in quantities:
         _check(quantity)
-    body, bottom = _reach(solution, depth, options)
-    edges = _edges(body, bottom, integer("points", points))
-    planned = {name: options.pop(name) for name in ("body", "threads") if name in options}
-    plan = solution.stress_plan(**planned)
+    half_space, bottom = _reach(solution, depth, body)
+    edges = _edges(half_space, bottom, integer("points", points))
+    plan = solution.stress_plan(body, threads)
     above = plan.stress(edges, x=at[0], y=at[1], side="above", **options)
     # The sides differ at interfaces alone; the curve ends above its bottom.
-    inner = [z for z in body.interfaces if z < bottom]
+    inner = [z for z in half_space.interfaces if z < bottom]
     below = plan.stress(inner, x=at[0], y=at[1], **options)
     z = np.concatenate([above.z, below.z])
     order = np.argsort(z, kind="stable")
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
     if not all(np.isfinite(values).all() for values in drawn):
-        raise ValueError(f"at must be in the body, whose ends are {body.ends}, got x = {at[0]:g}")
+        raise ValueError(
+            f"at must be in the body, whose ends are {half_space.ends}, got x = {at[0]:g}"
+        )
     scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
 
     def draw(axes: Axes, bottom: float) -> None:
@@ -242,7 +249,7 @@ def stress_depth(
         for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
             curve = (length.factor * z[order], scale.factor * values)
             axes.plot(*curve, **look(number), label=LABELS[quantity])
-        for interface in body.interfaces:
+        for interface in half_space.interfaces:
             if interface < bottom:
                 axes.axvline(length.factor * interface, color="0.5", linewidth=0.8)
         axes.set_xlabel(f"z [{length.unit}]")
@@ -252,7 +259,7 @@ def stress_depth(
         is_new, axes = axes is None, axes or new_axes(1.0, 0.5)
         draw(axes, bottom)
         if is_new:
-            enlarge_depth(axes, body.interfaces, bottom, draw)
+            enlarge_depth(axes, half_space.interfaces, bottom, draw)
         axes.set_ylabel(f"stress [{scale.unit}]")
         axes.set_title(f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}")
         axes.legend()
@@ -299,21 +306,19 @@ def _values(field: Stress, quantity: str) -> Array:
     return values.reshape(values.shape[0], -1) if values.ndim > 1 else values
 
 
-def body_of(solution: Solution, options: dict[str, object]) -> HalfSpace:
-    """Return the body that the options of `Solution.stress` name."""
+def body_of(solution: Solution, member: Member) -> HalfSpace:
+    """Return a body of a solution, in which there are stresses."""
     body = solution.report.body
-    if options.get("body") == "counterbody" and solution.report.counterbody is not None:
+    if member == "counterbody" and solution.report.counterbody is not None:
         body = solution.report.counterbody
     if not isinstance(body, HalfSpace):
         raise ValueError(f"stresses need a HalfSpace, got {body!r}")
     return body
 
 
-def _reach(
-    solution: Solution, depth: float | None, options: dict[str, object]
-) -> tuple[HalfSpace, float]:
+def _reach(solution: Solution, depth: float | None, member: Member) -> tuple[HalfSpace, float]:
     """Return the body, and the depth down to which it is drawn."""
-    body = body_of(solution, options)
+    body = body_of(solution, member)
     grid = solution.report.grid
     axes = (1,) if grid.is_line else (0, 1)
     if depth is None:

@@ -64,8 +64,8 @@ def wear(history: WearHistory, axes: Axes | None = None) -> Axes:
     'depth removed [nm]'
     """
     count = min(MOST_SECTIONS, len(history))
-    chosen = np.unique(np.linspace(0, len(history) - 1, count).round().astype(int))
-    states = [history.states[k] for k in chosen]
+    places = np.unique(np.linspace(0, len(history) - 1, count).round().astype(int))
+    states = [history.states[k] for k in places]
     sections = [_section(state, state.depth + state.counter_depth) for state in states]
     along = _scale([x for x, _ in sections], "m")
     deep = _scale([depth for _, depth in sections], "m")

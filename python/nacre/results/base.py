@@ -123,7 +123,7 @@ def as_text(kind: str, state: Mapping[str, object], *, infinite: bool = False) -
     return "{" + ", ".join(fields) + "}"
 
 
-def _fitted(kind: Any, value: object) -> Any:
+def _fitted(kind: object, value: object) -> object:
     """Return plain data as a value of the type of a field, or raise a `TypeError`."""
     origin, parts = get_origin(kind), get_args(kind)
     if NoneType in parts and origin is not tuple:  # a type or None
@@ -228,7 +228,7 @@ class Result(Fields):
         """
         return values.heading(type(self).__name__) | self._state()
 
-    def _state(self) -> dict[str, Any]:
+    def _state(self) -> dict[str, object]:
         """Return the state as plain data."""
         return {name: _plain(getattr(self, name)) for name in self._names()}
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,9 @@ from nacre._tools.units import rounded, symbol
 from nacre.results import display, svg, tables
 from nacre.results.quantities import INPUTS, Quantity
 from nacre.results.values import encode
+
+if TYPE_CHECKING:
+    from nacre.results.verdict import Verdict
 
 Rows = Sequence[tuple[str, str]]
 
@@ -40,6 +43,8 @@ DUST = 1e-15
 """Size below which an input is the rounding of 0, as of the centre of a grid that was chosen."""
 MOST_COLUMNS = 11
 """Largest number of columns on a page; a wider table is continued below, by its first column."""
+INFINITE = {"inf": "∞", "-inf": "−∞"}
+"""Signs of numbers without a limit."""
 UNIT = re.compile(r"(.*) \[(.+)\]")
 """A heading with a unit."""
 AXIS = re.compile(r"\b[xyz](?= \[|$)")
@@ -145,7 +150,7 @@ def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
     return {".html": lambda path: write(path, [result])}
 
 
-def verdicts(results: Sequence[Reported]) -> Iterator[Any]:
+def verdicts(results: Sequence[Reported]) -> Iterator[Verdict]:
     """Yield the verdicts of results, the first of those with equal words.
 
     One that has to be computed stands only where there is no other.
@@ -162,7 +167,7 @@ def page(
     name: str,
     date: str,
     parts: Sequence[Sections],
-    judgements: Sequence[object],
+    judgements: Sequence[Verdict],
     case: str | None = None,
 ) -> str:
     """Return the page of a report."""
@@ -172,7 +177,7 @@ def page(
     texts = list(dict.fromkeys(text for part in parts for text in part.warnings))
     several = sum(bool(part.title) for part in parts) > 1
 
-    def each(name: str, block: Any) -> str:
+    def each(name: str, block: Callable[..., str]) -> str:
         blocks = [(part.title, block(getattr(part, name))) for part in parts if getattr(part, name)]
         return "".join(
             (f"<h3>{html.escape(words)}</h3>" if several and words else "") + text
@@ -228,19 +233,19 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tupl
         yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
 
 
-def _leaf(value: Any, unit: str) -> str:
+def _leaf(value: object, unit: str) -> str:
     if isinstance(value, list):
         texts = ["–" if one is None else _leaf(one, unit) for one in value]
         more = f" and {len(texts) - MOST_LISTED} more" if len(texts) > MOST_LISTED else ""
         return ", ".join(texts[:MOST_LISTED]) + more
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, str):
-        return value
-    return display.number(value if abs(value) > DUST else 0.0, unit, EXACT)
+    if isinstance(value, float | int):
+        return display.number(value if abs(value) > DUST else 0.0, unit, EXACT)
+    return str(value)
 
 
-def other_numbers(result: Any) -> Rows:
+def other_numbers(result: tables.HasQuantities) -> Rows:
     """Return the quantities of a result that its printed table leaves out."""
     rows = []
     for row, value in tables.numbers(result):
@@ -252,7 +257,7 @@ def other_numbers(result: Any) -> Rows:
 
 def table(
     title: str,
-    rows: Iterable[Iterable[Any]],
+    rows: Iterable[Iterable[object]],
     quantities: Iterable[Quantity] = (),
     notes: Sequence[str] = (),
 ) -> Table:
@@ -279,11 +284,13 @@ def _is_empty(values: Sequence[object]) -> bool:
     return bool(values) and all(value != value or value == "" for value in values)
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _column(name: str, values: Sequence[Any], unit: str, rounding: float) -> tuple[str, list[str]]:
+def _column(
+    name: str, values: Sequence[object], unit: str, rounding: float
+) -> tuple[str, list[str]]:
     """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
     if match := UNIT.fullmatch(name):
         name, unit = match.groups()
@@ -291,16 +298,16 @@ def _column(name: str, values: Sequence[Any], unit: str, rounding: float) -> tup
     scale = display.scale_in(max(numbers, default=0.0), unit)
     scale = scale if max(numbers, default=0.0) > rounding else display.scale_in(0.0, unit)
 
-    def cell(value: Any) -> str:
+    def cell(value: object) -> str:
         if _is_number(value):
             return rounded(scale.factor * value if abs(value) > rounding else 0.0, DIGITS)
-        return "" if value != value else {math.inf: "∞", -math.inf: "−∞"}.get(value, str(value))
+        return "" if value != value else INFINITE.get(str(value), str(value))
 
     words = name.replace("_", " ")
     return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
 
 
-def contact_pictures(result: Any) -> list[Picture]:
+def contact_pictures(result: tables.Peaked) -> list[Picture]:
     """Return the pressure of a contact along x and y through its largest, and over the cells."""
     pressure, places, grid = result.pressure, (result.x, result.y), result.grid
     if not pressure.any():
@@ -320,7 +327,7 @@ def contact_pictures(result: Any) -> list[Picture]:
 
 
 def map_picture(
-    result: Any, values: npt.NDArray[np.float64], axis: svg.Axis, caption: str
+    result: tables.Peaked, values: npt.NDArray[np.float64], axis: svg.Axis, caption: str
 ) -> Picture:
     """Return the picture of values ``(nx, ny)`` in the contact, white where nothing touches."""
     pressure, places = result.pressure, (result.x, result.y)
@@ -368,7 +375,7 @@ def _table(members: Table) -> str:
     return f"<h3>{html.escape(members.title)}</h3>{''.join(parts)}{notes}"
 
 
-def _verdict(verdict: Any) -> str:
+def _verdict(verdict: Verdict) -> str:
     """Return a verdict: its level, its sentence, and further lines."""
     lines = "".join(f"<br>{html.escape(line)}" for line in verdict.lines)
     level = html.escape(verdict.level)

@@ -30,7 +30,7 @@ class HasQuantities(Protocol):
 
     def _si(self, row: Quantity) -> str: ...
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """Return the named state."""
 
 
@@ -60,6 +60,10 @@ class Gridded(HasQuantities, Protocol):
 
 class Peaked(Gridded, Protocol):
     """A solved contact with a largest pressure."""
+
+    @property
+    def pressure(self) -> Array:
+        """Pressure [Pa]."""
 
     @property
     def peak_position(self) -> tuple[float, float]:

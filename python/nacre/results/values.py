@@ -55,7 +55,7 @@ def _stored(make: Callable[..., object]) -> tuple[str, ...]:
     return tuple(name for name in inspect.signature(make).parameters if name != "half_angle")
 
 
-CALLS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
+CALLS: dict[str, tuple[Callable[..., object], tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
     **{name: (make, _stored(make)) for name, make in CONSTRUCTORS.items()},
     **{
@@ -164,7 +164,7 @@ def encode(value: object, *, digest: bool = False) -> Any:
     return of(value)
 
 
-def heading(kind: str) -> dict[str, Any]:
+def heading(kind: str) -> dict[str, object]:
     """Return the head of the plain data of a result: format, version and kind."""
     return {"format": FORMAT, "nacre": core.__version__, "kind": kind}
 
@@ -193,7 +193,7 @@ def checked_state(
 
 def with_names(
     place: str, data: Mapping[str, object], names: Collection[str], later: Collection[str] = ()
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return data with these names and no others; those of `later` may be missing, and are None."""
     state = dict.fromkeys(later) | dict(data)
     for key in names:

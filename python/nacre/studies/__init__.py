@@ -280,7 +280,7 @@ def _check_store(path: Path | None) -> None:
 
 def _describe(
     case: Case, point: dict[str, Any], stress: Mapping[str, Any]
-) -> tuple[dict[str, Any], str | None]:
+) -> tuple[dict[str, object], str | None]:
     """Return the arguments of a solve, or the reason why the case has none."""
     try:
         arguments = _arguments(case, point)
@@ -342,8 +342,8 @@ def _arguments(case: Case, point: Mapping[str, object]) -> dict[str, object]:
 
 
 def _split_paths(
-    case: Mapping[str, Any], point: Mapping[str, Any]
-) -> tuple[dict[str, Any], list[str]]:
+    case: Mapping[str, object], point: Mapping[str, object]
+) -> tuple[dict[str, object], list[str]]:
     """Return arguments before the numbers at paths are replaced, and the paths.
 
     A bearing that holds such numbers is a dictionary of its fields.
@@ -352,7 +352,8 @@ def _split_paths(
     arguments = {**case, **{name: value for name, value in point.items() if name not in paths}}
     if any(path.startswith("bearing.") for path in paths):
         with suppress(KeyError, AttributeError):  # no bearing: the path says so
-            arguments["bearing"] = arguments["bearing"]._arguments()
+            bearing: Any = arguments["bearing"]
+            arguments["bearing"] = bearing._arguments()
     return arguments, paths
 
 

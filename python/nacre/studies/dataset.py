@@ -100,18 +100,18 @@ def assemble(
         rank = max((len(s) for s in shapes), default=0)
         inner = tuple(max(s[k] if k < len(s) else 1 for s in shapes) for k in range(rank))
         # Arrays that are shorter than others end in NaN, like cases that failed.
-        data = np.full((len(records), *inner), np.nan)
+        columns = np.full((len(records), *inner), np.nan)
         for row, array in enumerate(arrays):
             if array is not None:
                 place: tuple[int | slice, ...] = (row, *(slice(0, n) for n in array.shape))
-                data[place] = array
+                columns[place] = array
         extra_dims = ("axis",) if output in axes else tuple(f"{name}_{k}" for k in range(rank))
         if output in axes:
             dataset = dataset.assign_coords(axis=["x", "y"])
             if rank == 0:  # every case failed
-                data = np.full((len(records), 2), np.nan)
+                columns = np.full((len(records), 2), np.nan)
                 inner = (2,)
-        dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
+        dataset[name] = ((*dims, *extra_dims), columns.reshape((*shape, *inner)))
         if isinstance(output, str) and output in units:
             # Results of bearings are in SI, whatever the units of the case.
             own = units[output] if kinds["bears"] else symbol(units[output])

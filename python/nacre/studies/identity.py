@@ -24,7 +24,7 @@ from nacre.results.values import encode
 class Identity(NamedTuple):
     """Identity of the outputs of a study."""
 
-    data: dict[str, object]
+    parts: dict[str, object]
     """Plain data that differs between outputs."""
     unknown: list[str]
     """Descriptions of what the data cannot tell apart."""
@@ -38,25 +38,25 @@ def identity_of(
 ) -> Identity:
     """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
     unknown: list[str] = []
-    outputs_data = {
+    output_parts = {
         name: output if isinstance(output, str) else _part(output, name, unknown)
         for name, output in outputs.items()
     }
-    data: dict[str, object] = {"outputs": outputs_data}
+    parts: dict[str, object] = {"outputs": output_parts}
     if stress:
-        data["stress"] = _part(dict(stress), "stress", unknown)
+        parts["stress"] = _part(dict(stress), "stress", unknown)
     if fatigue:
-        data["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
+        parts["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
     if version is not None:
-        data["version"] = version
-    return Identity(data, unknown)
+        parts["version"] = version
+    return Identity(parts, unknown)
 
 
 def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
     """Return a key that differs between cases, and between the outputs that are kept."""
     # Threads change no bit of a solution.
     physical = {name: value for name, value in arguments.items() if name != "threads"}
-    what = {"nacre": __version__, "solve": encode(physical, digest=True), **identity.data}
+    what = {"nacre": __version__, "solve": encode(physical, digest=True), **identity.parts}
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nacre.fatigue.summary import FatigueSummary
     from nacre.indent.solution import IndentSolution
 
-Output = str | Callable[[Any], Any]
+Output = str | Callable[[Any], object]
 CaseKind = Literal["contact", "wear", "indent", "bearing"]
 """What a study solves."""
 
@@ -160,7 +160,7 @@ def plain(
     solution: WearHistory | IndentSolution | BearingSolution,
     outputs: Mapping[str, Output],
     kind: CaseKind,
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return the outputs of wear, of an indentation or of a bearing as plain numbers."""
     own, words = OTHERS[kind]
     number: Callable[[Any, str], Any] = worn if kind == "wear" else getattr
@@ -203,14 +203,14 @@ def output_values(
     stress: Mapping[str, Any],
     unresolved: list[str],
     assess: Callable[[], FatigueSummary],
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return the outputs of a solution as plain numbers; stresses and fatigue are summed up once.
 
     The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
     stresses that the cells do not resolve are added to `unresolved`.
     """
     summary = fatigue = None
-    numbers: dict[str, Any] = {}
+    numbers: dict[str, object] = {}
     for name, output in outputs.items():
         if not isinstance(output, str):
             value = output(solution)
@@ -230,16 +230,15 @@ def output_values(
         else:
             value = _number(solution, output)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
-    normal: Any = getattr(solution, "normal", solution)
-    estimates = normal.report.discretisation or {}
-    tangential = (normal is not solution and solution.report.discretisation) or {}
+    estimates = solution._normal.report.discretisation or {}
+    tangential = (solution is not solution._normal and solution.report.discretisation) or {}
     for name, quantity in errors(outputs, outputs, (*ESTIMATED, *OF_SLIDING)).items():
         estimate = estimates.get(quantity, tangential.get(quantity))
         numbers[name] = np.nan if estimate is None else float(estimate)
     return numbers
 
 
-def _number(solution: Any, name: str) -> Any:
+def _number(solution: Any, name: str) -> object:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
     if name in OF_INDENT and name not in NUMBERS:
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")

@@ -227,10 +227,10 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
     line_names = {one.name for one in lines}
     default = reader.default_channel
-    chosen = lines[0] if channel is None and default not in lines else _channel(reader, channel)
-    if chosen.dim != 1:
+    profile = lines[0] if channel is None and default not in lines else _channel(reader, channel)
+    if profile.dim != 1:
         raise Unfound(f"height must be one of the channels {', '.join(sorted(line_names))}")
-    line = chosen.topography()
+    line = profile.topography()
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
         for values in (line.positions(), line.heights())

@@ -110,16 +110,16 @@ class _Level:
     def _coarser(self) -> tuple[Indices, Self]:
         """Return the block of each point, and the level of blocks: constants on blocks."""
         x, y = (place // 2 for place in self.places)
-        _, chosen, block = np.unique(
+        _, first_points, block = np.unique(
             x * (int(y.max()) + 1) + y, return_index=True, return_inverse=True
         )
-        count = chosen.size
+        count = first_points.size
         pairs = np.sort([block[self.first], block[self.second]], axis=0)
         between = pairs[0] != pairs[1]
         inner = _sums(pairs[0, ~between], self.weights[~between], count)
         keys, link = np.unique(pairs[0, between] * count + pairs[1, between], return_inverse=True)
         return block, type(self)(
-            (x[chosen], y[chosen]),
+            (x[first_points], y[first_points]),
             keys // count,
             keys % count,
             _sums(link, self.weights[between], keys.size),

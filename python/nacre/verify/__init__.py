@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import NotRequired, TypedDict
 
 from nacre.verify.cases import CASES
 
@@ -43,13 +43,24 @@ class Row:
         """``"right"`` or ``"wrong"``; a number that is none is wrong."""
         return "right" if abs(self.got - self.expected) <= self.tolerance else "wrong"
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, object]:
         """Return fields and verdict as plain data."""
         return asdict(self) | {"verdict": self.verdict}
 
 
+class Printed(TypedDict):
+    """A case of ``printed.toml``: a number may differ by absolute + relative × number."""
+
+    source: str
+    problem: str
+    bar: str
+    absolute: NotRequired[float]
+    relative: NotRequired[float]
+    expected: dict[str, float]
+
+
 @cache
-def printed() -> Mapping[str, Mapping[str, Any]]:
+def printed() -> Mapping[str, Printed]:
     """Return the cases of ``printed.toml``: source, tolerance and expected numbers by name."""
     text = resources.files("nacre.verify").joinpath("printed.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)

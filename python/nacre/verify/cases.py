@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre
 from nacre import bearing, fatigue, hertz, indent
+from nacre._tools.typing import Side
 
 Numbers = dict[str, float]
 Array = npt.NDArray[np.float64]
@@ -156,9 +156,10 @@ def _ellea1() -> Numbers:
     body = nacre.HalfSpace(nacre.Elastic(40.0, 0.4), layers)
     grid, pressure = _disc(150.0, 1.1, 121)
     depths = np.array([10.0, 50, 100, 150, 200, 300, 500, 750, 1000])
-    field: Any = nacre.stress(
+    field = nacre.stress(
         body, grid, pressure, depths, side="above", x=0.0, y=0.0, displacement=True
     )
+    assert field.displacement is not None
     parts = {
         "stress along x [MPa]": -field.xx,
         "stress along z [MPa]": -field.zz,
@@ -180,7 +181,7 @@ def _amadeus() -> Numbers:
     ]
     body, numbers = nacre.HalfSpace(nacre.Elastic(*base), layers), Numbers()
     grid, pressure = _disc(150.8, 0.7, 123)
-    sides: tuple[tuple[str, float, Any, tuple[float, float]], ...] = (
+    sides: tuple[tuple[str, float, Side, tuple[float, float]], ...] = (
         ("horizontal strain below the first layer", 260.0, "above", upper),
         ("vertical strain on the second layer", 260.0, "below", lower),
         ("vertical strain on the half-space", 760.0, "below", base),
@@ -240,7 +241,7 @@ def _coated_sphere() -> Numbers:
 def _coated_indentation() -> Numbers:
     layers = [nacre.Layer(nacre.Elastic(420e9, 0.3), 2.165597763352258e-5)]
     body = nacre.HalfSpace(STEEL, layers)
-    state: Any = indent.Indentation(body, indent.Tip.paraboloid(10e-3)).at(load=20.0)
+    state = indent.Indentation(body, indent.Tip.paraboloid(10e-3)).at(load=20.0)
     return {"contact radius [µm]": state.radius * 1e6, "approach [µm]": state.approach * 1e6}
 
 
@@ -249,7 +250,7 @@ def _hayes_punch() -> Numbers:
     body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(nacre.Elastic(1.0, 0.3), 1.0)])
     numbers, shear = Numbers(), 1 / 2.6
     for radius in (0.2, 0.4, 0.6, 0.8, 1.0):
-        state: Any = indent.Indentation(body, indent.Tip.flat_punch(radius)).at(approach=1e-3)
+        state = indent.Indentation(body, indent.Tip.flat_punch(radius)).at(approach=1e-3)
         numbers[f"κ, a/h = {radius:g}"] = state.load * 0.7 / (4 * shear * radius * 1e-3)
     return numbers
 

@@ -142,7 +142,7 @@ fn segment(x1: f64, x2: f64, s2: f64) -> f64 {
 /// ```
 ///
 /// and those with x and y exchanged. Love, Phil. Trans. R. Soc. A 228 (1929) 377, doi:10.1098/rsta.1929.0009.
-pub(super) fn under_pressure(
+pub(crate) fn under_pressure(
     material: Elastic,
     half: [f64; 2],
     at: [f64; 2],

@@ -140,6 +140,7 @@ pub struct Paraboloid {
     radius_x: f64,
     radius_y: f64,
     counterpart: Counterpart,
+    equivalent_radii: [f64; 2],
 }
 
 impl Paraboloid {
@@ -148,11 +149,9 @@ impl Paraboloid {
     /// # Errors
     /// Unless both radii are finite and above 0.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self> {
-        Ok(Self {
-            radius_x: convex("radius_x", radius_x)?,
-            radius_y: convex("radius_y", radius_y)?,
-            counterpart: Counterpart::default(),
-        })
+        let (radius_x, radius_y) = (convex("radius_x", radius_x)?, convex("radius_y", radius_y)?);
+        let (counterpart, equivalent_radii) = (Counterpart::default(), [radius_x, radius_y]);
+        Ok(Self { radius_x, radius_y, counterpart, equivalent_radii })
     }
 
     /// This paraboloid on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
@@ -162,7 +161,8 @@ impl Paraboloid {
     /// Unless each radius is finite and above 0, or below minus that of the paraboloid.
     pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
         let own = [self.radius_x, self.radius_y];
-        Ok(Self { counterpart: Counterpart::new(COUNTER_RADII, radii, own)?, ..self })
+        let counterpart = Counterpart::new(COUNTER_RADII, radii, own)?;
+        Ok(Self { counterpart, equivalent_radii: counterpart.equivalent(own), ..self })
     }
 
     /// Radius of curvature along x \[m\].
@@ -182,13 +182,13 @@ impl Paraboloid {
 
     /// Equivalent radii along x and y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
     pub fn equivalent_radii(&self) -> [f64; 2] {
-        self.counterpart.equivalent([self.radius_x, self.radius_y])
+        self.equivalent_radii
     }
 }
 
 impl Surface for Paraboloid {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        let [radius_x, radius_y] = self.equivalent_radii();
+        let [radius_x, radius_y] = self.equivalent_radii;
         x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y)
     }
 

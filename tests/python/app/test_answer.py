@@ -156,6 +156,15 @@ def test_the_substrate_shows_below_a_deep_indentation() -> None:
     assert "only up to 1.91 nm" in verdict["lines"][0]
 
 
+def test_sliding_contacts_have_stresses_over_depth() -> None:
+    data = tomllib.loads(templates.texts()["slide"])
+    data["grid"]["shape"] = [32, 32]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        parts = answer(Case(data, "slide"), "stress")["parts"]
+    assert "Von Mises stress" in parts["picture-2"]
+
+
 def test_an_empty_limit_says_what_is_needed() -> None:
     empty = {"materials.steel.yield_stress": " ", "materials.coating.strength": ""}
     case = cards()["line"].case(empty)

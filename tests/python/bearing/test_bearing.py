@@ -121,7 +121,7 @@ def test_mirrored_load_mirrors_the_loads(options: dict[str, Any]) -> None:
 
 def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[Any, Any]:
     x, y, z, about_x, about_y = place.tolist()
-    along = (x, y, z if bearing.nominal_angle or not bearing.rolls else None)
+    along = (x, y, z if bearing.carries_thrust else None)
     asked = {"displacement": along, "tilt": (about_x, about_y), "tolerance": 1e-11} | options
     found = quiet(bearing.solve, **asked)
     return np.array([*found.force, *found.moment])

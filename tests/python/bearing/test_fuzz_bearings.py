@@ -119,7 +119,7 @@ class Geometry:
         self.pull = bearing.mass * bearing.pitch / 2 * cage**2
         self.normal = math.cos(self.alpha - self.beta) / math.cos(self.beta)
         half_pitch, own = bearing.pitch / 2, bearing.diameter / 2
-        if bearing.leans:
+        if bearing.carries_moments:
             self.lever = half_pitch * math.sin(self.alpha) + own * math.sin(self.beta)
             return
         if bearing.aligns:
@@ -148,7 +148,7 @@ class Geometry:
         bearing, zero = self.bearing, np.zeros_like(self.cos)
         across = np.stack([self.cos, self.sin, zero, zero, zero])
         along = np.stack([zero, zero, zero + 1, -self.lever * -self.sin, -self.lever * self.cos])
-        if bearing.leans:
+        if bearing.carries_moments:
             drops = [bearing.drop(ring) for ring in ("inner", "outer")]
             ends = np.flatnonzero(np.isfinite(drops).all(axis=0))[[0, -1]]
             slope = np.stack([zero, zero, zero, -self.sin, self.cos])
@@ -269,7 +269,7 @@ def bears_to_one_side(geometry: Geometry, solution: BearingSolution, *, held: bo
 
     They do so where the axis is `held`.
     """
-    if not geometry.alpha or geometry.bearing.leans:
+    if not geometry.alpha or geometry.bearing.carries_moments:
         return True
     carried = solution.loads[:, 0] > 1e-8 * solution.loads.max()
     angles = geometry.side * solution.contact_angles[:, 0]
@@ -280,7 +280,7 @@ def bears_to_one_side(geometry: Geometry, solution: BearingSolution, *, held: bo
 def pushes_apart(geometry: Geometry, force: Any) -> bool:
     """Return whether a radial force pushes the rings of one row apart."""
     bearing = geometry.bearing
-    if bearing.leans or bearing.rows == 2 or not geometry.alpha:
+    if bearing.carries_moments or bearing.rows == 2 or not geometry.alpha:
         return False
     return bool(force[2] < math.hypot(force[0], force[1]) * math.tan(geometry.alpha))
 
@@ -316,7 +316,7 @@ def check(seed: int, kind: type[Any], **how: Any) -> str:
     given = np.array([*solution.force, *solution.moment])
     if scale > 0 or loads.any():
         np.testing.assert_allclose((given / arm)[free], (loads / arm)[free], atol=2e-9 * scale)
-    (check_rollers if bearing.leans else check_balls)(geometry, solution)
+    (check_rollers if bearing.carries_moments else check_balls)(geometry, solution)
     return ended
 
 

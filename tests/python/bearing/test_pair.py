@@ -87,7 +87,7 @@ def element_force(bearing: Any, side: float, sign: int, z: float, phi: float, q:
     alpha = bearing.contact_angle
     radial, axial = np.array([math.cos(phi), math.sin(phi), 0.0]), np.array([0.0, 0.0, sign])
     turn = np.array([q[3], q[4], 0.0])
-    if not bearing.rolls:
+    if not isinstance(bearing, TaperedRoller):
         # The ball lies on the line of the grooves' centres.
         offsets = [(f - 0.5) * bearing.diameter for f in bearing.osculation]
         place = (bearing.pitch / 2 + offsets[0] * math.cos(alpha)) * radial + [0.0, 0.0, side]
@@ -122,7 +122,8 @@ def shaft_forces(pair: Pair, settings: Any, q: Array) -> Array:
 def settings_of(pair: Pair) -> Array:
     """How far both rings are set along their thrusts by the preload, by bisection."""
     bearings = pair.first, pair.second
-    touching = [b.play / (2 * math.tan(b.contact_angle)) if b.rolls else 0.0 for b in bearings]
+    is_tapered = isinstance(pair.first, TaperedRoller)
+    touching = [b.play / (2 * math.tan(b.contact_angle)) if is_tapered else 0.0 for b in bearings]
     precise: dict[str, float] = {"xtol": 1e-19, "rtol": 1e-14}
 
     def thrusts(one: float, other: float) -> Array:
@@ -279,7 +280,7 @@ def test_an_x_pair_is_an_o_pair_whose_levers_are_the_other_way(bearing: Any) -> 
 def test_stiffness_is_the_derivative_of_the_forces(bearing: Any, arrangement: Any) -> None:
     # Straight rollers, all of whose laminae stay in contact: one that opens has no derivative.
     preload = 400.0
-    if bearing.rolls:
+    if isinstance(bearing, TaperedRoller):
         bearing, preload = dataclasses.replace(bearing, profile=None), 4000.0
     pair = pair_of(bearing, arrangement, preload_force=None if arrangement == "tandem" else preload)
     base: Any = np.array([0.4e-6, -0.2e-6, 0.5e-6, 5e-6, -8e-6])

@@ -102,6 +102,14 @@ def test_the_report_and_the_picture_show_the_course(best: Optimum) -> None:
     )
 
 
+def test_progress_is_printed_or_not(capsys: pytest.CaptureFixture[str]) -> None:
+    asked = RADIUS | {"objective": "located_peak", "cases": [{"load": 10.0}], "max_solves": 4}
+    optimise(**asked, bounds={"shape.radius": (4e-3, 6e-3)}, progress=True)
+    assert "nacre.design.optimise: solves 2, objective" in capsys.readouterr().err
+    optimise(**asked, bounds={"shape.radius": (4e-3, 6e-3)}, progress=False)
+    assert not capsys.readouterr().err
+
+
 def test_a_limit_is_reached_and_kept() -> None:
     rows: list[dict[str, float]] = []
     asked = RADIUS | {"objective": "participation_area", "cases": [{"load": 10.0}, {"load": 20.0}]}

@@ -49,7 +49,7 @@ def life(**given: Any) -> Any:
 
 CALLS: dict[str, tuple[Any, str]] = {
     # functions
-    "progress of a bearing": (lambda _: BEARING.solve(**RADIAL, progress=1), "progress must be"),
+    "progress of a bearing": (lambda _: BEARING.solve(**RADIAL, progress=1), "progress must be"),  # type: ignore[arg-type]
     "progress of fatigue": (lambda s: fatigue.assess(s, progress=1), "progress must be callable"),  # type: ignore[arg-type]
     "progress of a study": (lambda _: sweep(progress=1), "progress must be True, False or None"),
     "progress of a map": (
@@ -57,7 +57,7 @@ CALLS: dict[str, tuple[Any, str]] = {
         "progress must be callable, got 'x'",
     ),
     "progress of a ratio": (
-        lambda s: bearing.life_ratio(s, s, bearing.LundbergPalmgren(), progress=1),
+        lambda s: bearing.life_ratio(s, s, bearing.LundbergPalmgren(), progress=1),  # type: ignore[arg-type]
         "progress must be callable, got 1",
     ),
     # words

@@ -253,7 +253,8 @@ def test_pages_begin_with_the_verdict(tmp_path: Path) -> None:
 
 
 def test_verdicts_are_computed_only_where_there_is_no_other(tmp_path: Path) -> None:
-    good, other = Words("good", "Holds."), Words("fair", "Cannot tell.")
+    good: Any = Words("good", "Holds.")
+    other: Any = Words("fair", "Cannot tell.")
     assert [*report.verdicts([Stub(lambda: other)])] == [other]
     assert [*report.verdicts([Stub(lambda: other), Stub(good)])] == [good]
     assert [*report.verdicts([Stub(refused)])] == []
