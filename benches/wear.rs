@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use nacre::wear::{Wear, WearScheme, WearSession, WearState, WearSteps};
+use nacre::wear::{Wear, WearSession, WearState, WearSteps};
 use nacre::{Contact, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result, Setup};
 
 const RADIUS: f64 = 50.0;
@@ -20,7 +20,7 @@ const STEPS: usize = 100;
 /// Worn volume over that of the cap whose base is the contact of Hertz: the contact becomes half as wide again.
 const WORN: f64 = 4.0;
 
-/// A ball on a body, bare or with a layer of E1/E2 = 4 of 0.3 contact radii, whose contact when new has half the grid's width.
+/// A ball on a body with a layer of E1/E2 = 4 of 0.3 contact radii, whose contact without it has half the grid's width.
 struct Worn {
     plan: Arc<Contact>,
     ball: Paraboloid,
@@ -30,9 +30,9 @@ struct Worn {
 }
 
 impl Worn {
-    fn new(coated: bool) -> Result<Self> {
+    fn new() -> Result<Self> {
         let layer = Layer::new(Elastic::new(4.0 * 0.91, 0.3)?, 0.3)?;
-        let body = HalfSpace::new(Elastic::new(0.91, 0.3)?, coated.then_some(layer))?;
+        let body = HalfSpace::new(Elastic::new(0.91, 0.3)?, [layer])?;
         let grid = Grid::new([CELLS, CELLS], [4.0, 4.0])?;
         let setup = Setup { threads: Some(1), ..Setup::default() };
         // E* = 1 and a contact radius of 1.
@@ -46,15 +46,14 @@ impl Worn {
     }
 
     /// All states of the history.
-    fn history(&self, scheme: WearScheme) -> Vec<WearState> {
+    fn history(&self) -> Vec<WearState> {
         let end = |k: usize| self.distance * k as f64 / STEPS as f64;
         let wear = Wear {
             steps: WearSteps::Ends((1..=STEPS).map(end).collect()),
-            scheme,
-            ..Wear::sliding([vec![1.0], vec![0.0]], self.distance)
+            ..Wear::sliding([vec![1.0, 1.0], vec![0.0]], self.distance)
         };
         let plan = Arc::clone(&self.plan);
-        let session = WearSession::new(plan, self.ball.clone(), self.motion, wear, false);
+        let session = WearSession::new(plan, self.ball, self.motion, wear, false);
         let mut session = session.expect("valid");
         let mut states = Vec::new();
         while let Some(state) =
@@ -85,25 +84,16 @@ impl Worn {
 fn wear(c: &mut Criterion) {
     let mut group = c.benchmark_group("wear");
     group.sample_size(10);
-    for (name, coated) in [("bare", false), ("coated", true)] {
-        let worn = Worn::new(coated).expect("valid");
-        let states = worn.history(WearScheme::Trapezoidal);
-        let last = states.last().expect("a state");
-        let volume = last.depth[0].sum() * worn.plan.grid().cell_area();
-        let due = worn.distance * worn.motion.load.expect("a load");
-        assert!((volume / due - 1.0).abs() < 1e-10, "{volume:e}, {due:e}");
-        let convolutions: f64 = states.iter().map(|one| one.solution.report.convolutions).sum();
-        println!("{name}: {convolutions:.0} convolutions, {:.0} of the solves", worn.solves());
-        for (scheme, id) in [(WearScheme::Trapezoidal, "trapezoidal"), (WearScheme::Euler, "euler")]
-        {
-            group.bench_function(BenchmarkId::new(format!("{id}/{name}"), CELLS), |b| {
-                b.iter(|| worn.history(scheme));
-            });
-        }
-        group.bench_function(BenchmarkId::new(format!("solves/{name}"), CELLS), |b| {
-            b.iter(|| worn.solves());
-        });
-    }
+    let worn = Worn::new().expect("valid");
+    let states = worn.history();
+    let last = states.last().expect("a state");
+    let volume = last.depth[0].sum() * worn.plan.grid().cell_area();
+    let due = worn.distance * worn.motion.load.expect("a load");
+    assert!((volume / due - 1.0).abs() < 1e-10, "{volume:e}, {due:e}");
+    let convolutions: f64 = states.iter().map(|one| one.solution.report.convolutions).sum();
+    println!("history: {convolutions:.0} convolutions, solves: {:.0}", worn.solves());
+    group.bench_function(BenchmarkId::new("history", CELLS), |b| b.iter(|| worn.history()));
+    group.bench_function(BenchmarkId::new("solves", CELLS), |b| b.iter(|| worn.solves()));
     group.finish();
 }
 
