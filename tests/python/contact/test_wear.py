@@ -224,7 +224,7 @@ def test_first_order_thins_the_coat_and_says_how_far_it_holds() -> None:
     with pytest.warns(nacre.NacreWarning, match="layers count to first order, and .* of one is"):
         contact.wear(ROLLER, sliding=600.0, **keywords)
     with pytest.warns(nacre.NacreWarning, match="lacks it there to first order only"):
-        contact.wear(ROLLER, sliding=2000.0, until="through", **keywords)
+        contact.wear(ROLLER, sliding=2000.0, **keywords)
 
 
 def test_an_event_that_does_not_settle_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
