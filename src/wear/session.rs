@@ -16,7 +16,7 @@ use crate::error::{Result, fraction, none_negative, not_negative, refuse_if, req
 use crate::friction::{
     FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
 };
-use crate::model::body::{HalfSpace, Layer};
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::surface::{OffsetShape, Surface};
 use crate::stress::Member;
 
@@ -216,7 +216,7 @@ impl<S: Surface> WearSession<S> {
     /// Error of the last pressure by the thickness of the layers: the root of its mean square within the contact, relative to the
     /// peak. It is the difference from the pressure on layers that are thinner by the mean of their depths, weighted by the
     /// pressure; to first order, that between two pressures on layers that are thinner by this mean, to first order and
-    /// exactly. `None` where no layer wears.
+    /// exactly. `None` where no layer wears, and where nothing would be left on a rigid or free base.
     ///
     /// # Errors
     /// As [`WearSession::advance`].
@@ -228,6 +228,16 @@ impl<S: Surface> WearSession<S> {
             return Ok(None);
         }
         let means = [0, 1].map(|k| (&last.depth[k] * pressure).sum() / force);
+        let both = [Some(self.plan.body()), setup.counterbody.as_ref()];
+        let is_gone = |(body, depth): (Option<&Body>, f64)| {
+            body.and_then(|body| body.half_space()).is_some_and(|body| {
+                !matches!(body.substrate(), Substrate::Elastic(_))
+                    && depth >= body.thickness() * (1.0 - THROUGH)
+            })
+        };
+        if both.into_iter().zip(means).any(is_gone) {
+            return Ok(None);
+        }
         let thinner = |k: usize, body: &Body| -> Result<Option<Body>> {
             let depth = means[k];
             match body.half_space() {
@@ -752,7 +762,7 @@ fn thinned(body: &HalfSpace, depth: f64) -> Result<Body> {
             layers.push(thin);
         }
     }
-    HalfSpace::new(body.substrate(), layers).map(Body::from)
+    HalfSpace::new(body.substrate(), layers)?.with_ends(body.ends()).map(Body::from)
 }
 
 /// Pressure by which a step wears. It is that of the solution, but where springs are softer than the contact as a whole, a

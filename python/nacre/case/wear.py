@@ -56,6 +56,6 @@ def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> 
     known = list(dict.fromkeys(name for part in names for name in part))
     if others := [key for key in rate if key not in known]:
         raise ValueError(f"must have keys among {', '.join(known)}, got {others[0]!r}")
-    found = [next((name for name in part if name in rate), None) for part in names]
+    own_names = [next((name for name in part if name in rate), None) for part in names]
     keys = [int(part[0]) if part[0].isdigit() else part[0] for part in names]
-    return {key: rate[name] for key, name in zip(keys, found, strict=True) if name is not None}
+    return {key: rate[name] for key, name in zip(keys, own_names, strict=True) if name is not None}

@@ -993,7 +993,8 @@ def _notes(
     if not settled:
         notes.append(NOT_SETTLED)
     part, frozen = _worn_part(states[-1]), model == "frozen"
-    if events and events[0].distance < states[-1].distance:
+    went_on = events and events[0].distance < states[-1].distance
+    if went_on or _worn_part(states[0]) >= 1.0:
         rest = "still has it" if frozen else "lacks it there to first order only"
         notes.append(f"a layer is through, and the elastic contact {rest}: what follows is a bound")
     elif frozen and error is not None and error > MOST_THINNING:

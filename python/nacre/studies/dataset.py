@@ -157,8 +157,8 @@ def failure_lines(records: Sequence[Record]) -> list[str]:
         kinds = Counter(
             kind
             for record in records
-            for kind in dict.fromkeys(record["kinds"])
             if record.get("warnings")
+            for kind in dict.fromkeys(record["kinds"])
         )
         kind_counts = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
         total = f"{len(texts)} of {len(records)} cases have warnings"

@@ -227,6 +227,38 @@ def test_first_order_thins_the_coat_and_says_how_far_it_holds() -> None:
         contact.wear(ROLLER, sliding=2000.0, **keywords)
 
 
+@pytest.mark.filterwarnings("ignore:a body with layers has a free end")
+def test_the_error_by_the_thickness_keeps_free_ends() -> None:
+    grid = nacre.Grid((24, 24), (4e-4, 4e-4))
+
+    def ended(thickness: float) -> nacre.HalfSpace:
+        layers = [nacre.Layer(DLC, thickness)]
+        return nacre.HalfSpace(STEEL, layers=layers, ends=(-1.5e-4, None))
+
+    case: dict[str, Any] = {"shape": nacre.Sphere(5e-3), "load": 20.0, "grid": grid}
+    depth = np.full(grid.shape, 2e-6)
+    history = nacre.wear(**case, body=ended(5e-6), rate=1e-16, sliding=0.0, initial=depth)
+    pressure, thin = (
+        nacre.solve(**case, body=ended(thickness)).pressure for thickness in (5e-6, 3e-6)
+    )
+    carries = np.pad((pressure > 0) & (thin > 0), 1, constant_values=True)
+    around = np.lib.stride_tricks.sliding_window_view(carries, (3, 3)).all(axis=(2, 3))
+    due = np.sqrt(np.mean((pressure - thin)[around] ** 2)) / pressure.max()
+    # Solves to 1e-8, in whose energy the pressure counts squared: 1e-4 of the pressure.
+    assert history.report.thickness_error == pytest.approx(due, abs=1e-4)
+
+
+def test_nothing_left_on_a_rigid_base_has_no_error_by_the_thickness() -> None:
+    plate = nacre.HalfSpace(nacre.RIGID, layers=COATED.layers)
+    with pytest.warns(nacre.NacreWarning, match="a layer is through"):
+        history = nacre.wear(
+            ROLLER,
+            plate,
+            **(LINE | {"rate": 1e-17, "sliding": 0.0, "initial": np.full(GRID.shape, 3e-6)}),
+        )
+    assert history.report.thickness_error is None
+
+
 def test_an_event_that_does_not_settle_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
     class Unsettled:
         def __init__(self, *arguments: Any) -> None:

@@ -318,6 +318,16 @@ def test_a_failure_is_recorded_and_stops_nothing(tmp_path: Path) -> None:
     assert study.tilt.sizes["axis"] == 2
 
 
+def test_a_failure_beside_a_warning_stops_nothing() -> None:
+    parameters = {"thickness": [1e-5], "young": [1e11], "load": [0.0, 3e2]}
+    with (
+        pytest.warns(nacre.NacreWarning, match="1 of 2 cases failed"),
+        pytest.warns(nacre.NacreWarning, match=r"1 of 2 cases have warnings: grid edge \(1\)"),
+    ):
+        study = nacre.sweep(ball, parameters)
+    assert (study.error != "").values.ravel().tolist() == [True, False]
+
+
 def test_warnings_of_the_cases_are_in_the_dataset_and_counted_by_kind(tmp_path: Path) -> None:
     parameters = {"thickness": [1e-5], "young": [1e11], "load": [5.0, 1e-3, 3e2, 4e2]}
     store = tmp_path / "study.nc"
