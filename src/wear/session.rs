@@ -154,7 +154,9 @@ impl<S: Surface> WearSession<S> {
         }
         let layers = match wear.thickness {
             Thickness::Frozen => None,
-            Thickness::FirstOrder => Some(TopLayers::plan(&plan)?),
+            Thickness::FirstOrder => {
+                Some(TopLayers::plan(&plan, wears(&rates, wear.initial.as_ref()))?)
+            }
         };
         let most_cells = grows.then(|| MORE_CELLS * grid.shape()[0] * grid.shape()[1]);
         Ok(Self {
@@ -259,16 +261,18 @@ impl<S: Surface> WearSession<S> {
         let plan = Contact::plan(body, *self.plan.grid(), setup)?;
         let options = Options { initial: Some(pressure.clone()), ..self.wear.options.clone() };
         let worn = self.worn(last);
-        let other =
-            plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress))?.pressure;
+        let other = plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress))?;
         let even = means.map(|mean| Array2::from_elem(pressure.dim(), mean));
         let even = self
             .thinned_plan(&even)
             .map(|plan| plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress)));
         let even = even.transpose()?;
+        if !even.iter().chain([&other]).all(|one| one.report.converged()) {
+            return Ok(None);
+        }
         let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
         let peak = last.solution.peak_pressure();
-        let apart = difference([pressure, pressure, &other]);
+        let apart = difference([pressure, pressure, &other.pressure]);
         Ok((peak > 0.0).then_some(apart / peak))
     }
 
@@ -736,7 +740,7 @@ impl<S: Surface> WearSession<S> {
         let setup = self.plan.setup().clone();
         self.plan = Arc::new(Contact::plan(self.plan.body().clone(), grid, setup)?);
         if self.layers.is_some() {
-            self.layers = Some(TopLayers::plan(&self.plan)?);
+            self.layers = Some(TopLayers::plan(&self.plan, wears(&self.rates, Some(&last.depth)))?);
         }
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
         let worn = &depth[0] + &depth[1];
@@ -836,6 +840,13 @@ fn shift_and_twist(solution: &FrictionSolution) -> Option<[f64; 3]> {
         TangentialMotion::Slide { shift, twist } => Some([shift[0], shift[1], twist]),
         TangentialMotion::Roll { .. } => None,
     }
+}
+
+/// Which bodies wear, or are worn before.
+fn wears(rates: &[Rates; 2], before: Option<&[Array2<f64>; 2]>) -> [bool; 2] {
+    [0, 1].map(|k| {
+        !rates[k].vanish() || before.is_some_and(|depth| depth[k].iter().any(|depth| *depth > 0.0))
+    })
 }
 
 /// Correlation of two changes of a pressure; 0 where the largest is below `least`, and where the grids differ.

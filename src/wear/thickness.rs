@@ -46,20 +46,27 @@ struct TopLayer {
 }
 
 impl TopLayers {
-    /// The top layers of the bodies of a plan.
+    /// The top layers of those bodies of a plan that wear.
     ///
     /// # Errors
-    /// A layered body with free ends, a grid that repeats along one direction alone, and too little memory.
-    pub(super) fn plan(plan: &Contact) -> Result<Self> {
+    /// A response, whose layers are not known; a layered body with free ends; a grid that repeats along one direction alone;
+    /// and too little memory.
+    pub(super) fn plan(plan: &Contact, wears: [bool; 2]) -> Result<Self> {
         let both = [Some(plan.body()), plan.setup().counterbody.as_ref()];
         let mut layers = Vec::new();
         for (member, body) in both.into_iter().enumerate() {
-            let half_space = body.and_then(|body| body.half_space());
-            let Some((body, layer)) =
-                half_space.and_then(|body| body.layers().first().map(|layer| (body, layer)))
-            else {
-                continue;
-            };
+            let Some(body) = body.filter(|_| wears[member]) else { continue };
+            refuse_if(
+                body.half_space().is_none(),
+                "thickness must be \"frozen\" for a response: its layers are not known",
+            )?;
+            let Some(body) = body.half_space() else { continue };
+            let Some(layer) = body.layers().first() else { continue };
+            let [along_x, along_y] = plan.grid().is_periodic();
+            refuse_if(
+                along_x != along_y && !plan.grid().is_line(),
+                "thickness must be \"frozen\" on a grid that is periodic along one direction alone",
+            )?;
             refuse_if(
                 body.ends().iter().any(Option::is_some),
                 "thickness must be \"frozen\" for layered bodies with free ends: what their ends do to the strains of the \

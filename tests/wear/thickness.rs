@@ -150,6 +150,9 @@ fn what_has_no_thinner_layers_is_refused() -> Result<()> {
             .starts_with("thickness must be \"frozen\" for layered bodies with free ends")
     );
     let half = grid.periodic([true, false])?;
-    assert!(message(coated(THICKNESS)?, half)?.starts_with("strains of the surface need a grid"));
+    assert!(
+        message(coated(THICKNESS)?, half)?
+            .starts_with("thickness must be \"frozen\" on a grid that is periodic")
+    );
     Ok(())
 }

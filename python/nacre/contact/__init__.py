@@ -575,7 +575,7 @@ def wear(
 
     Notes
     -----
-    The rate is one of a model: measured rates scatter by factors of two and more.
+    The rate is one of a model: measured rates scatter by half and more.
     `WearReport.thickness_error` says what the `thickness` of the layers costs. To first order, the
     peak errs by 0.3 to 1.6 % where 40 % of a hard coat are worn, of a soft one by 4 to 8 %.
 

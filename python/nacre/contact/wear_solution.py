@@ -853,6 +853,11 @@ def wear_history(
     if before and not bodies.grows and own != (grid := before.states[-1].solution.grid):
         name = "store" if stored else "initial"
         raise ValueError(f"{name} must be a history on the same grid, {own!r}, got {grid!r}")
+    if before and not stored and before.inputs["thickness"] != control.thickness:
+        was = before.inputs["thickness"]
+        raise ValueError(
+            f'initial must be a history of the same thickness, "{control.thickness}", got "{was}"'
+        )
     if stored and before and (other := _other(before.inputs, inputs)):
         was, now = (one.get(other, "none") for one in (before.inputs, inputs))
         raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")

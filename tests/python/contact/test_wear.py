@@ -179,6 +179,20 @@ def test_wrong_arguments_are_refused(keywords: dict[str, Any], message: str) -> 
         worn(**keywords)
 
 
+def test_thinner_layers_need_layers_that_are_known() -> None:
+    response = nacre.Response(lambda k: 2.0 / (210e9 * k))
+    keywords: dict[str, Any] = {"load": 1e5, "grid": GRID, "rate": 1e-17, "sliding": 1.0}
+    with pytest.raises(ValueError, match='thickness must be "frozen" for a response'):
+        nacre.wear(ROLLER, response, thickness="first order", **keywords)
+    # A counterbody that does not wear may be one.
+    nacre.wear(ROLLER, STEEL, response, thickness="first order", steps=1, **keywords)
+
+
+def test_a_history_of_another_thickness_is_refused() -> None:
+    with pytest.raises(ValueError, match='same thickness, "first order", got "frozen"'):
+        worn(initial=worn(), thickness="first order")
+
+
 def test_the_verdict_on_bodies_without_layers_is_unknown() -> None:
     history = nacre.wear(ROLLER, STEEL, load=1e5, grid=GRID, rate=1e-17, sliding=1.0, steps=1)
     assert history.verdict.level == "unknown"
