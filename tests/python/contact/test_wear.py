@@ -262,6 +262,7 @@ def test_the_error_by_the_thickness_keeps_free_ends() -> None:
     assert history.report.thickness_error == pytest.approx(due, abs=1e-4)
 
 
+@pytest.mark.filterwarnings("ignore:the contact is only")
 def test_nothing_left_on_a_rigid_base_has_no_error_by_the_thickness() -> None:
     plate = nacre.HalfSpace(nacre.RIGID, layers=COATED.layers)
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
