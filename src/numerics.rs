@@ -8,6 +8,7 @@ pub(crate) mod layout;
 pub(crate) mod linear_cg;
 pub(crate) mod parallel;
 pub(crate) mod quadrature;
+pub(crate) mod recent;
 pub(crate) mod roots;
 pub(crate) mod rounding;
 pub(crate) mod special;

@@ -35,7 +35,7 @@ use crate::compliance::kernel::rectangle::under_pressure;
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::alpha_compliance;
 use crate::compliance::response::interior::Place;
-use crate::error::{Result, refuse_if};
+use crate::error::Result;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
@@ -44,6 +44,7 @@ use crate::numerics::fft::{
 };
 use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::{Threads, check_memory};
+use crate::numerics::recent::Recent;
 
 /// Numbers of σ_xx, σ_xy and σ_yy among the components, in the order of the strains.
 const STRESSES: [usize; 3] = [0, 3, 1];
@@ -61,9 +62,6 @@ const RESOLVED: [f64; 5] = [186.0 / 256.0, 56.0 / 256.0, -28.0 / 256.0, 8.0 / 25
 
 const REACH: isize = RESOLVED.len() as isize;
 
-/// Windows that are kept.
-const KEPT: usize = 2;
-
 /// Rows of coefficients that are computed together.
 const ROWS: usize = 8;
 
@@ -75,22 +73,19 @@ pub(crate) struct SurfaceStrain {
     shape: [usize; 2],
     repeats: bool,
     /// Windows that were used last.
-    windows: Mutex<Vec<Arc<StrainWindow>>>,
+    windows: Recent<[usize; 2], StrainWindow>,
     /// Shared by all windows.
     memory: Arc<Mutex<TransformMemory>>,
 }
 
 impl SurfaceStrain {
-    /// Plans the strains of `body` on a `grid`.
+    /// Plans the strains of `body` on a `grid` that repeats along both directions or along neither.
     ///
     /// # Errors
-    /// A grid that repeats along one of two directions, and too little memory.
+    /// Too little memory.
     pub(crate) fn plan(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<Self> {
         let [repeats, along_y] = grid.is_periodic();
-        refuse_if(
-            repeats != along_y,
-            "strains of the surface need a grid that is periodic along x and along y, or along neither",
-        )?;
+        debug_assert_eq!(repeats, along_y);
         let [nx, ny] = grid.shape();
         check_memory(grid.shape(), (8 * PARITIES.len() * nx * ny) as u64)?;
         let mut coefficients = match (repeats, grid.is_line()) {
@@ -105,7 +100,7 @@ impl SurfaceStrain {
             coefficients,
             shape: grid.shape(),
             repeats,
-            windows: Mutex::default(),
+            windows: Recent::default(),
             memory: Arc::default(),
         })
     }
@@ -150,18 +145,7 @@ impl SurfaceStrain {
 
     /// The operators on a window of `shape` cells.
     pub(crate) fn window(&self, shape: [usize; 2], threads: &Threads) -> Arc<StrainWindow> {
-        let mut windows = self.windows.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = windows.iter().position(|window| window.shape == shape) {
-            let window = windows.remove(at);
-            windows.push(Arc::clone(&window));
-            return window;
-        }
-        if windows.len() >= KEPT {
-            windows.remove(0);
-        }
-        let new = Arc::new(self.planned(shape, threads));
-        windows.push(Arc::clone(&new));
-        new
+        self.windows.get_or_make(shape, || self.planned(shape, threads))
     }
 
     fn planned(&self, shape: [usize; 2], threads: &Threads) -> StrainWindow {

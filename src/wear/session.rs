@@ -102,6 +102,18 @@ struct Trial {
     settled: bool,
 }
 
+impl Trial {
+    /// A step whose error is not known.
+    fn new(
+        length: f64,
+        depth: [Array2<f64>; 2],
+        solution: Solution,
+        pressure: Array2<f64>,
+    ) -> Self {
+        Self { length, depth, solution, pressure, error: None, settled: true }
+    }
+}
+
 impl<S: Surface> WearSession<S> {
     /// Wear of `shape` on the body of a plan. The grid grows with the contact where it `grows`.
     ///
@@ -544,46 +556,44 @@ impl<S: Surface> WearSession<S> {
     fn until_through(
         &self,
         begun: &Start,
-        mut trial: Trial,
+        trial: Trial,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
+        let part = self.part_of_layer(&trial.depth);
+        if part <= 1.0 + MOMENT {
+            return Ok(Some(trial));
+        }
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
         let mut least = [0.0, 1.0 - self.part_of_layer(&begun.state.depth)];
-        let mut most: Option<[f64; 2]> = None;
-        let mut was_beyond = None;
-        let mut nearest: Option<(f64, Trial)> = None;
+        let mut most = [trial.length, part - 1.0];
+        let mut was_beyond = true;
+        // The depth jumps, by what a pressure is known to: the nearest trial counts.
+        let (mut off, mut nearest) = (part - 1.0, trial);
         for _ in 0..TRIALS {
-            let part = self.part_of_layer(&trial.depth);
-            if part <= 1.0 + MOMENT && (most.is_none() || part >= 1.0 - MOMENT) {
-                return Ok(Some(trial));
-            }
-            let off = (part - 1.0).abs();
-            let is_beyond = part > 1.0;
-            if is_beyond {
-                most = Some([trial.length, part - 1.0]);
-            } else {
-                least = [trial.length, 1.0 - part];
-            }
-            if was_beyond == Some(is_beyond) {
-                let stays = if is_beyond { Some(&mut least) } else { most.as_mut() };
-                stays.into_iter().for_each(|side| side[1] *= 0.5);
-            }
-            was_beyond = Some(is_beyond);
-            let [[a, lacks], [b, beyond]] = [least, most.unwrap_or([trial.length, part - 1.0])];
+            let [[a, lacks], [b, beyond]] = [least, most];
             let length = a + (b - a) * lacks / (lacks + beyond);
-            let next = match trial.error {
+            let next = match nearest.error {
                 Some(_) => self.halved(begun, length, progress)?,
-                None => self.trial(begun, length, trial.solution.pressure.clone(), progress)?,
+                None => self.trial(begun, length, nearest.solution.pressure.clone(), progress)?,
             };
             let Some(next) = next else { return Ok(None) };
-            // The depth jumps, by what a pressure is known to: the nearest trial counts.
-            if nearest.as_ref().is_none_or(|(least, _)| off < *least) {
-                nearest = Some((off, trial));
+            let part = self.part_of_layer(&next.depth);
+            let is_beyond = part > 1.0;
+            let [own, other] =
+                if is_beyond { [&mut most, &mut least] } else { [&mut least, &mut most] };
+            *own = [next.length, (part - 1.0).abs()];
+            if was_beyond == is_beyond {
+                other[1] *= 0.5;
             }
-            trial = next;
+            was_beyond = is_beyond;
+            if (part - 1.0).abs() < off {
+                (off, nearest) = ((part - 1.0).abs(), next);
+            }
+            if off <= MOMENT {
+                return Ok(Some(nearest));
+            }
         }
-        let (off, trial) = nearest.unwrap_or((f64::INFINITY, trial));
-        Ok(Some(Trial { settled: off <= THROUGH, ..trial }))
+        Ok(Some(Trial { settled: off <= THROUGH, ..nearest }))
     }
 
     /// Largest depth of a cell over that of the bottom of the next layer; 1 where it is just through.
@@ -630,14 +640,7 @@ impl<S: Surface> WearSession<S> {
         if self.rates.iter().all(Rates::vanish) {
             let (depth, solution) = (last.depth.clone(), last.solution.clone());
             let pressure = solution.pressure.clone();
-            return Ok(Some(Trial {
-                length,
-                depth,
-                solution,
-                pressure,
-                error: None,
-                settled: true,
-            }));
+            return Ok(Some(Trial::new(length, depth, solution, pressure)));
         }
         let end_weight = if self.is_second_order() { 0.5 } else { 1.0 };
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
@@ -687,14 +690,7 @@ impl<S: Surface> WearSession<S> {
             let lag = self.layers.as_ref().map_or(0.0, |layers| layers.apart(&reached, &depth));
             depth = reached;
             if changed <= SETTLED && lag <= LAG || round == ROUNDS {
-                return Ok(Some(Trial {
-                    length,
-                    depth,
-                    solution,
-                    pressure,
-                    error: None,
-                    settled: true,
-                }));
+                return Ok(Some(Trial::new(length, depth, solution, pressure)));
             }
             initial.clone_from(&solution.pressure);
         }

@@ -26,7 +26,7 @@ use ndarray::{Array2, Zip};
 use crate::compliance::convolution::Beside;
 use crate::compliance::strain::{StrainWindow, SurfaceStrain};
 use crate::contact::{Contact, bounds, enclosing};
-use crate::error::{Result, refuse_if};
+use crate::error::{Error, Result, refuse_if};
 use crate::model::grid::{Window, each_cell, full_window};
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
@@ -56,15 +56,13 @@ impl TopLayers {
         let mut layers = Vec::new();
         for (member, body) in both.into_iter().enumerate() {
             let Some(body) = body.filter(|_| wears[member]) else { continue };
-            refuse_if(
-                body.half_space().is_none(),
+            let body = body.half_space().ok_or(Error::Inconsistent(
                 "thickness must be \"frozen\" for a response: its layers are not known",
-            )?;
-            let Some(body) = body.half_space() else { continue };
+            ))?;
             let Some(layer) = body.layers().first() else { continue };
             let [along_x, along_y] = plan.grid().is_periodic();
             refuse_if(
-                along_x != along_y && !plan.grid().is_line(),
+                along_x != along_y,
                 "thickness must be \"frozen\" on a grid that is periodic along one direction alone",
             )?;
             refuse_if(

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::model::grid::Grid;
 use crate::numerics::fft::{PaddedTransform, ParitySpectrum, Term, TransformMemory};
 use crate::numerics::parallel::Threads;
+use crate::numerics::recent::Recent;
 
 /// Tangential behaviour of two bodies on a grid, planned once.
 #[derive(Debug)]
@@ -21,11 +22,8 @@ pub(crate) struct Tangential {
     coefficients: TractionCoefficients,
     threads: Arc<Threads>,
     /// Windows that were used last.
-    windows: Mutex<Vec<Arc<TangentialWindow>>>,
+    windows: Recent<[usize; 2], TangentialWindow>,
 }
-
-/// Windows that are kept.
-const KEPT: usize = 2;
 
 impl Tangential {
     pub(crate) fn plan(
@@ -41,7 +39,7 @@ impl Tangential {
             bodies,
             coefficients,
             threads: Arc::clone(threads),
-            windows: Mutex::default(),
+            windows: Recent::default(),
         })
     }
 
@@ -53,18 +51,7 @@ impl Tangential {
 
     /// The operators on a window of `shape` cells.
     pub(crate) fn window(&self, shape: [usize; 2]) -> Arc<TangentialWindow> {
-        let mut windows = self.windows.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = windows.iter().position(|window| window.shape == shape) {
-            let window = windows.remove(at);
-            windows.push(Arc::clone(&window));
-            return window;
-        }
-        if windows.len() >= KEPT {
-            windows.remove(0);
-        }
-        let new = Arc::new(self.planned(shape));
-        windows.push(Arc::clone(&new));
-        new
+        self.windows.get_or_make(shape, || self.planned(shape))
     }
 
     fn planned(&self, shape: [usize; 2]) -> TangentialWindow {
