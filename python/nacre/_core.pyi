@@ -15,7 +15,7 @@ from nacre.contact.arguments import (
     Setup,
     SolveOptions,
 )
-from nacre.contact.solution import Numbers
+from nacre.contact.normal import Numbers
 from nacre.contact.stresses import StressFields, StressLimits, StressOptions
 from nacre.contact.wear_solution import WearOptions
 

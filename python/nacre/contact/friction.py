@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
+from nacre.contact.normal import NormalContact
 from nacre.contact.solution import NOT_COUNTED, Solution
 from nacre.contact.stresses import DepthOptions, Stressed, depth_pictures
 from nacre.results import display, files, tables, values
@@ -130,13 +131,8 @@ class FrictionReport(Result):
         )
 
 
-def _of_normal(name: str) -> Any:
-    """Return a property that is that of the normal contact."""
-    return property(lambda self: getattr(self.normal, name), doc=getattr(Solution, name).__doc__)
-
-
 @dataclass(frozen=True, repr=False)
-class FrictionSolution(Result, Stressed):
+class FrictionSolution(NormalContact, Result, Stressed):
     """A contact with friction: one step of a history, or rolling.
 
     Fields are at cell centres, and read-only. Tractions act on the body, and their opposites on
@@ -201,17 +197,9 @@ class FrictionSolution(Result, Stressed):
         """Normal contact: pressure, gap, approach, tilt."""
         return Solution._of(self._solved.normal())
 
-    grid = _of_normal("grid")
-    x, y = _of_normal("x"), _of_normal("y")
-    load, approach, tilt = _of_normal("load"), _of_normal("approach"), _of_normal("tilt")
-    eccentricity, moment = _of_normal("eccentricity"), _of_normal("moment")
-    pressure, gap, line_load = _of_normal("pressure"), _of_normal("gap"), _of_normal("line_load")
-    peak_pressure, peak_position = _of_normal("peak_pressure"), _of_normal("peak_position")
-    central_pressure, in_contact = _of_normal("central_pressure"), _of_normal("in_contact")
-    contact_area, contact_share = _of_normal("contact_area"), _of_normal("contact_share")
-    contact_extent = _of_normal("contact_extent")
-    hardness, indentation = _of_normal("hardness"), _of_normal("indentation")
-    compliance, plastic_work = _of_normal("compliance"), _of_normal("plastic_work")
+    @property
+    def _normal_solved(self) -> core.Solved:
+        return self.normal._solved
 
     @property
     def elastic_energy(self) -> float:

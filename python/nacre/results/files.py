@@ -165,12 +165,8 @@ def load(path: AnyPath) -> Any:
     Returns
     -------
     object
-        Result that was saved: a `Solution`, a `FrictionSolution` or a `History` of them, a
-        `WearHistory`, a
-        `StressSummary`, a `FatigueSummary`, a `ShakedownMap`, `CreepCoefficients`, an
-        `IndentSolution`, a `Fit` or an `OliverPharr` of `nacre.indent`, a `BearingSolution`,
-        `BearingLife`, `PairSolution`, `PairLife`, `StressVolume`, `LifeRatio` or `Film` of
-        `nacre.bearing`.
+        Result of the class that was saved, a `Solution`, a `History` or another with a method
+        `save`.
 
     Raises
     ------

@@ -84,22 +84,8 @@ are still read, and older studies found again. Versions that do not know them re
 name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
-ELSEWHERE = {
-    "IndentSolution": "nacre.indent",
-    "Fit": "nacre.indent",
-    "Roughness": "nacre.rough",
-    "BearingSolution": "nacre.bearing",
-    "BearingLife": "nacre.bearing",
-    "BearingReport": "nacre.bearing",
-    "PairSolution": "nacre.bearing",
-    "PairLife": "nacre.bearing",
-    "StressVolume": "nacre.bearing",
-    "LifeRatio": "nacre.bearing",
-    "Film": "nacre.bearing",
-}
-ELSEWHERE |= dict.fromkeys(("FatigueSummary", "LayerFatigue"), "nacre.fatigue")
-ELSEWHERE |= dict.fromkeys(("InterfaceFatigue", "ShakedownMap"), "nacre.fatigue")
-"""Modules of results that are imported when they are used."""
+LATE = ("nacre.fatigue", "nacre.indent", "nacre.rough", "nacre.bearing")
+"""Modules with results that ``import nacre`` does not import."""
 RESULTS: dict[str, Any] = {}
 """Classes of results by their names."""
 START = ("traction", "displacement", "friction", "motion")
@@ -263,8 +249,9 @@ def _decoded(data: object) -> Any:
 
 def result_class(kind: object) -> Any:
     """Return the class of results of this name; that of some may have to be imported."""
-    if isinstance(kind, str) and kind in ELSEWHERE:
-        import_module(ELSEWHERE[kind])
+    if isinstance(kind, str) and kind not in RESULTS:
+        for module in LATE:
+            import_module(module)
     if not isinstance(kind, str) or kind not in RESULTS:
         raise ValueError(f"the key 'kind' must name a result of nacre, got {kind!r}")
     return RESULTS[kind]

@@ -15,6 +15,7 @@ from nacre import fatigue
 from nacre._tools.units import written
 from nacre.results import values
 from nacre.results.base import Fields
+from results import LISTED, solved
 from support import python
 
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
@@ -114,7 +115,6 @@ VALUES = MADE_BY_A_CALL | {
     "number of a card": nacre.materials["TiN"].numbers["young"],
     "friction solution": SLID,
     "friction report": SLID.report,
-    "creep coefficients": nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],
     "interface stress": SUMMARY.interfaces[0],
@@ -122,9 +122,7 @@ VALUES = MADE_BY_A_CALL | {
     "fatigue summary": ASSESSED,
     "layer fatigue": ASSESSED.layers[-1],
     "interface fatigue": ASSESSED.interfaces[0],
-    "shakedown map": quiet(
-        fatigue.shakedown_map, SOLUTION, friction=[0.0], depths=[1e-5], threads=1
-    ),
+    **{name: solved(name) for name in LISTED},
 }
 
 every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())
@@ -257,6 +255,7 @@ import functools, operator, pickle, nacre
 from nacre._tools.units import written
 from nacre.results import values
 from nacre.results.base import Fields
+from results import LISTED, solved
 
 part = nacre.Paraboloid(1.0, 1.0)
 grid = nacre.Grid((8, 8), (1e-3, 1e-3))
