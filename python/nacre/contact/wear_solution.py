@@ -87,11 +87,14 @@ class Sliding:
         if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
             several = " and ".join(known) or "none"
             raise ValueError(f"one of sliding, cycles and passes must be given, got {several}")
+        core.real(known[0], getattr(self, known[0]))
         for name, one in (("slide", "cycles"), ("roll", "passes")):
             if (getattr(self, name) is None) != (getattr(self, one) is None):
                 raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
         if self.slip is not None and self.sliding is None:
             raise ValueError("slip must be given with sliding: slide and roll have their own")
+        if self.slip is not None:
+            core.real_array("slip", self.slip)
 
     @property
     def unit(self) -> Unit:
@@ -173,6 +176,8 @@ class WearControl:
         """Raise a `ValueError` unless it ends in one of the ways that there are."""
         if self.until not in (None, "through"):
             raise ValueError(f'until must be None or "through", got {self.until!r}')
+        if not isinstance(self.store, str | os.PathLike | None):
+            raise TypeError(f"store must be a path, got {self.store!r}")
         check_progress(self.progress)
 
     @property
@@ -195,7 +200,7 @@ class WearControl:
             return history.states[-1].depth, history.states[-1].counter_depth
         if self.initial is None or isinstance(self.initial, WearHistory):
             return None
-        depth = np.asarray(self.initial, dtype=np.float64)
+        depth = core.real_array("initial", self.initial)
         return depth, np.zeros(depth.shape)
 
     def ends(self, distance: float) -> list[float] | None:
@@ -206,7 +211,7 @@ class WearControl:
                     f'steps must be "auto", a number or their ends, got {self.steps!r}'
                 )
             return None
-        ends = np.asarray(self.steps, dtype=np.float64)
+        ends = core.real_array("steps", self.steps)
         if ends.ndim == 0:
             count = core.integer("steps", self.steps)
             if count < 1:

@@ -1,6 +1,8 @@
 """Bad input is refused by a message that names the argument, what it must be and what it was."""
 
+import inspect
 import re
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -543,6 +545,31 @@ NAMES = globals() | {
 def test_bad_input_is_refused(call: str, kind: type[Exception], words: str) -> None:
     # The match searches notes, too: where pyo3 finds the type wrong, they name the argument.
     support.refused(call, kind, words, NAMES)
+
+
+CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
+    "solve": (partial(nacre.solve, BALL, STEEL), {"load": 10.0}),
+    "Contact.solve": (partial(CONTACT.solve, BALL), {"load": 10.0}),
+    "slide": (partial(nacre.slide, BALL, STEEL), HELD),
+    "roll": (partial(nacre.roll, BALL, STEEL), {"grid": CELLS, "direction": "+x", **HELD}),
+    "wear": (
+        partial(nacre.wear, BALL, STEEL),
+        {"grid": CELLS, "load": 10.0, "rate": 1e-16, "sliding": 1.0},
+    ),
+}
+KEYWORDS = [
+    (call, name)
+    for call, (function, _) in CALLS.items()
+    for name, parameter in inspect.signature(function).parameters.items()
+    if parameter.kind is parameter.KEYWORD_ONLY
+]
+
+
+@pytest.mark.parametrize(("call", "name"), KEYWORDS)
+def test_each_keyword_refuses_what_is_none_of_its_values(call: str, name: str) -> None:
+    function, keywords = CALLS[call]
+    with pytest.raises((TypeError, ValueError), match=rf"\b{name}\b"):
+        function(**keywords | {name: object()})
 
 
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # few cells are enough here
