@@ -255,7 +255,6 @@ import functools, operator, pickle, nacre
 from nacre._tools.units import written
 from nacre.results import values
 from nacre.results.base import Fields
-from results import LISTED, solved
 
 part = nacre.Paraboloid(1.0, 1.0)
 grid = nacre.Grid((8, 8), (1e-3, 1e-3))
