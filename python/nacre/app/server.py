@@ -15,7 +15,8 @@ from socketserver import TCPServer
 
 import nacre
 from nacre.app.answer import STAGES, Answer, Going, Stopped, answer
-from nacre.app.cards import Card, FieldError
+from nacre.app.cards import Card
+from nacre.app.fields import FieldError
 from nacre.app.page import files
 from nacre.case import CaseError
 
