@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Iterable, Mapping
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import resources
-from itertools import groupby
+from string import Template
 
 import nacre
 from nacre.app.cards import Card
@@ -16,112 +18,104 @@ from nacre.results import svg
 Files = dict[str, tuple[str, bytes]]
 
 
+class Markup(str):
+    """Text that is markup, of which nothing is escaped."""
+
+
+def _text(name: str) -> str:
+    return (resources.files(__package__) / "static" / name).read_text("utf-8")
+
+
+_, *SPLIT = re.split(r"<!-- (\w+) -->\n", _text("page.html"))
+PARTS = {name: Template(part.rstrip()) for name, part in zip(SPLIT[::2], SPLIT[1::2], strict=True)}
+"""Parts of the page by name, with places for values."""
+
+
+def _part(name: str, /, **values: object) -> Markup:
+    """Return a part of the page with values in its places: markup, numbers, and text."""
+    return Markup(PARTS[name].substitute({place: _written(one) for place, one in values.items()}))
+
+
+def _written(value: object) -> str:
+    if isinstance(value, Markup):
+        return value
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    return "" if value is None else html.escape(str(value))
+
+
+def _joined(parts: Iterable[Markup]) -> Markup:
+    return Markup("".join(parts))
+
+
 def files(cards: Mapping[str, Card]) -> Files:
     """Return type and content of the files of the page by path."""
-    folder = resources.files(__package__) / "static"
-    names = ("page.html", "page.js", "page.css")
-    texts = {name: (folder / name).read_text("utf-8") for name in names}
     first: dict[str, Card] = {}  # of each tab
     for card in cards.values():
         first.setdefault(card.group, card)
-    tabs = "".join(map(_tab, first.values()))
-    markup = texts["page.html"].replace("<!-- tabs -->", tabs)
-    forms = "".join(_form(card, cards) for card in cards.values())
-    markup = markup.replace("<!-- cards -->", forms)
+    tabs = (_part("tab", name=card.name, group=card.group) for card in first.values())
+    forms = (_form(card, cards.values()) for card in cards.values())
+    page = _part("page", tabs=_joined(tabs), forms=_joined(forms))
     return {
-        "/": ("text/html", markup.encode()),
-        "/page.js": ("text/javascript", texts["page.js"].encode()),
-        "/page.css": ("text/css", (texts["page.css"] + svg.STYLE).encode()),
+        "/": ("text/html", page.encode()),
+        "/page.js": ("text/javascript", _text("page.js").encode()),
+        "/page.css": ("text/css", (_text("page.css") + svg.STYLE).encode()),
     }
 
 
-def _tab(card: Card) -> str:
-    group, name = html.escape(card.group), html.escape(card.name)
-    return (
-        f'<button type="button" class="tab" data-group="{group}" data-testid="card:{name}">'
-        f"{group}</button>"
-    )
-
-
-def _form(card: Card, cards: Mapping[str, Card]) -> str:
+def _form(card: Card, cards: Iterable[Card]) -> Markup:
     """Return the form of a card: variants, materials, main fields, and all others."""
-    variants = [one for one in cards.values() if one.group == card.group]
-    options = "".join(
-        f'<option value="{one.name}"{" selected" * (one is card)}>{html.escape(one.title)}</option>'
-        for one in variants
-    )
-    menu = f'<label class="menu">kind <select class="variant">{options}</select></label>'
-    paths = [one.path.rpartition(".")[2] for one in card.by_path.values()]
-    keys = {
-        path: last if paths.count(last) == 1 else path
-        for path, last in zip(card.by_path, paths, strict=True)
-    }
-    main = "".join(_field(card.name, one, keys[one.path]) for one in card.fields)
-    others = [
-        f"<fieldset><legend>{html.escape(table)}</legend>"
-        f"{''.join(_field(card.name, one, keys[one.path]) for one in members)}</fieldset>"
-        for table, members in _by_table(card.more)
+    kinds = [
+        _part("kind", name=one.name, title=one.title) for one in cards if one.group == card.group
     ]
-    return (
-        f'<form data-card="{card.name}" data-group="{html.escape(card.group)}" hidden '
-        f'autocomplete="off">'
-        f"{menu if len(variants) > 1 else ''}{''.join(_materials(card))}{main}"
-        f'<details data-testid="more"><summary>more …</summary>{"".join(others)}</details></form>'
+    tables = sorted({one.path.partition(".")[0] for one in card.more})
+    groups = ([one for one in card.more if one.path.startswith(f"{name}.")] for name in tables)
+    return _part(
+        "form",
+        name=card.name,
+        group=card.group,
+        menu=_part("menu", kinds=_joined(kinds)) if len(kinds) > 1 else "",
+        materials=_joined(_materials(card)),
+        fields=_fields(card, card.fields),
+        tables=_joined(
+            _part("table", name=name, fields=_fields(card, group))
+            for name, group in zip(tables, groups, strict=True)
+        ),
     )
 
 
-def _by_table(fields: Iterable[Field]) -> list[tuple[str, list[Field]]]:
-    def table(one: Field) -> str:
-        return one.path.partition(".")[0]
+def _fields(card: Card, fields: Iterable[Field]) -> Markup:
+    """Return label, input, unit and slider of fields.
 
-    return [(name, list(members)) for name, members in groupby(sorted(fields, key=table), table)]
-
-
-def _field(card: str, one: Field, key: str) -> str:
-    """Return label, input, unit and slider of a field."""
-    path, label, words = (html.escape(text) for text in (one.path, one.label, one.help))
-    name = html.escape(f"{card}:{one.path}")
-    default = "" if one.default is None else f"{one.default:.12g}"
-    bounds = f'data-low="{one.low:g}" data-high="{one.high:g}"'
-    about = f'aria-describedby="{name}:help" title="{words}"' if words else ""
-    note = f'<span class="help" id="{name}:help">{words}</span>' if words else ""
-    slider = ""
-    if one.slides:
-        ends = (one.low, one.high) if one.slides == "linear" else (-1, 1)
-        slider = (
-            f'<input type="range" data-testid="slider:{path}" data-scale="{one.slides}" {bounds} '
-            f'min="{ends[0]:g}" max="{ends[1]:g}" step="any" aria-label="{label}, slider">'
-        )
-    empty = ' placeholder="unknown"' if one.may_be_empty else ""
-    return (
-        f'<div class="field"><label for="{name}">{label}</label>'
-        f'<input id="{name}" name="{path}" data-key="{html.escape(key)}" '
-        f'data-testid="field:{path}" '
-        f'data-default="{default}" value="{default}" data-si="{one.size:g}" inputmode="decimal" '
-        f'{about}{empty}><span class="unit">{html.escape(one.unit)}</span>{slider}{note}</div>'
-    )
+    The key of one in a link is its last name, if no other field of the card has that.
+    """
+    counts = Counter(_last(path) for path in card.by_path)
+    parts = []
+    for one in fields:
+        least, most = (one.low, one.high) if one.slides == "linear" else (-1, 1)
+        slider = _part("slider", **one._asdict(), least=least, most=most) if one.slides else ""
+        key = _last(one.path) if counts[_last(one.path)] == 1 else one.path
+        own = {"id": f"{card.name}:{one.path}", "key": key, "size": one.size, "slider": slider}
+        empty = "unknown" if one.may_be_empty else ""
+        parts.append(_part("field", **one._asdict(), **own, placeholder=empty))
+    return _joined(parts)
 
 
-def _materials(card: Card) -> Iterable[str]:
+def _last(path: str) -> str:
+    return path.rpartition(".")[2]
+
+
+def _materials(card: Card) -> Iterator[Markup]:
     """Yield a menu of known materials for each material of a card."""
-    for name, table in card.base.get("materials", {}).items():
-        if isinstance(table, Mapping) and f"materials.{name}.young" in card.by_path:
-            label = html.escape(name)
-            yield (
-                f'<label class="menu">{label} <select class="material" data-material="{label}">'
-                f'<option value="">own numbers</option>{_options()}</select></label>'
-                f'<p class="source" hidden></p>'
-            )
+    known = _joined(map(_known, nacre.materials.values()))
+    for name in card.base.get("materials", {}):
+        if f"materials.{name}.young" in card.by_path:
+            yield _part("materials", name=name, known=known)
 
 
-def _options() -> str:
-    """Return the known materials as options that hold their numbers in SI."""
-    texts = []
-    for name, card in nacre.materials.items():
-        numbers = json.dumps({key: one.value for key, one in card.numbers.items()})
-        source = "; ".join(dict.fromkeys(one.source for one in card.numbers.values()))
-        texts.append(
-            f'<option data-numbers="{html.escape(numbers)}" '
-            f'data-source="{html.escape(f"{card.title}. {source}")}">{html.escape(name)}</option>'
-        )
-    return "".join(texts)
+def _known(material: nacre.types.Card) -> Markup:
+    """Return a known material as an option that holds its numbers in SI."""
+    numbers = {key: one.value for key, one in material.numbers.items()}
+    sources = "; ".join(dict.fromkeys(one.source for one in material.numbers.values()))
+    source = f"{material.title}. {sources}"
+    return _part("known", name=material.name, numbers=json.dumps(numbers), source=source)
