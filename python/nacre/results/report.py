@@ -97,14 +97,10 @@ class Reported(Protocol):
 
 
 def write(
-    path: Path,
-    results: Sequence[Reported],
-    case: str | None = None,
-    inputs: Rows = (),
-    stress: Mapping[str, object] | None = None,
+    path: Path, results: Sequence[Reported], case: str | None = None, inputs: Rows = ()
 ) -> None:
     """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
-    path.write_text(text(path.stem, results, case, inputs, stress), encoding="utf-8")
+    path.write_text(text(path.stem, results, case, inputs), encoding="utf-8")
 
 
 def text(
@@ -246,10 +242,12 @@ def table(
     notes: Sequence[str] = (),
 ) -> Table:
     """Return a table of rows, the heading first; columns get the units of quantities by name."""
-    head, *body = ([*row] for row in rows)
     units = {row.name: symbol(row.unit) for row in quantities}
-    columns = {str(name): [row[k] for row in body] for k, name in enumerate(head)}
-    columns = {name: values for name, values in columns.items() if not _is_empty(values)}
+    columns = {
+        str(name): values
+        for name, *values in zip(*rows, strict=True)
+        if not values or any(value == value and value != "" for value in values)
+    }
     largest: dict[str, float] = {}
     for name, values in columns.items():
         stem = AXIS.sub("", name)
@@ -258,14 +256,10 @@ def table(
         _column(name, values, units.get(name, ""), display.SLIGHT * largest[AXIS.sub("", name)])
         for name, values in columns.items()
     ]
-    texts = [*zip(*(column for _, column in cells), strict=True)][:MOST_ROWS]
-    more = [f"and {len(body) - MOST_ROWS} more rows"] if len(body) > MOST_ROWS else []
-    return Table(title, [name for name, _ in cells], texts, [*notes, *more])
-
-
-def _is_empty(values: Sequence[object]) -> bool:
-    """Return whether a column has rows, but nothing in them."""
-    return bool(values) and all(value != value or value == "" for value in values)
+    texts = [*zip(*(column for _, column in cells), strict=True)]
+    if len(texts) > MOST_ROWS:
+        notes = [*notes, f"and {len(texts) - MOST_ROWS} more rows"]
+    return Table(title, [name for name, _ in cells], texts[:MOST_ROWS], notes)
 
 
 def _is_number(value: object) -> TypeGuard[float]:
@@ -278,9 +272,8 @@ def _column(
     """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
     if match := UNIT.fullmatch(name):
         name, unit = match.groups()
-    numbers = [abs(value) for value in values if _is_number(value)]
-    scale = display.scale_in(max(numbers, default=0.0), unit)
-    scale = scale if max(numbers, default=0.0) > rounding else display.scale_in(0.0, unit)
+    largest = max(map(abs, filter(_is_number, values)), default=0.0)
+    scale = display.scale_in(largest if largest > rounding else 0.0, unit)
 
     def cell(value: object) -> str:
         if _is_number(value):
