@@ -155,7 +155,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
         try:
             summary = solution.stress_summary(**keywords, progress=wanted)
         except ValueError as error:
-            verdict = Verdict("unknown", f"Cannot tell: {error}.", (), None, None, None)
+            verdict = Verdict("unknown", f"Cannot tell: {error}.")
         else:
             verdict, warnings = summary.verdict, [*warnings, *summary.warnings]
             rows += _extremes(summary)
