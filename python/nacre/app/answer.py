@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -22,18 +23,25 @@ from nacre.contact.stresses import depth_pictures
 from nacre.indent import IndentSolution
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
-from nacre.results import display, report
+from nacre.indent.solution import UNITS
+from nacre.results import display
+from nacre.results.report import Picture, Rows, section
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
 from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
 Contact = Solution | FrictionSolution
+Solved = TypeVar("Solved", Contact, BearingSolution)
 Going = Callable[[], bool]
 """Function that says whether the answer is still wanted."""
+Wanted = Callable[..., bool]
+"""Function that raises `Stopped` where the answer is no longer wanted: the progress of solves."""
 
 STAGES = ("draft", "full", "stress")
 """Stages of an answer, each of which names the next."""
+NEXT = dict(pairwise(STAGES))
+"""The stage after each."""
 ROLLER_CELLS, FEWEST_CELLS = 16384, 4096
 """Largest number of cells of a draft: of rollers; and of others, the fewest that nacre takes."""
 DRAFT = {"step_tolerance": 1e-2}
@@ -44,11 +52,21 @@ CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
 BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
 BEARING_ROWS |= {"first bearing", "second bearing"}
 """Numbers that the page shows."""
+INDENT_ROWS = {
+    "largest load": "load",
+    "largest depth": "approach",
+    "contact radius there": "radius",
+    "stiffness there": "stiffness",
+    "central pressure there": "central_pressure",
+}
+"""Numbers of an indentation that the page shows, of its largest depth."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
 DIGITS = 5
 """Digits of the main number."""
-ERRORS = (ArithmeticError, LookupError, MemoryError, TypeError, ValueError)
+PRESSURE = Axis("pressure", "Pa")
+"""Axis of most pictures."""
+ERRORS = (ArithmeticError, LookupError, MemoryError, RuntimeError, TypeError, ValueError)
 """What calculations raise."""
 
 
@@ -59,17 +77,11 @@ class Measured(NamedTuple):
     """Arguments in place of those of the case on the page."""
     tables: Answer
     """Tables of the case file, which have other ones in their place on the page."""
-    files: report.Rows
+    files: Rows
     """Files, with their SHA-256."""
 
 
 NONE = Measured({}, {}, ())
-
-
-class Printed(Protocol):
-    """A result that is printed as rows of names and values."""
-
-    def _rows(self) -> list[tuple[str, str]]: ...
 
 
 class Stopped(Exception):
@@ -102,19 +114,24 @@ def answer(
     Stopped
         If the answer was no longer wanted.
     """
+
+    def wanted(*_: object) -> bool:
+        if not going():
+            raise Stopped
+        return True
+
+    # Bearings are in SI, and shown in the units of the case.
+    units = display.shown_in if case.kind == "bearing" else nacre.display_units
     try:
-        # Bearings are in SI, and shown in the units of the case.
-        units = display.shown_in if case.kind == "bearing" else nacre.display_units
         with units(case.units):
             arguments = case.arguments() | measured.arguments
             if stage == "case":
                 return {"case": file_text(case, measured)}
             if stage == "report":
-                return {"report": _report(case, arguments, going, measured)}
-            return SOLVERS[case.kind](case, arguments, stage, going)
+                return {"report": _report(case, arguments, wanted, measured)}
+            return SOLVERS[case.kind](case, arguments, stage, wanted)
     except ERRORS as error:
-        if not going():
-            raise Stopped from error
+        wanted()
         return {"error": " ".join(str(error).split())[:600] or type(error).__name__}
 
 
@@ -124,53 +141,47 @@ def file_text(case: Case, measured: Measured = NONE) -> str:
     return toml.text(case.data | measured.tables, notes)
 
 
-def _contact(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on a contact: coated beside bare, and with the last stage its stresses."""
     if stage == "draft" and "grid" not in arguments:
         is_long = isinstance(arguments["shape"], core.Roller)
         arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
-    solution = _solved_contact(case, arguments, going)
-    bare = _bare(case, arguments, going)
-    rows = _selected(solution, CONTACT_ROWS)
-    beside = [] if bare is None else _selected(bare, CONTACT_ROWS)
-    parts: Answer = {
-        "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
-        "rows": _rows(rows, beside),
-        "picture-1": _pressures(solution, bare),
-        "warnings": list(solution._warnings),
-    }
-    if stage != "stress":
-        return _answer(parts, "full" if stage == "draft" else "stress")
-    keywords = case.stress() or {}
-    try:
-        summary = solution.stress_summary(**keywords, progress=lambda _: going())
-    except ValueError as error:
-        verdict = Verdict("unknown", f"Cannot tell: {error}.", (), None, None, None)
-        return _answer(parts | _judged(verdict))
-    _check(going)
-    if bare is not None:
-        of_bare = {k: v for k, v in keywords.items() if k in ("body", "friction", "direction")}
-        beside += _extremes(bare.stress_summary(**of_bare, progress=lambda _: going()))
-        _check(going)
-    parts["rows"] = _rows(rows + _extremes(summary), beside)
-    parts["picture-2"] = _stresses(solution, bare, keywords)
-    parts["warnings"] = list(dict.fromkeys([*parts["warnings"], *summary.warnings]))
-    return _answer(parts | _judged(summary.verdict))
+    solution = _solved_contact(case, arguments, wanted)
+    bare = _bare(case, arguments, wanted)
+    rows, beside = (_selected(one, CONTACT_ROWS) for one in (solution, bare))
+    pictures, warnings, verdict = [_pressures(solution, bare)], solution._warnings, None
+    if stage == "stress":
+        keywords = case.stress() or {}
+        try:
+            summary = solution.stress_summary(**keywords, progress=wanted)
+        except ValueError as error:
+            verdict = Verdict("unknown", f"Cannot tell: {error}.")
+        else:
+            verdict, warnings = summary.verdict, [*warnings, *summary.warnings]
+            rows += _extremes(summary)
+            options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
+            if bare is not None:
+                sliding = {name: one for name, one in options.items() if name != "residual"}
+                beside += _extremes(bare.stress_summary(**sliding, progress=wanted))
+            pictures.append("".join(map(_figure, depth_pictures(solution, bare, **options))))
+    peak = ("peak pressure", solution.peak_pressure, "Pa")
+    return _answer(peak, rows, pictures, warnings, verdict, NEXT.get(stage), beside)
 
 
-def _solved_contact(case: Case, arguments: Answer, going: Going) -> Contact:
+def _solved_contact(case: Case, arguments: Answer, wanted: Wanted) -> Contact:
     """Return the solution of a contact, the last one of a history."""
-    outcome = getattr(nacre, case.friction or "solve")(
-        **arguments, progress=lambda *_: going(), check=False
-    )
-    _check(going)
-    solution: Contact = last_of(outcome)
+    solve = getattr(nacre, case.friction or "solve")
+    solution: Contact = last_of(solve(**arguments, progress=wanted, check=False))
+    return _converged(solution, "solution")
+
+
+def _converged(solution: Solved, what: str) -> Solved:
     if not solution.report.converged:
-        raise CaseError("no solution was found: the solve did not converge")
+        raise CaseError(f"no {what} was found: the solve did not converge")
     return solution
 
 
-def _bare(case: Case, arguments: Answer, going: Going) -> Contact | None:
+def _bare(case: Case, arguments: Answer, wanted: Wanted) -> Contact | None:
     """Return the solution without layers, or None where there are none or friction is solved."""
     body = arguments["body"]
     if case.friction or not isinstance(body, core.HalfSpace) or not body.layers:
@@ -179,65 +190,51 @@ def _bare(case: Case, arguments: Answer, going: Going) -> Contact | None:
         return None
     bare = core.HalfSpace(body.substrate, ends=body.ends)
     try:
-        return _solved_contact(case, arguments | {"body": bare}, going)
+        return _solved_contact(case, arguments | {"body": bare}, wanted)
     except ERRORS:
-        _check(going)
+        wanted()
         return None
 
 
-def _wear(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on wear: the worn contact beside the new one, and the depth removed."""
     if stage == "draft":
         arguments = DRAFT | arguments
         arguments |= {} if "grid" in arguments else {"max_cells": FEWEST_CELLS}
     try:
-        history = nacre.wear(**arguments, progress=lambda _: going())
+        history = nacre.wear(**arguments, progress=wanted)
     except nacre.ConvergenceError as error:
-        _check(going)
         raise CaseError(f"no history was found: {error}") from error
-    _check(going)
     new, worn = (history.states[k].solution for k in (0, -1))
-    parts: Answer = {
-        "peak": ("last peak pressure", display.number(worn.peak_pressure, "Pa", DIGITS)),
-        "rows": _rows(history._rows()),
-        "picture-1": _pressures(worn, new, ("worn", "new")),
-        "picture-2": _figure(*history._depth_picture()),
-        "warnings": list(history.warnings),
-    }
-    return _answer(parts | _judged(history.verdict), "full" if stage == "draft" else None)
+    pictures = [_pressures(worn, new, ("worn", "new")), _figure(history._depth_picture())]
+    peak = ("last peak pressure", worn.peak_pressure, "Pa")
+    following = "full" if stage == "draft" else None
+    return _answer(peak, history._rows(), pictures, history.warnings, history.verdict, following)
 
 
-def _bearing(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on a bearing; the last stage compares it with aligned rings."""
     bearing = arguments.pop("bearing")
     draft = {"model": "iso16281", "cells": None} if stage == "draft" else {}
-    keywords = arguments | draft | {"progress": lambda *_: going(), "check": False}
-    solution = bearing.solve(**keywords)
-    _check(going)
-    if not solution.report.converged:
-        raise CaseError("no equilibrium was found: the solve did not converge")
-    life = case.life()
-    rows = _selected(solution, BEARING_ROWS)
+    keywords = arguments | draft | {"progress": wanted, "check": False}
+    solution = _converged(bearing.solve(**keywords), "equilibrium")
+    rows, life = _selected(solution, BEARING_ROWS), case.life()
     rows += [] if life is None else solution.life(**life)._rows()
     is_tilted = any(arguments.get("tilt") or ())
-    is_pair = isinstance(solution, PairSolution)
-    aligned = None
-    if is_tilted and not is_pair and stage != "full":
-        aligned = bearing.solve(**keywords | {"tilt": (0.0, 0.0)})
-        _check(going)
-    parts = {
-        "peak": ("peak pressure", display.number(solution.peak_pressure, "Pa", DIGITS)),
-        "rows": _rows(rows),
-        "picture-1": _ring(solution.first) if is_pair else _along_roller(solution, aligned),
-        "picture-2": _ring(solution.second if is_pair else solution),
-        "warnings": list(solution.report.warnings),
-    }
+    if isinstance(solution, PairSolution):
+        pictures = [_ring(one) for one in solution.bearings]
+    else:
+        compared = [solution]
+        if is_tilted and stage != "full":
+            compared.append(bearing.solve(**keywords | {"tilt": (0.0, 0.0)}))
+        pictures = [_along_roller(*compared), _ring(solution)]
     is_compared = is_tilted and isinstance(bearing, RollerBearing)
-    following = {"draft": "full", "full": "stress" if is_compared else None}
-    return _answer(parts | _judged(solution.verdict), following.get(stage))
+    following = NEXT.get(stage) if stage == "draft" or is_compared else None
+    peak = ("peak pressure", solution.peak_pressure, "Pa")
+    return _answer(peak, rows, pictures, solution.report.warnings, solution.verdict, following)
 
 
-def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Answer:
+def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     """Return the answer on an indentation, with and without the substrate."""
     variable = next(name for name in ("load", "approach", "radius") if name in arguments)
     values = np.atleast_1d(np.asarray(arguments[variable], dtype=float))
@@ -245,60 +242,58 @@ def _indentation(case: Case, arguments: Answer, stage: str, going: Going) -> Ans
         values = values[::-1][::EVERY][::-1]
     arguments = arguments | {variable: values}
     solution = solve_indentation(**arguments)
-    _check(going)
+    wanted()
     last = int(np.argmax(solution.approach))
-    numbers = {
-        name: display.number(float(getattr(solution, path)[last]), unit)
-        for name, path, unit in (
-            ("largest load", "load", "N"),
-            ("largest depth", "approach", "m"),
-            ("contact radius there", "radius", "m"),
-            ("stiffness there", "stiffness", "N/m"),
-            ("central pressure there", "central_pressure", "Pa"),
-        )
-    }
-    parts: Answer = {
-        "peak": ("largest depth", display.number(float(solution.approach[last]), "m", DIGITS)),
-        "rows": _rows([*numbers.items()]),
-        "picture-1": _loads(arguments, solution, variable),
-        "warnings": list(solution.warnings),
-    }
-    reading = apparent_modulus(solution)
-    _check(going)
+    rows = [
+        (words, display.number(float(getattr(solution, name)[last]), UNITS[name]))
+        for words, name in INDENT_ROWS.items()
+    ]
+    pictures, reading = [_loads(arguments, solution)], apparent_modulus(solution)
     if reading is not None:
-        parts["picture-2"] = _moduli(reading)
-    parts |= _judged(substrate_verdict(reading))
-    return _answer(parts, "full" if stage == "draft" else None)
+        pictures.append(_moduli(reading))
+    peak = ("largest depth", float(solution.approach[last]), "m")
+    verdict, following = substrate_verdict(reading), "full" if stage == "draft" else None
+    return _answer(peak, rows, pictures, solution.warnings, verdict, following)
 
 
 SOLVERS = {"contact": _contact, "wear": _wear, "bearing": _bearing, "indent": _indentation}
 """Functions of the kinds of cases."""
 
 
-def _report(case: Case, arguments: Answer, going: Going, measured: Measured) -> str:
+def _report(case: Case, arguments: Answer, wanted: Wanted, measured: Measured) -> str:
     """Return the report of a case, as a page of HTML."""
-    results = results_of(case, arguments, {"progress": lambda *_: going()})
-    _check(going)
+    results = results_of(case, arguments, {"progress": wanted})
+    wanted()
     text = file_text(case, measured)
     return report_of(case, results, text, Path(case.name).stem, measured.files)
 
 
-def _check(going: Going) -> None:
-    if not going():
-        raise Stopped
-
-
-def _answer(parts: Answer, following: str | None = None) -> Answer:
+def _answer(
+    peak: tuple[str, float, str],
+    rows: Rows,
+    pictures: Sequence[str],
+    warnings: Sequence[str],
+    verdict: Verdict | None,
+    following: str | None,
+    beside: Rows = (),
+) -> Answer:
+    """Return the parts of the page, and the next stage; `peak` has words, number and unit."""
+    words, value, unit = peak
+    parts: Answer = {
+        "peak": (words, display.number(value, unit, DIGITS)),
+        "rows": _table(rows, beside),
+        "warnings": list(dict.fromkeys(warnings)),
+    }
+    parts |= {f"picture-{number}": one for number, one in enumerate(pictures, start=1)}
+    if verdict is not None:
+        level, words, lines = verdict.level, verdict.words, verdict.lines
+        parts["verdict"] = {"level": level, "words": words, "lines": lines}
     return {"parts": parts, "next": following}
 
 
-def _judged(verdict: Verdict) -> Answer:
-    """Return the verdict as a part of the page."""
-    return {"verdict": {"level": verdict.level, "words": verdict.words, "lines": verdict.lines}}
-
-
-def _selected(result: Printed, names: set[str]) -> list[tuple[str, str]]:
-    return [row for row in result._rows() if row[0] in names]
+def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
+    """Return some of the printed rows of a result, none of None."""
+    return [row for row in result._rows() if row[0] in names] if result else []
 
 
 def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
@@ -311,62 +306,49 @@ def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
     return rows
 
 
-def _rows(rows: Sequence[tuple[str, str]], bare: Sequence[tuple[str, str]] | None = None) -> str:
+def _table(rows: Rows, beside: Rows) -> str:
     """Return a table of numbers, those of a bare body beside them."""
-    beside = dict(bare or ())
-    lines = []
+    lines, bare = [], dict(beside)
     for name, text in rows:
-        other = f"<td>{html.escape(beside.get(name, ''))}</td>" if bare else ""
-        lines.append(f"<tr><th>{html.escape(name)}</th><td>{html.escape(text)}</td>{other}</tr>")
+        cells = (text, bare.get(name, "")) if bare else (text,)
+        texts = "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)
+        lines.append(f"<tr><th>{html.escape(name)}</th>{texts}</tr>")
     head = "<tr><th></th><th>coated</th><th>bare</th></tr>" if bare else ""
     return f"<table>{head}{''.join(lines)}</table>"
 
 
-def _figure(caption: str, drawing: str) -> str:
-    words = html.escape(caption)
-    drawing = drawing.replace("<svg", f"<svg role='img' aria-label='{words}'", 1)
+def _figure(picture: Picture) -> str:
+    """Return a picture with its caption, which is read out, too."""
+    words = html.escape(picture.caption)
+    drawing = picture.drawing.replace("<svg", f"<svg role='img' aria-label='{words}'", 1)
     return f"<figure>{drawing}<figcaption>{words}</figcaption></figure>"
 
 
-def _section(solution: Contact, axis: int | None = None) -> tuple[int, Field, Field]:
-    """Return the longer axis of a contact, or another, places along it and the pressure there."""
-    pressure = solution.pressure
-    if axis is None:
-        spans = [high - low for low, high in solution.contact_extent]
-        axis = int(spans[1] > spans[0]) if np.isfinite(spans).all() else 1
-        axis = 1 if pressure.shape[0] == 1 else axis
-    peak = np.unravel_index(pressure.argmax(), pressure.shape)
-    low, high = display.loaded_parts(pressure)[axis]
-    cells = slice(low, high + 1)
-    places = (solution.x, solution.y)[axis][cells]
-    return axis, places, np.take(pressure, peak[1 - axis], axis=1 - axis)[cells]
+def _drawn(caption: str, curves: Sequence[Curve], x: Axis, y: Axis) -> str:
+    """Return a picture of curves; one alone needs no label."""
+    named = curves if len(curves) > 1 else [one._replace(label="") for one in curves]
+    return _figure(Picture(caption, lines(named, (x, y))))
 
 
 def _pressures(
     solution: Contact, other: Contact | None, names: tuple[str, str] = ("coated", "bare")
 ) -> str:
     """Return the picture of the pressure along the longer side of a contact, and of another."""
-    axis, x, pressure = _section(solution)
-    curves = [Curve(x, pressure, "" if other is None else names[0])]
+    along_x, along_y = np.ptp(solution.contact_extent, axis=1)
+    axis = 0 if along_x >= along_y and not solution.grid.is_line else 1
+    x, pressure = section(solution, axis)
+    curves = [Curve(x, pressure, names[0])]
     if other is not None:
-        curves.append(Curve(*_section(other, axis)[1:], names[1], "dashed"))
-    drawing = lines(curves, (Axis("xy"[axis], "m"), Axis("pressure", "Pa")))
-    return _figure("Pressure through the largest.", drawing)
+        curves.append(Curve(*section(other, axis), names[1], "dashed"))
+    return _drawn("Pressure through the largest.", curves, Axis("xy"[axis], "m"), PRESSURE)
 
 
-def _stresses(solution: Contact, bare: Contact | None, keywords: Answer) -> str:
-    """Return the picture of the von Mises stress against depth, coated and bare."""
-    options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
-    return "".join(_figure(*one) for one in depth_pictures(solution, bare, **options))
-
-
-def _along_roller(solution: BearingSolution, aligned: BearingSolution | None) -> str:
+def _along_roller(*solutions: BearingSolution) -> str:
     """Return the picture of the pressure along the heaviest element, and of aligned rings."""
-    curves = [Curve(*_profile(solution), "as it stands" if aligned else "")]
-    if aligned is not None:
-        curves.append(Curve(*_profile(aligned), "aligned", "dashed"))
-    drawing = lines(curves, (Axis("x", "m"), Axis("pressure", "Pa")))
-    return _figure("Pressure along the heaviest element, inner ring.", drawing)
+    looks = (("as it stands", "line"), ("aligned", "dashed"))
+    curves = [Curve(*_profile(one), *look) for one, look in zip(solutions, looks, strict=False)]
+    caption = "Pressure along the heaviest element, inner ring."
+    return _drawn(caption, curves, Axis("x", "m"), PRESSURE)
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:
@@ -388,26 +370,22 @@ def _ring(solution: BearingSolution) -> str:
     loads = solution.loads.reshape(rows, count, 2)[:, :, 0].T
     angles = solution.angles.reshape(rows, count).T
     drawing = bars(angles, loads, Axis("load on the inner ring", "N"))
-    return _figure("Loads of the elements around the ring, x to the right.", drawing)
+    return _figure(Picture("Loads of the elements around the ring, x to the right.", drawing))
 
 
-def _loads(arguments: Answer, solution: IndentSolution, variable: str) -> str:
+def _loads(arguments: Answer, solution: IndentSolution) -> str:
     """Return the picture of load over depth, and of the film without a substrate."""
-    body = arguments["body"]
-    layers = body.layers if isinstance(body, core.HalfSpace) else []
-    curves = [Curve(solution.approach, solution.load, "on the substrate" if layers else "")]
-    if layers:
+    curves = [Curve(solution.approach, solution.load, "on the substrate")]
+    if layers := solution.body.layers:
         bare = solve_indentation(**arguments | {"body": core.HalfSpace(layers[0].material)})
         curves.append(Curve(bare.approach, bare.load, "film alone", "dashed"))
-    drawing = lines(curves, (Axis("depth", "m"), Axis("load", "N")))
-    return _figure("Load over depth.", drawing)
+    return _drawn("Load over depth.", curves, Axis("depth", "m"), Axis("load", "N"))
 
 
 def _moduli(reading: Reading) -> str:
     """Return the picture of the modulus that a bare film of each depth's load would have."""
-    curves = [
-        Curve(reading.depths, reading.moduli, "read as a bare film"),
-        Curve(reading.depths, np.full(reading.depths.size, reading.modulus), "film", "dashed"),
-    ]
-    drawing = lines(curves, (Axis("depth", "m"), Axis("apparent modulus", "Pa")))
-    return _figure("Apparent modulus over depth.", drawing)
+    depths, film = reading.depths, np.full_like(reading.moduli, reading.modulus)
+    curves = [Curve(depths, reading.moduli, "read as a bare film")]
+    curves.append(Curve(depths, film, "film", "dashed"))
+    x, y = Axis("depth", "m"), Axis("apparent modulus", "Pa")
+    return _drawn("Apparent modulus over depth.", curves, x, y)

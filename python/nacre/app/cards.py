@@ -2,63 +2,40 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
-import re
+import operator
 import tomllib
 from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from importlib import resources
 from typing import Any
 
 import numpy as np
 
 import nacre._core as core
 from nacre._tools.typing import AnyPath
-from nacre._tools.units import System
 from nacre.app.answer import NONE, Measured
-from nacre.app.fields import CARDS, Field, tidy
+from nacre.app.fields import LIMITS, Field, FieldError, field_of, keys_of, tidy
 from nacre.case import Case, CaseError, templates
-from nacre.case.bearing import UNITS
-from nacre.case.reference import place
 from nacre.case.results import files_of
-from nacre.results.quantities import BY_LAYER, INPUTS
 
 Data = dict[str, Any]
 
-CHANGES: dict[str, Data] = {
-    "bearing": {"bearing": {"raceway_diameters": None, "solve": {"cells": [80, 32]}}},
-    "contact": {"solve": {"max_cells": 65536}},
-    "roller": {"solve": {"max_cells": 65536}, "stress": {}},
-    "line": {"grid": {"cells": 1024}},
-    "cone": {"indent": {"approach": None}},
-}
-"""What cards have in place of what the templates have; None takes a key away."""
-LIMITS = ("yield_stress", "strength", "shear_yield")
-"""Keys of materials that may be empty."""
 FIRST = ("solve", "indent", "bearing", "body", "tip", "shape")
 """Tables whose numbers come first in a case of the command line."""
 MOST_FIELDS = 8
 """Largest number of main fields."""
-MOST_CELLS, MOST_LAYERS, MOST_ELEMENTS, MOST_STEPS = 65_536, 20, 200, 200
+MOST = {"cells": 65_536, "layers": 20, "elements": 200, "steps": 200}
 """Largest numbers of cells, of layers, of rolling elements, and of steps or indentations."""
 LOADS = 60
 """Number of loads of an indentation, whose depths are evenly spaced."""
-CHOSEN = ("solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width")
+CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width"}
 """Numbers of cells and sizes that cards choose."""
 MARGIN = 3.0
 """Width of the grid of a line contact over that of the contact on the softest of its materials."""
-
-
-DIMENSION = re.compile(r"\s*\[(N m|N/m|m²/N|Pa|m|N)\]")
-"""A unit in a text of the schema."""
-
-
-class FieldError(ValueError):
-    """A value that a field cannot have; `path` names the field."""
-
-    def __init__(self, path: str, message: str) -> None:
-        super().__init__(message)
-        self.path = path
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +50,9 @@ class Card:
     """What it is, in a menu."""
     base: Data
     """Case in which all fields have their defaults."""
-    fields: tuple[Field, ...]
+    fields: list[Field]
     """Main fields."""
-    more: tuple[Field, ...]
+    more: list[Field]
     """Fields of every other number."""
     measured: Measured = NONE
     """What was read from files at the start."""
@@ -85,97 +62,65 @@ class Card:
         """Fields by path."""
         return {one.path: one for one in (*self.fields, *self.more)}
 
-    @property
-    def units(self) -> str:
-        """Units of the case."""
-        return str(self.base.get("units", "SI"))
-
     def case(self, values: Mapping[str, object]) -> Case:
         """Return the case with the values of some fields, as they were typed."""
         data = self.base
         for path, typed in values.items():
             if (one := self.by_path.get(path)) is None:
                 raise FieldError(path, f"{path[:60]} is no field of this card")
-            data = set_value(data, one, number(one, typed))
+            data = with_value(data, one, one.number(typed))
         check_size(data)
         return Case(_adjusted(data) if self.name != "own" else data, self.name)
 
 
-def number(one: Field, typed: object) -> float | None:
-    """Return the number that was typed into a field, in its unit; None of an empty one."""
-    text = str(typed).strip().replace(",", ".").replace("−", "-")
-    if not text and one.may_be_empty:
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    unit = f" {one.unit}".rstrip()
-    if not (math.isfinite(value) and one.low <= value <= one.high):
-        is_free = not math.isfinite(one.high)
-        ends = f"between {_plain(one.low)} and {_plain(one.high)}"
-        limits = "a finite number" if is_free else ends
-        raise FieldError(one.path, f"{one.label} must be {limits}{unit}, got {_short(typed)}")
-    if one.is_count and value != round(value):
-        raise FieldError(one.path, f"{one.label} must be a whole number, got {_short(typed)}")
-    return value
-
-
-def _plain(value: float) -> str:
-    return np.format_float_positional(value, trim="-")
-
-
-def _short(typed: object) -> str:
-    return str(typed)[:40] or "nothing"
-
-
-def set_value(data: Data, one: Field, value: float | None) -> Data:
+def with_value(data: Data, one: Field, value: float | None) -> Data:
     """Return the data of a case with the value of a field, in the unit of the field."""
-    units = str(data.get("units", "SI"))
-    entry: float | list[float] | None = None if value is None else one.in_case(value, units)
-    if one.path == "indent.load" and isinstance(entry, float) and one.slides:
-        entry = [tidy(entry * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
-    parent, _, key = one.path.rpartition(".")
-    if key.endswith("]"):
-        return dict(core.with_value(data, one.path, entry))
-    table = {name: old for name, old in core.at(data, parent).items() if name != key}
-    return dict(core.with_value(data, parent, table if entry is None else table | {key: entry}))
+    entry: float | list[float] | None = None
+    if value is not None:
+        entry = one.in_case(value, data.get("units", "SI"))
+        if one.path == "indent.load" and one.slides:
+            entry = [tidy(entry * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
+    return _with_entry(data, one.path, entry)
+
+
+def _with_entry(data: Data, path: str, entry: object) -> Data:
+    """Return the data of a case with another entry at a path, or without one if it is None."""
+    data, (*places, key) = copy.deepcopy(data), keys_of(path)
+    table = functools.reduce(operator.getitem, places, data)
+    if entry is None:
+        table.pop(key, None)
+    else:
+        table[key] = entry
+    return data
 
 
 def check_size(data: Data) -> None:
     """Raise an error if a case is too large for the page."""
-    bearing, grid, indent = (data.get(name, {}) for name in ("bearing", "grid", "indent"))
-    singles = [bearing, *(bearing.get(name, {}) for name in ("first", "second"))]
-    bodies = [data.get(name, {}) for name in ("body", "counterbody")]
-    bodies += [body for one in singles for body in _bodies(one)]
-    steps = [indent.get(name, 0) for name in ("load", "approach", "radius")]
-    steps.append(data.get("slide", {}).get("steps", 0))
-    steps.append(worn := data.get("wear", {}).get("steps", 0))
-    shapes = [grid.get("shape", [0]), bearing.get("solve", {}).get("cells", [0])]
-    shapes += [data.get("shape", {}).get("shape", [0]), [grid.get("cells", 0)]]
-    shapes.append([data.get("solve", {}).get("max_cells", 0)])
-    sizes = {
-        "cells": (max(map(math.prod, shapes)), MOST_CELLS),
-        "layers": (max(len(body.get("layers", ())) for body in bodies), MOST_LAYERS),
-        "elements": (
-            max(one.get("count", 0) * one.get("rows", 1) for one in singles),
-            MOST_ELEMENTS,
-        ),
-        "steps": (
-            max(
-                worn if isinstance(worn, int) else 0,
-                *(len(one) if isinstance(one, list) else 0 for one in steps),
-            ),
-            MOST_STEPS,
-        ),
-    }
-    for name, (size, most) in sizes.items():
+    sizes = list(_sizes(data))
+    for name, most in MOST.items():
+        size = max((size for what, size in sizes if what == name), default=0)
         if size > most:
             raise CaseError(f"{name} must be at most {most} on the page, got {size:g}")
 
 
-def _bodies(bearing: Data) -> Iterator[Data]:
-    return (bearing.get(name, {}) for name in ("inner", "outer", "element"))
+def _sizes(data: object) -> Iterator[tuple[str, float]]:
+    """Yield the sizes of a case that take time, by what they are."""
+    if isinstance(data, list):
+        for one in data:
+            yield from _sizes(one)
+    for key, entry in data.items() if isinstance(data, dict) else ():
+        yield from _sizes(entry)
+        match key, entry:
+            case "shape" | "cells" | "max_cells", int() | float() | list():
+                yield "cells", math.prod(np.ravel(entry).tolist())
+            case "layers", list():
+                yield "layers", len(entry)
+            case "count", int() | float():
+                yield "elements", entry * data.get("rows", 1)
+            case "load" | "approach" | "radius" | "steps", list():
+                yield "steps", len(entry)
+            case "steps", int() | float():
+                yield "steps", entry
 
 
 def _adjusted(data: Data) -> Data:
@@ -184,41 +129,37 @@ def _adjusted(data: Data) -> Data:
     The grid is wide enough by Hertz's formula for the softest material.
     """
     if data.get("adhesion", {}).get("work") == 0:
-        return {key: value for key, value in data.items() if key != "adhesion"}
+        return _with_entry(data, "adhesion", None)
     if "width" not in data.get("grid", {}):
         return data
-    compliances = [(1 - one["poisson"] ** 2) / one["young"] for one in data["materials"].values()]
+    compliance = max((1 - one["poisson"] ** 2) / one["young"] for one in data["materials"].values())
     load, radius = data["solve"]["load"], data["shape"]["radius"]
-    width = MARGIN * 2 * math.sqrt(4 * load * radius * 2 * max(compliances) / math.pi)
-    return data | {"grid": data["grid"] | {"width": float(f"{width:.3g}")}}
+    width = MARGIN * 2 * math.sqrt(4 * load * radius * 2 * compliance / math.pi)
+    return _with_entry(data, "grid.width", float(f"{width:.3g}"))
 
 
 @functools.cache
 def cards() -> dict[str, Card]:
     """Return the cards of the templates by name."""
-    texts = templates.texts()
-    return {name: _card(name, tomllib.loads(texts[name])) for name in CARDS}
+    text = (resources.files(__package__) / "cards.toml").read_text("utf-8")
+    table = tomllib.loads(text)
+    return {name: _card(name, one, table["help"]) for name, one in table["cards"].items()}
 
 
-def _card(name: str, data: Data) -> Card:
-    group, title, fields = CARDS[name]
-    data = _merged(data, CHANGES.get(name, {}))
-    if name == "cone":
-        data["indent"]["load"] = 0.0  # which its field sets
+def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
+    """Return the card of a template, with other entries and without some."""
+    data = tomllib.loads(templates.texts()[name])
+    for path in entry.get("without", ()):
+        data = _with_entry(data, path, None)
+    for path, other in entry.get("changes", {}).items():
+        data = _with_entry(data, path, other)
     for layer in data.get("body", {}).get("layers", ()):
         layer["name"] = layer["material"]
-    for one in fields:
-        data = set_value(data, one, one.default)
-    return Card(name, group, title, data, fields, tuple(_others(data, fields)))
-
-
-def _merged(data: Data, changes: Data) -> Data:
-    """Return data with changed keys, in tables too; those of None are taken away."""
-    tables = {
-        key: _merged(data.get(key, {}), value) if isinstance(value, dict) else value
-        for key, value in changes.items()
-    }
-    return {key: value for key, value in (data | tables).items() if value is not None}
+    main = [field_of(data, helps=helps, **one) for one in entry["fields"]]
+    for one in main:
+        data = with_value(data, one, one.default)
+    more = _others(data, CHOSEN | {one.path for one in main})
+    return Card(name, entry["group"], entry["title"], data, main, more)
 
 
 def own_card(path: AnyPath) -> Card:
@@ -227,57 +168,32 @@ def own_card(path: AnyPath) -> Card:
     The page writes no file: neither that of a study, nor that of a history.
     """
     case = Case.read(path)
-    data: Data = {key: value for key, value in case.data.items() if key != "sweep"}
+    data = _with_entry(case.data, "sweep", None)
     if "wear" in data:
-        data["wear"] = {key: value for key, value in data["wear"].items() if key != "store"}
-    is_measured, measured = bool(case.measured()), NONE
-    if is_measured:
+        data = _with_entry(data, "wear.store", None)
+    measured = NONE
+    if case.measured():
         shape = case.arguments()["shape"]
         measured = Measured({"shape": shape}, {"shape": data["shape"]}, files_of(case))
         data["shape"] = {"kind": "sphere", "radius": 1.0}  # whose place the measured one takes
-    if case.kind in ("contact", "wear") and "grid" not in data and not is_measured:
-        data["solve"] = {"max_cells": MOST_CELLS} | data["solve"]
+    elif case.kind in ("contact", "wear") and "grid" not in data:
+        data["solve"] = {"max_cells": MOST["cells"]} | data["solve"]
     check_size(data)
-    others = (one for one in _others(data, ()) if one.path.partition(".")[0] not in measured.tables)
-    order = sorted(others, key=lambda one: _rank(one.path))
-    fields, more = tuple(order[:MOST_FIELDS]), tuple(order[MOST_FIELDS:])
-    return Card("own", "own file", case.name, data, fields, more, measured)
+    fields = _others(data, measured.tables.keys())
+    ranks = {table: rank for rank, table in enumerate(FIRST)}
+    fields.sort(key=lambda one: ranks.get(one.path.partition(".")[0], len(ranks)))
+    main, more = fields[:MOST_FIELDS], fields[MOST_FIELDS:]
+    return Card("own", "own file", case.name, data, main, more, measured)
 
 
-def _rank(path: str) -> int:
-    table = path.partition(".")[0]
-    return FIRST.index(table) if table in FIRST else len(FIRST)
-
-
-def _others(data: Data, fields: tuple[Field, ...]) -> Iterator[Field]:
-    """Yield fields of all numbers that are not in others, and of limits that are missing."""
-    paths = {one.path for one in fields} | (set(CHOSEN) if fields else set())
-    for path, value in core.numbers(data):
-        if not {path, path.rpartition("[")[0]} & paths:
-            yield _field(data, path, value)
+def _others(data: Data, left: AbstractSet[str]) -> list[Field]:
+    """Return fields of all numbers, and of limits that are missing, but for some paths."""
+    paths = [path for path, _ in core.numbers(data)]
     for name, table in data.get("materials", {}).items():
-        for key in LIMITS if isinstance(table, dict) else ():
-            if key not in table and f"materials.{name}.{key}" not in paths:
-                yield _field(data, f"materials.{name}.{key}", None)
-
-
-def _field(data: Data, path: str, value: float | None) -> Field:
-    """Return the field of a number, with the unit and the text of the schema."""
-    keys = [int(key) if key.isdigit() else key for key in re.findall(r"[^.\[\]]+", path)]
-    names = [key for key in keys if isinstance(key, str)]
-    node = place(data, keys).node
-    text = " ".join(str(node.get("description", "")).split())
-    is_part = len(names) > 1 and (names[-1] in "xyz" or names[-2] in BY_LAYER)
-    last = names[-2] if is_part else names[-1]
-    dimension = (DIMENSION.findall(text) or [UNITS.get(".".join(names[-2:]))])[0]
-    dimension = dimension or UNITS.get(last) or INPUTS.get(last, "")
-    unit = System(str(data.get("units", "SI"))).unit(dimension)[1] if dimension else ""
-    return Field(
-        path,
-        " ".join(map(str, keys[1:])).replace("_", " ") or path,
-        unit,
-        value,
-        help=DIMENSION.sub("", text),
-        may_be_empty=names[-1] in LIMITS,
-        is_count="integer" in (node.get("type"), node.get("items", {}).get("type")),
-    )
+        if isinstance(table, dict):
+            paths += [f"materials.{name}.{key}" for key in LIMITS]
+    return [
+        field_of(data, path)
+        for path in dict.fromkeys(paths)
+        if left.isdisjoint({path, path.rpartition("[")[0], path.partition(".")[0]})
+    ]

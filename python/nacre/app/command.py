@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from nacre.app.cards import cards, own_card
-from nacre.app.server import Server, open_server
+from nacre.app.server import open_server
 from nacre.case.commands import Command
 from nacre.case.commands import app as commands
 
@@ -31,23 +31,16 @@ def app(
     port: Annotated[
         int, typer.Option(metavar="PORT", min=1, max=65535, help="Port, if it is free.")
     ] = PORT,
-    browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
-    ] = True,
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open a page for bearings, contacts and indentations, on this computer alone, until Ctrl-C."""
     own = {} if case is None else {"own": own_card(case)}
-    server = open_server(port, {**cards(), **own})
+    server = open_server(port, cards() | own)
     if server.server_port != port:
         print(f"port {port} is taken: {server.server_port} in its place")
     print(f"nacre is at {server.url}; Ctrl-C ends it", flush=True)
     if browser:
         Timer(0.2, webbrowser.open, [server.url + ("#card=own" if own else "")]).start()
-    _serve(server)
-
-
-def _serve(server: Server) -> None:
-    """Serve until Ctrl-C, which ends at once whatever is computed."""
     try:
         server.serve_forever()
     except KeyboardInterrupt:

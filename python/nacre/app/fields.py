@@ -1,12 +1,20 @@
-"""Fields of the page's cards: what they change, in which unit, and where the number is found."""
+"""Fields of the page's cards: numbers of a case as they are typed, in units of their own."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
+import re
+from collections.abc import Callable, Mapping
+from functools import reduce
+from operator import getitem
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from nacre._tools.units import System, size_of
+from nacre.case.bearing import UNITS
+from nacre.case.reference import place
+from nacre.results.quantities import BY_LAYER, INPUTS
 
 SCALES: dict[str, Callable[[float], float]] = {
     "1/min": lambda value: value * 2 * math.pi / 60,
@@ -14,6 +22,18 @@ SCALES: dict[str, Callable[[float], float]] = {
     "°": math.radians,
 }
 """Numbers of a case by those in units that no system has: rad/s, slopes and radians."""
+LIMITS = ("yield_stress", "strength", "shear_yield")
+"""Keys of materials that may be empty."""
+DIMENSION = re.compile(r"\s*\[(N m|N/m|m²/N|Pa|m|N)\]")
+"""A unit in a text of the schema."""
+
+
+class FieldError(ValueError):
+    """A value that a field cannot have; `path` names the field."""
+
+    def __init__(self, path: str, message: str) -> None:
+        super().__init__(message)
+        self.path = path
 
 
 class Field(NamedTuple):
@@ -23,9 +43,9 @@ class Field(NamedTuple):
     """Path of the number in the case."""
     label: str
     """What it is."""
-    unit: str
+    unit: str = ""
     """Unit in which it is typed."""
-    default: float | None
+    default: float | None = None
     """Number at the start; None of an empty field."""
     low: float = -math.inf
     """Smallest number."""
@@ -40,23 +60,48 @@ class Field(NamedTuple):
     is_count: bool = False
     """Whether it is a whole number."""
 
-    def in_case(self, value: float, units: str) -> float:
-        """Return a number of the field in the units of a case."""
-        if self.is_count:
-            return round(value)
-        if (scale := SCALES.get(self.unit)) is not None:
-            return scale(value)
-        return tidy(value * self.size / System(units).unit(self.dimension)[0])
-
-    @property
-    def dimension(self) -> str:
-        """SI unit of the number."""
-        return (size_of(self.unit) or ("", 1.0))[0]
-
     @property
     def size(self) -> float:
         """Size of the unit in SI."""
         return (size_of(self.unit) or ("", 1.0))[1]
+
+    def number(self, typed: object) -> float | None:
+        """Return the number that was typed, in the unit of the field; None of an empty one."""
+        text = str(typed).strip().replace(",", ".").replace("−", "-")
+        if not text and self.may_be_empty:
+            return None
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        low, high = (np.format_float_positional(end, trim="-") for end in (self.low, self.high))
+        must = f"between {low} and {high}" if math.isfinite(self.high) else "a finite number"
+        must = f"{must} {self.unit}".rstrip()
+        if math.isfinite(value) and self.low <= value <= self.high:
+            if not self.is_count or value == round(value):
+                return value
+            must = "a whole number"
+        raise FieldError(
+            self.path, f"{self.label} must be {must}, got {str(typed)[:40] or 'nothing'}"
+        )
+
+    def in_case(self, value: float, units: str) -> float:
+        """Return a number of the field in the units of a case."""
+        if self.is_count:
+            return round(value)
+        if self.unit in SCALES:
+            return SCALES[self.unit](value)
+        return tidy(value * self._factor(units))
+
+    def typed(self, entry: object, units: str) -> float | None:
+        """Return an entry of a case, the largest of a list, in the unit of the field."""
+        largest = max(entry) if isinstance(entry, list) else entry
+        return None if largest is None else tidy(largest / self._factor(units))
+
+    def _factor(self, units: str) -> float:
+        """Return the size of the unit in that of a case."""
+        dimension, size = size_of(self.unit) or ("", 1.0)
+        return size / System(units).unit(dimension)[0]
 
 
 def tidy(value: float) -> float:
@@ -64,127 +109,39 @@ def tidy(value: float) -> float:
     return float(f"{value:.12g}")
 
 
-YOUNG = "Young's modulus; a material of the list fills it with its source"
-YIELD = "0.2 % offset; of hardened bearing steel some 2000 MPa; empty if unknown"
-STRENGTH = (
-    "tension at which the coating cracks; empty if unknown: the verdict then says what it must bear"
-)
-LENGTH = "effective length of a roller, without its chamfers; catalogue L_we"
-CLEARANCE = "diametral clearance when mounted; ISO 5753 gives ranges by class"
-TILT = "angle between the rings; 1′ is 0.29 mm per metre"
-FRICTION = "coefficient of friction: traction over pressure; 0 without sliding"
+def keys_of(path: str) -> list[Any]:
+    """Return the keys and the numbers in lists along a path."""
+    return [int(key) if key.isdigit() else key for key in re.findall(r"[^.\[\]]+", path)]
 
 
-def _coating(
-    young: float, thickness: float, strength: float | None, yield_stress: float
-) -> tuple[Field, ...]:
-    return (
-        Field("body.layers[0].thickness", "coating thickness", "µm", thickness, 0.1, 50, "log"),
-        Field("materials.coating.young", "coating modulus", "GPa", young, 1, 1000, "log", YOUNG),
-        Field(
-            *("materials.coating.strength", "coating strength", "MPa", strength, 1, 1e5, ""),
-            *(STRENGTH, True),
-        ),
-        Field("materials.steel.young", "substrate modulus", "GPa", 210, 1, 700, "", YOUNG),
-        Field(
-            *("materials.steel.yield_stress", "substrate yield stress", "MPa", yield_stress),
-            *(1, 1e5, ""),
-            *(YIELD, True),
-        ),
-    )
+def entry_at(data: object, path: str) -> Any:
+    """Return the entry of a case at a path, or None."""
+    try:
+        return reduce(getitem, keys_of(path), data)
+    except LookupError:
+        return None
 
 
-def _film(
-    thickness: float, young: float, poisson: float, base: str, *of_base: float
-) -> tuple[Field, ...]:
-    body = f"materials.{base}"
-    return (
-        Field("body.layers[0].thickness", "film thickness", "nm", thickness, 10, 1e4, "log"),
-        Field("materials.film.young", "film modulus", "GPa", young, 0.01, 1000, "log", YOUNG),
-        Field("materials.film.poisson", "film Poisson's ratio", "", poisson, 0, 0.499),
-        Field(f"{body}.young", "substrate modulus", "GPa", of_base[0], 0.01, 1000, "", YOUNG),
-        Field(f"{body}.poisson", "substrate Poisson's ratio", "", of_base[1], 0, 0.499),
-    )
+def field_of(
+    data: Mapping[str, Any], path: str, helps: Mapping[str, str] | None = None, **own: Any
+) -> Field:
+    """Return the field of a number of a case: as the schema has it, but for what is its `own`.
 
-
-def _speed(default: float = 1500) -> Field:
-    return Field("bearing.solve.speed", "speed", "1/min", default, 1, 1e5)
-
-
-BEARING = (
-    Field("bearing.count", "rollers", "", 16, 3, 200, is_count=True),
-    Field("bearing.diameter", "roller diameter", "mm", 11, 1, 200),
-    Field("bearing.length", "roller length", "mm", 12, 1, 300, "", LENGTH),
-    Field("bearing.pitch_diameter", "pitch diameter", "mm", 65.5, 5, 2000),
-    Field("bearing.clearance", "clearance", "µm", 45, -50, 500, "", CLEARANCE),
-    Field("bearing.solve.force.x", "radial load", "kN", 10, 0.1, 1000, "log"),
-    Field("bearing.solve.tilt.y", "misalignment", "′", 2, 0, 10, "linear", TILT),
-    _speed(),
-)
-BALL_BEARING = (
-    Field("bearing.count", "balls", "", 9, 3, 200, is_count=True),
-    Field("bearing.diameter", "ball diameter", "mm", 7.94, 0.5, 200),
-    Field("bearing.pitch_diameter", "pitch diameter", "mm", 39.04, 3, 2000),
-    Field("bearing.clearance", "clearance", "µm", 12, -50, 500, "", CLEARANCE),
-    Field(
-        *("bearing.osculation[0]", "groove radius over ball diameter", "", 0.52, 0.505, 0.6, ""),
-        "of the inner ring; 0.52 is usual",
-    ),
-    Field("bearing.solve.force.x", "radial load", "kN", 3, 0.01, 1000, "log"),
-    Field("bearing.solve.force.z", "axial load", "kN", 1, 0, 1000, "log"),
-    _speed(),
-)
-CONTACT = (
-    Field("shape.radius", "ball radius", "mm", 5, 0.01, 1000),
-    Field("solve.load", "load", "N", 20, 0.001, 1e6, "log"),
-    Field("stress.friction", "friction", "", 0.1, 0, 1, "", FRICTION),
-    *_coating(259, 2, None, 2200),
-)
-ROLLER = (
-    Field("shape.radius", "roller radius", "mm", 5, 0.1, 1000),
-    Field("shape.flat_length", "flat length", "mm", 8, 0.1, 300, "", "straight part of the roller"),
-    Field("shape.crown_radius", "crown radius", "mm", 300, 10, 1e5, "", "radius of its ends"),
-    Field("solve.load", "load", "N", 500, 0.1, 1e6, "log"),
-    Field(
-        *("solve.eccentricity.x", "eccentricity", "mm", 0.3, 0, 100, ""),
-        "distance of the load from the middle of the roller, which tilts it",
-    ),
-    *(
-        one
-        for one in _coating(300, 3, None, 2200)
-        if "strength" not in one.path and "steel.young" not in one.path
-    ),
-)
-LINE = (
-    Field("shape.radius", "cylinder radius", "mm", 10, 0.01, 1e4),
-    Field("solve.load", "load per length", "N/mm", 100, 0.01, 1e5, "log"),
-    Field("stress.friction", "friction", "", 0.1, 0, 1, "", FRICTION),
-    *_coating(300, 3, 1500, 2000),
-)
-SPHERE = (
-    Field("tip.radius", "tip radius", "µm", 5, 0.01, 1000),
-    Field("indent.load", "largest load", "mN", 1, 1e-4, 1000, "log"),
-    *_film(1000, 3, 0.4, "glass", 70, 0.22),
-    Field(
-        *("adhesion.work", "work of adhesion", "mJ/m²", 0, 0, 500, ""),
-        "energy to part the surfaces, over their area; some 50 mJ/m² of clean polymers",
-    ),
-)
-CONE = (
-    Field(
-        *("tip.half_angle", "half angle", "°", 70.25, 10, 89, ""),
-        "between axis and flank; 70.3° has as much area at each depth as Berkovich's pyramid",
-    ),
-    Field("indent.load", "largest load", "mN", 1, 1e-4, 1000, "log"),
-    *_film(500, 100, 0.25, "silicon", 170, 0.22),
-)
-CARDS = {
-    "bearing": ("Bearing", "cylindrical roller bearing", BEARING),
-    "ball-bearing": ("Bearing", "deep-groove ball bearing", BALL_BEARING),
-    "contact": ("Coated contact", "ball", CONTACT),
-    "roller": ("Coated contact", "roller", ROLLER),
-    "line": ("Coated contact", "line", LINE),
-    "indentation": ("Indentation", "sphere", SPHERE),
-    "cone": ("Indentation", "cone", CONE),
-}
-"""Group, title and main fields of the cards, by their templates."""
+    `helps`, by names of quantities, are in place of the texts of the schema.
+    """
+    keys, units = keys_of(path), data.get("units", "SI")
+    *_, outer, name = ["", *(key for key in keys if isinstance(key, str))]
+    quantity = outer if name in ("x", "y", "z") or outer in BY_LAYER else name
+    node = place(data, keys).node
+    text = " ".join(str(node.get("description", "")).split())
+    by_name = UNITS.get(f"{outer}.{name}") or (INPUTS | UNITS).get(quantity, "")
+    one = Field(
+        path,
+        label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
+        unit=System(units).unit((DIMENSION.findall(text) or [by_name])[0])[1],
+        help=DIMENSION.sub("", text) if helps is None else helps.get(quantity, ""),
+        may_be_empty=name in LIMITS,
+        is_count="integer" in (node.get("type"), node.get("items", {}).get("type")),
+    )._replace(**own)
+    default = one.typed(entry_at(data, path), units)
+    return one._replace(**({"default": default} | own))

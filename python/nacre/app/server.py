@@ -8,14 +8,16 @@ import threading
 import time
 import warnings
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
+from typing import Any
 
 import nacre
 from nacre.app.answer import STAGES, Answer, Going, Stopped, answer
-from nacre.app.cards import Card, FieldError
+from nacre.app.cards import Card
+from nacre.app.fields import FieldError
 from nacre.app.page import files
 from nacre.case import CaseError
 
@@ -30,6 +32,10 @@ LANE = 2
 """Number of drafts, and of other answers, at a time."""
 SECONDS = 30.0
 """Longest time of an answer, and of a connection without a question."""
+QUESTION = {"card": str, "values": dict, "stage": str, "page": str, "age": int}
+"""Parts of a question, and their types."""
+STAGES_AT = {"/answer": (*STAGES, "case"), "/report": ("report",)}
+"""Stages that may be asked for, by path."""
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -42,11 +48,7 @@ HEADERS = {
 
 
 class Refused(Exception):
-    """A request that is refused, with the code of HTTP."""
-
-    def __init__(self, code: int, message: str) -> None:
-        super().__init__(message)
-        self.code = code
+    """A request that is refused: the code of HTTP, and why."""
 
 
 class Server(ThreadingHTTPServer):
@@ -94,21 +96,12 @@ class Server(ThreadingHTTPServer):
 
         return is_wanted
 
-    def reply(self, question: Mapping[str, object], stages: tuple[str, ...]) -> Answer:
+    def reply(self, question: Mapping[str, Any]) -> Answer:
         """Return the answer to a question."""
-        stage, values = question.get("stage"), question.get("values", {})
-        card = self.cards.get(str(question.get("card")))
-        page, age = str(question.get("page"))[:60], question.get("age", 0)
-        if not (
-            card is not None
-            and (isinstance(stage, str) and stage in stages)
-            and isinstance(values, dict)
-            and (isinstance(age, int | float) and not isinstance(age, bool))
-        ):
-            raise Refused(400, "no such question")
-        going = self.going(page, age)
+        card, stage = self.cards[question["card"]], question["stage"]
+        going = self.going(question["page"][:60], question["age"])
         try:
-            case = card.case(values)
+            case = card.case(question["values"])
             with self.lane(stage == "draft", going):
                 return answer(case, stage, going, card.measured)
         except FieldError as error:
@@ -135,24 +128,16 @@ class Handler(BaseHTTPRequestHandler):
     """Requests: three files and two questions."""
 
     server: Server
-    protocol_version = "HTTP/1.1"
+    protocol_version, server_version, sys_version = "HTTP/1.1", "nacre", ""
     timeout = SECONDS
 
     def do_GET(self) -> None:
-        """Send a file of the page."""
-        self._answered(self._file)
-
-    def do_POST(self) -> None:
-        """Send an answer."""
-        self._answered(self._reply)
-
-    def _answered(self, make: Callable[[], tuple[str, bytes]]) -> None:
+        """Send a file of the page, or the answer to a question."""
         try:
-            self._check_origin()
-            code, (kind, body) = 200, make()
-        except Refused as error:
-            code, kind, body = error.code, "text/plain", str(error).encode()
-            self.close_connection = True  # its body is not read
+            code, (kind, body) = 200, self._content()
+        except Refused as refusal:
+            code, (kind, body) = refusal.args[0], ("text/plain", refusal.args[1].encode())
+            self.close_connection = True  # the rest of the request is not read
         self.send_response(code)
         self.send_header("Content-Type", f"{kind}; charset=utf-8")
         self.send_header("Content-Length", str(len(body)))
@@ -161,27 +146,23 @@ class Handler(BaseHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(body)
 
-    def _check_origin(self) -> None:
-        """Refuse what another site could have sent."""
+    do_POST = do_GET
+
+    def _content(self) -> tuple[str, bytes]:
+        """Return type and content of what was asked for; what another site asks is refused."""
         if self.headers.get("Host") not in self.server.hosts:
             raise Refused(400, "Host must be that of this page")
         origin = self.headers.get("Origin")
         if origin is not None and origin.removeprefix("http://") not in self.server.hosts:
             raise Refused(403, "Origin must be this page")
+        if self.command == "GET" and self.path in self.server.files:
+            return self.server.files[self.path]
+        if self.command == "POST" and self.path in STAGES_AT:
+            reply = self.server.reply(self._question(STAGES_AT[self.path]))
+            return "application/json", json.dumps(reply, allow_nan=False).encode()
+        raise Refused(404, "there is no such page")
 
-    def _file(self) -> tuple[str, bytes]:
-        if self.path not in self.server.files:
-            raise Refused(404, "there is no such page")
-        return self.server.files[self.path]
-
-    def _reply(self) -> tuple[str, bytes]:
-        stages = {"/answer": (*STAGES, "case"), "/report": ("report",)}.get(self.path)
-        if stages is None:
-            raise Refused(404, "there is no such page")
-        reply = self.server.reply(self._question(), stages)
-        return "application/json", json.dumps(reply, allow_nan=False).encode()
-
-    def _question(self) -> dict[str, object]:
+    def _question(self, stages: Collection[str]) -> dict[str, Any]:
         """Return the question in the body of a request."""
         if self.headers.get_content_type() != "application/json":
             raise Refused(400, "Content-Type must be application/json")
@@ -191,11 +172,17 @@ class Handler(BaseHTTPRequestHandler):
         if int(length[:9]) > MOST_BYTES or len(length) > 9:
             raise Refused(413, f"a question has at most {MOST_BYTES} bytes")
         try:
-            question = json.loads(self.rfile.read(int(length)), parse_constant=_no_number)
+            # NaN and infinities, which are no JSON, are no integers either.
+            question = json.loads(self.rfile.read(int(length)), parse_constant=int)
         except (ValueError, RecursionError):
             raise Refused(400, "a question is JSON") from None
-        if not isinstance(question, dict):
-            raise Refused(400, "a question is a table")
+        if not (
+            isinstance(question, dict)
+            and {key: type(value) for key, value in question.items()} == QUESTION
+            and question["card"] in self.server.cards
+            and question["stage"] in stages
+        ):
+            raise Refused(400, "no such question")
         return question
 
     def end_headers(self) -> None:
@@ -204,16 +191,8 @@ class Handler(BaseHTTPRequestHandler):
             self.send_header(name, value)
         super().end_headers()
 
-    def version_string(self) -> str:
-        """Return the name of the server."""
-        return "nacre"
-
     def log_message(self, format: str, *args: object) -> None:
         """Write no log."""
-
-
-def _no_number(text: str) -> float:
-    raise ValueError(text)
 
 
 def open_server(port: int, cards: Mapping[str, Card]) -> Server:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from nacre._tools.units import plain
 from nacre.results import display
@@ -13,6 +13,7 @@ from nacre.results.verdict import (
     DIGITS,
     NO_LIMIT,
     UNCONVERGED,
+    Demand,
     Verdict,
     beside,
     level_of,
@@ -37,7 +38,7 @@ BARE = "Layers are not counted in the life: it is that of bare rings."
 def life_verdict(life: BearingLife) -> Verdict:
     """Return the verdict on a life, of which nothing is required."""
     lines = ("No limit given: no life is required.",)
-    return Verdict("unknown", _lives(life), lines, None, None, None)
+    return Verdict("unknown", _lives(life), lines)
 
 
 @display.in_si
@@ -45,18 +46,25 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     """Return the verdict on a bearing: its largest pressure decides."""
     lives = _lives(solution.life())
     bare = [BARE] if solution.bearing.layered else []
-    peak, edge = (_Pressure.of(solution, name) for name in ("peak_pressure", "edge_pressure"))
+    errors = solution.report.discretisation or {}
+    peak, edge = (
+        Demand("", "", getattr(solution, name), errors.get(name))
+        for name in ("peak_pressure", "edge_pressure")
+    )
     if not peak.value > 0:
-        return Verdict("unknown", lives, tuple(bare), None, None, None)
+        return Verdict("unknown", lives, tuple(bare))
     factor = solution.bearing.standards.static_pressure / peak.value
-    level = level_of(factor, peak.share)
-    pressure, has_edge_stress = _compared(peak, factor), edge.largest >= peak.value
+    level, pressure = level_of(factor, peak.share), _compared(peak, factor)
     sentences = [pressure, lives] if level == "bad" else [lives, pressure]
+    has_edge_stress = edge.value + (edge.error or 0.0) >= peak.value
     if not math.isnan(edge.value):
-        sentences.append(_beside_peak(edge, peak))
-    if not peak.is_known:
+        ratio = plain(edge.value / peak.value, DIGITS)
+        words = "edge stress" if has_edge_stress else "no edge stress"
+        sentences.append(f"Edge {measured(edge.value, edge.error)}, {ratio} of the peak: {words}.")
+    is_known = errors.get("peak_pressure", 0.0) is not None
+    if not is_known:
         sentences.append(f"{NO_LIMIT[0].upper()}{NO_LIMIT[1:]}." if solution._sharp else UNKNOWN)
-    if level == "good" and (has_edge_stress or not peak.is_known):
+    if level == "good" and (has_edge_stress or not is_known):
         level = "fair"
     if not solution.report.converged:
         level, sentences = "unknown", [f"Cannot tell: {UNCONVERGED}.", *sentences]
@@ -75,31 +83,6 @@ def pair_verdict(bearings: Mapping[str, BearingSolution]) -> Verdict:
     return replace(worst, words=words, lines=tuple(lines), decided_by=decided_by)
 
 
-class _Pressure(NamedTuple):
-    """A largest pressure and its estimated error."""
-
-    value: float
-    error: float | None
-    is_known: bool
-    """Whether it has an error that is known, or none is estimated at all."""
-
-    @classmethod
-    def of(cls, solution: BearingSolution, name: str) -> _Pressure:
-        """Return a pressure of a bearing."""
-        errors = solution.report.discretisation or {}
-        return cls(getattr(solution, name), errors.get(name), errors.get(name, 0.0) is not None)
-
-    @property
-    def share(self) -> float | None:
-        """Error as a share of the value."""
-        return None if self.error is None else self.error / self.value
-
-    @property
-    def largest(self) -> float:
-        """Value with its error."""
-        return self.value + (self.error or 0.0)
-
-
 def _lives(life: BearingLife) -> str:
     """Return how long a bearing lives, in hours where it turns."""
     if not math.isfinite(life.revolutions):
@@ -115,20 +98,9 @@ def _lives(life: BearingLife) -> str:
     return f"Lives {plain(life.hours, DIGITS)} h ({name} {turns} at {rate}/min; {basis})."
 
 
-def _compared(peak: _Pressure, factor: float) -> str:
+def _compared(peak: Demand, factor: float) -> str:
     """Return the largest pressure against that of the static rating."""
-    limit = f"the {beside(peak.value, factor * peak.value)} of ISO 76"
-    comparisons = (
-        f"above {limit} ({times(factor)})",
-        f"about {limit} ({times(factor)})",
-        f"{times(factor)} below {limit}",
-    )
+    limit, ratio = f"the {beside(peak.value, factor * peak.value)} of ISO 76", times(factor)
+    comparisons = f"above {limit} ({ratio})", f"about {limit} ({ratio})", f"{ratio} below {limit}"
     comparison = comparisons[outcome_of(factor, peak.share)]
     return f"Peak pressure {measured(peak.value, peak.error)}, {comparison}."
-
-
-def _beside_peak(edge: _Pressure, peak: _Pressure) -> str:
-    """Return the pressure at the edges of rollers against the peak."""
-    words = "edge stress" if edge.largest >= peak.value else "no edge stress"
-    ratio = plain(edge.value / peak.value, DIGITS)
-    return f"Edge {measured(edge.value, edge.error)}, {ratio} of the peak: {words}."

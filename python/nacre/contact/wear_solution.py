@@ -466,7 +466,7 @@ class WearHistory(Result):
             words = f"{'No layer is through' if has_layers else 'Worn'} after {end}"
             words += f": {deepest} {'worn ' if has_layers else ''}at most."
             level: Level = "good" if has_layers and self.report.converged else "unknown"
-            return Verdict(level, words, (), None, None, None)
+            return Verdict(level, words)
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
         words = (

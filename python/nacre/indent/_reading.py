@@ -69,7 +69,7 @@ def apparent_modulus(solution: IndentSolution) -> Reading | None:
 def substrate_verdict(reading: Reading | None) -> Verdict:
     """Return whether the largest depth tells the modulus of the film."""
     if reading is None:
-        return Verdict("unknown", "Cannot tell: there is no film.", (), None, None, None)
+        return Verdict("unknown", "Cannot tell: there is no film.")
     ratio = float(reading.moduli[-1]) / reading.modulus
     error = abs(ratio - 1)
     level: Level = "good" if error <= GOOD else "fair" if error <= FAIR else "bad"

@@ -26,7 +26,7 @@ def fit_verdict(fit: Fit) -> Verdict:
     """Return the verdict on a fit: the least certain parameter decides."""
     shares = {name: _share(fit, name) for name in dict.fromkeys((*fit.free, *fit.reasons))}
     if not shares:
-        return Verdict("unknown", "No parameter was fitted.", (), None, None, None)
+        return Verdict("unknown", "No parameter was fitted.")
     worst, *others = sorted(shares, key=lambda name: -shares[name])
     share, owners = shares[worst], dict(_owners(fit))
     level: Level = "bad" if share > FAIR else "fair" if share > GOOD or fit.warnings else "good"

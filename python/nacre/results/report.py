@@ -7,7 +7,6 @@ stands in its `Sections`; what they have in common is made here.
 from __future__ import annotations
 
 import datetime
-import html
 import math
 import re
 import warnings
@@ -21,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.markup import Markup, Parts, text_of
 from nacre._tools.units import rounded, symbol
 from nacre.results import display, svg, tables
 from nacre.results.quantities import INPUTS, Quantity
@@ -29,10 +29,9 @@ from nacre.results.values import encode
 if TYPE_CHECKING:
     from nacre.results.verdict import Verdict
 
+Array = npt.NDArray[np.float64]
 Rows = Sequence[tuple[str, str]]
 
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-"""What a browser may load for a page: nothing from elsewhere."""
 MOST_ROWS = 300
 """Largest number of rows of a table that stand in a page."""
 MOST_LISTED = 12
@@ -51,24 +50,7 @@ AXIS = re.compile(r"\b[xyz](?= \[|$)")
 """The axis in the heading of a component."""
 BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", "Grid", "Grid.line"}
 """Classes that need no row of their own among the inputs."""
-STYLE = (
-    "@page{size:A4;margin:16mm}"
-    "body{font:10.5pt/1.4 sans-serif;color:#222;max-width:178mm;margin:8mm auto;padding:0 4mm}"
-    "h1{font-size:17pt;margin:0}h3{font-size:10.5pt;margin:4mm 0 1mm}"
-    "h2{font-size:12.5pt;margin:7mm 0 2mm;border-bottom:1px solid #999;break-after:avoid}"
-    "table{border-collapse:collapse;font-size:9pt}tr,figure{break-inside:avoid}"
-    "td,th{white-space:nowrap;text-align:left;padding:1px 10px 1px 0;vertical-align:top}"
-    ".long td+td{white-space:normal;overflow-wrap:anywhere}"
-    ".number{margin-bottom:3mm;font-size:8pt}.number td+td,.number th+th{text-align:right}"
-    ".number th{white-space:normal;vertical-align:bottom}"
-    ".verdict{border-left:5px solid #888;padding:1mm 3mm;margin:4mm 0}"
-    ".good{border-color:#2a7d3f}.fair{border-color:#c98a00}.bad{border-color:#b3261e}"
-    ".sign td{border-bottom:1px solid #222;width:60mm;height:11mm;vertical-align:bottom}"
-    ".pictures{display:flex;flex-wrap:wrap;gap:4mm}figure{margin:0;width:86mm}"
-    "figcaption{font-size:9pt}pre{white-space:pre-wrap;font-size:8.5pt;overflow-wrap:anywhere}"
-    + svg.STYLE
-)
-"""Style sheet of the page, for A4."""
+markup = Parts(text_of("nacre.results", "report.html"))
 
 
 class Picture(NamedTuple):
@@ -115,14 +97,10 @@ class Reported(Protocol):
 
 
 def write(
-    path: Path,
-    results: Sequence[Reported],
-    case: str | None = None,
-    inputs: Rows = (),
-    stress: Mapping[str, object] | None = None,
+    path: Path, results: Sequence[Reported], case: str | None = None, inputs: Rows = ()
 ) -> None:
     """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
-    path.write_text(text(path.stem, results, case, inputs, stress), encoding="utf-8")
+    path.write_text(text(path.stem, results, case, inputs), encoding="utf-8")
 
 
 def text(
@@ -171,38 +149,40 @@ def page(
     case: str | None = None,
 ) -> str:
     """Return the page of a report."""
-    title = html.escape(parts[0].title[:1].upper() + parts[0].title[1:])
-    version = html.escape(core.__version__)
-    head = [("case", name), ("date", date), ("computed by", f"nacre {core.__version__}")]
-    texts = list(dict.fromkeys(text for part in parts for text in part.warnings))
     several = sum(bool(part.title) for part in parts) > 1
 
-    def each(name: str, block: Callable[..., str]) -> str:
-        blocks = [(part.title, block(getattr(part, name))) for part in parts if getattr(part, name)]
-        return "".join(
-            (f"<h3>{html.escape(words)}</h3>" if several and words else "") + text
-            for words, text in blocks
-        )
+    def each(name: str, block: Callable[..., object]) -> list[Markup]:
+        """Return a block of each part, with its title where there are several."""
+        return [
+            markup("part", title=_heading(part.title * several), content=block(content))
+            for part in parts
+            if (content := getattr(part, name))
+        ]
 
+    warnings = dict.fromkeys(text for part in parts for text in part.warnings)
     chapters = {
         "Given": each("inputs", _pairs),
         "Results": each("numbers", _pairs),
         "Pictures": each("pictures", _figures),
-        "Parts": each("tables", lambda members: "".join(map(_table, members))),
+        "Parts": each("tables", lambda members: [_table(one) for one in members]),
         "Model and limits": each("model", _pairs),
-        "Warnings": "".join(f"<p>{html.escape(text)}</p>" for text in texts)
-        or "<p>no warnings</p>",
-        "Case file": case and f"<pre>{html.escape(case)}</pre>",
+        "Warnings": [markup("note", text=text) for text in warnings or ["no warnings"]],
+        "Case file": case and markup("case", text=case),
     }
-    return (
-        f"<!doctype html><html lang='en'><head><meta charset='utf-8'>"
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
-        f"<meta name='generator' content='nacre {version}'>"
-        f"<title>{title}: {html.escape(name)}</title><style>{STYLE}</style></head><body>"
-        f"<h1>{title}</h1>{''.join(map(_verdict, judgements))}{_pairs(head)}"
-        "<table class='sign'><tr><td>name</td><td>signature</td></tr></table>"
-        + "".join(f"<h2>{title}</h2>{text}" for title, text in chapters.items() if text)
-        + "</body></html>\n"
+    head = [("case", name), ("date", date), ("computed by", tables.SOURCE)]
+    return markup(
+        "page",
+        style=Markup(svg.STYLE),
+        title=parts[0].title[:1].upper() + parts[0].title[1:],
+        name=name,
+        source=tables.SOURCE,
+        verdicts=[_verdict(one) for one in judgements],
+        head=_pairs(head),
+        chapters=[
+            markup("chapter", title=title, content=content)
+            for title, content in chapters.items()
+            if content
+        ],
     )
 
 
@@ -262,10 +242,12 @@ def table(
     notes: Sequence[str] = (),
 ) -> Table:
     """Return a table of rows, the heading first; columns get the units of quantities by name."""
-    head, *body = ([*row] for row in rows)
     units = {row.name: symbol(row.unit) for row in quantities}
-    columns = {str(name): [row[k] for row in body] for k, name in enumerate(head)}
-    columns = {name: values for name, values in columns.items() if not _is_empty(values)}
+    columns = {
+        str(name): values
+        for name, *values in zip(*rows, strict=True)
+        if not values or any(value == value and value != "" for value in values)
+    }
     largest: dict[str, float] = {}
     for name, values in columns.items():
         stem = AXIS.sub("", name)
@@ -274,14 +256,10 @@ def table(
         _column(name, values, units.get(name, ""), display.SLIGHT * largest[AXIS.sub("", name)])
         for name, values in columns.items()
     ]
-    texts = [*zip(*(column for _, column in cells), strict=True)][:MOST_ROWS]
-    more = [f"and {len(body) - MOST_ROWS} more rows"] if len(body) > MOST_ROWS else []
-    return Table(title, [name for name, _ in cells], texts, [*notes, *more])
-
-
-def _is_empty(values: Sequence[object]) -> bool:
-    """Return whether a column has rows, but nothing in them."""
-    return bool(values) and all(value != value or value == "" for value in values)
+    texts = [*zip(*(column for _, column in cells), strict=True)]
+    if len(texts) > MOST_ROWS:
+        notes = [*notes, f"and {len(texts) - MOST_ROWS} more rows"]
+    return Table(title, [name for name, _ in cells], texts[:MOST_ROWS], notes)
 
 
 def _is_number(value: object) -> TypeGuard[float]:
@@ -294,9 +272,8 @@ def _column(
     """Return the heading and the cells of a column, in one unit; below `rounding` they are 0."""
     if match := UNIT.fullmatch(name):
         name, unit = match.groups()
-    numbers = [abs(value) for value in values if _is_number(value)]
-    scale = display.scale_in(max(numbers, default=0.0), unit)
-    scale = scale if max(numbers, default=0.0) > rounding else display.scale_in(0.0, unit)
+    largest = max(map(abs, filter(_is_number, values)), default=0.0)
+    scale = display.scale_in(largest if largest > rounding else 0.0, unit)
 
     def cell(value: object) -> str:
         if _is_number(value):
@@ -307,28 +284,33 @@ def _column(
     return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
 
 
+def section(result: tables.Peaked, axis: int) -> tuple[Array, Array]:
+    """Return places along x or y through the largest pressure, where it is loaded, and it there."""
+    pressure = result.pressure
+    peak = np.unravel_index(pressure.argmax(), pressure.shape)
+    low, high = display.loaded_parts(pressure)[axis]
+    cells = slice(low, high + 1)
+    line = np.take(pressure, peak[1 - axis], axis=1 - axis)
+    return (result.x, result.y)[axis][cells], line[cells]
+
+
 def contact_pictures(result: tables.Peaked) -> list[Picture]:
     """Return the pressure of a contact along x and y through its largest, and over the cells."""
-    pressure, places, grid = result.pressure, (result.x, result.y), result.grid
+    pressure, is_line = result.pressure, result.grid.is_line
     if not pressure.any():
         return []
-    cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
-    peak = np.unravel_index(pressure.argmax(), pressure.shape)
     y_axis, pictures = svg.Axis("pressure", "Pa"), []
-    for axis in (1,) if grid.is_line else (0, 1):
-        line = np.take(pressure, peak[1 - axis], axis=1 - axis)[cells[axis]]
-        curve = svg.Curve(places[axis][cells[axis]], line)
-        drawing = svg.lines([curve], (svg.Axis("xy"[axis], "m"), y_axis))
+    for axis in (1,) if is_line else (0, 1):
+        axes = svg.Axis("xy"[axis], "m"), y_axis
+        drawing = svg.lines([svg.Curve(*section(result, axis))], axes)
         pictures.append(Picture(f"Pressure along {'xy'[axis]}, through the largest.", drawing))
-    if not grid.is_line:
+    if not is_line:
         caption = "Pressure over the contact, x and y each to its scale; white: no contact."
         pictures.append(map_picture(result, pressure, y_axis, caption))
     return pictures
 
 
-def map_picture(
-    result: tables.Peaked, values: npt.NDArray[np.float64], axis: svg.Axis, caption: str
-) -> Picture:
+def map_picture(result: tables.Peaked, values: Array, axis: svg.Axis, caption: str) -> Picture:
     """Return the picture of values ``(nx, ny)`` in the contact, white where nothing touches."""
     pressure, places = result.pressure, (result.x, result.y)
     cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
@@ -346,37 +328,43 @@ def notebook_picture(pictures: Sequence[Picture]) -> bytes | None:
     return svg.alone(pictures[-1].drawing) if pictures else None
 
 
-def _pairs(rows: Rows) -> str:
+def _heading(title: str) -> Markup | None:
+    return markup("heading", title=title) if title else None
+
+
+def _pairs(rows: Rows) -> Markup:
     """Return a table of names and texts, in which a zero has no exponent."""
-    pairs = ((html.escape(name), html.escape(text.replace("0e+00", "0"))) for name, text in rows)
-    cells = (f"<tr><td>{name}</td><td>{text}</td></tr>" for name, text in pairs)
-    return f"<table class='long'>{''.join(cells)}</table>"
+    pairs = [markup("pair", name=name, text=text.replace("0e+00", "0")) for name, text in rows]
+    return markup("pairs", rows=pairs)
 
 
-def _figures(pictures: Iterable[Picture]) -> str:
-    figures = (
-        f"<figure>{one.drawing}<figcaption>{html.escape(one.caption)}</figcaption></figure>"
-        for one in pictures
-    )
-    return f"<div class='pictures'>{''.join(figures)}</div>"
+def _figures(pictures: Iterable[Picture]) -> Markup:
+    figures = [
+        markup("figure", drawing=Markup(one.drawing), caption=one.caption) for one in pictures
+    ]
+    return markup("figures", figures=figures)
 
 
-def _table(members: Table) -> str:
-    """Return a table, in parts as wide as a page."""
-    lines, parts = [members.head, *members.rows], []
-    for first in range(1, max(len(members.head), 2), MOST_COLUMNS - 1):
-        columns = [0, *range(first, min(first + MOST_COLUMNS - 1, len(members.head)))]
-        rows = "".join(
-            "<tr>" + "".join(f"<{tag}>{html.escape(line[k])}</{tag}>" for k in columns) + "</tr>"
-            for tag, line in zip(("th", *["td"] * len(members.rows)), lines, strict=True)
+def _table(members: Table) -> Markup:
+    """Return a table, in parts as wide as a page, each with the first column."""
+    step, widest = MOST_COLUMNS - 1, max(len(members.head), 2)
+    parts = []
+    for first in range(1, widest, step):
+        head, *rows = (
+            [line[0], *line[first : first + step]] for line in (members.head, *members.rows)
         )
-        parts.append(f"<table class='number'>{rows}</table>")
-    notes = "".join(f"<p>{html.escape(note)}</p>" for note in members.notes)
-    return f"<h3>{html.escape(members.title)}</h3>{''.join(parts)}{notes}"
+        parts.append(
+            markup("table", rows=[_row("head", head), *(_row("cell", row) for row in rows)])
+        )
+    notes = [markup("note", text=note) for note in members.notes]
+    return markup("part", title=_heading(members.title), content=[*parts, *notes])
 
 
-def _verdict(verdict: Verdict) -> str:
+def _row(kind: str, cells: Iterable[str]) -> Markup:
+    return markup("row", cells=[markup(kind, text=text) for text in cells])
+
+
+def _verdict(verdict: Verdict) -> Markup:
     """Return a verdict: its level, its sentence, and further lines."""
-    lines = "".join(f"<br>{html.escape(line)}" for line in verdict.lines)
-    level = html.escape(verdict.level)
-    return f"<p class='verdict {level}'><b>{level}: {html.escape(verdict.words)}</b>{lines}</p>"
+    lines = [markup("line", text=line) for line in verdict.lines]
+    return markup("verdict", level=verdict.level, words=verdict.words, lines=lines)

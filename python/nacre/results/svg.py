@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from nacre._tools.markup import text_of
 from nacre._tools.units import Scale, symbol
 from nacre.results import display
 
@@ -44,16 +45,7 @@ HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
 VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725"
 """Colours of Matplotlib's map viridis, at equal distances."""
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555")
-"""Colours of curves that everybody can tell apart: Wong, Nature Methods 8 (2011) 441."""
-STYLE = (
-    "svg text{font:11px sans-serif;fill:#222}"
-    "svg .frame{fill:none;stroke:#888}svg .paper{fill:#fff}svg .grid{stroke:#ddd}"
-    "svg .mark{stroke:#666;stroke-dasharray:2 3}svg polyline{fill:none;stroke-width:1.6}"
-    "svg .dashed{stroke-dasharray:6 4}"
-    "svg .middle{text-anchor:middle}svg .end{text-anchor:end}svg image{image-rendering:pixelated}"
-    + "".join(f"svg .c{k}{{stroke:{c}}}svg .p{k}{{fill:{c}}}" for k, c in enumerate(COLOURS))
-)
+STYLE = text_of("nacre.results", "svg.css")
 """Style sheet of pictures."""
 
 
@@ -147,12 +139,11 @@ def lines(
         parts.append(_text(label, LEFT + 24, TOP + LINE * row + 4))
     if inset is not None:
         small = (INSET * size[0], INSET * size[1])
-        place = (
-            f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}' width='{small[0]}' height='{small[1]}'"
-        )
+        corner = f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}'"
         units = axes[0]._replace(name="", ends=inset), axes[1]._replace(name="")
         inner = lines([one._replace(label="") for one in curves], units, marks, None, small)
-        parts.append(inner.replace("<svg", f"<svg {place}", 1))
+        size_of = f"width='{small[0]}' height='{small[1]}'"
+        parts.append(inner.replace("<svg", f"<svg {corner} {size_of}", 1))
     return _picture(parts, size)
 
 
@@ -191,20 +182,18 @@ def image(values: Array, axes: tuple[Axis, Axis, Axis]) -> str:
 
     The axes are those of x and y, whose ends are those of the map, and of the values.
     """
-    finite = values[np.isfinite(values)]
-    low, high = axes[2].ends or (0.0, float(finite.max(initial=0.0)) or 1.0)
-    spans = [end - start for start, end in (axis.ends or (0.0, 1.0) for axis in axes[:2])]
+    (x_low, x_high), (y_low, y_high) = (axis.ends or (0.0, 1.0) for axis in axes[:2])
+    low, high = axes[2].ends or (0.0, float(values[np.isfinite(values)].max(initial=0.0)) or 1.0)
     widest, highest = WIDTH - LEFT - RIGHT - BAR, 1.2 * HEIGHT
-    width = max(60.0, min(widest, highest * spans[0] / spans[1]))
-    height = max(60.0, min(highest, width * spans[1] / spans[0]))
-    x = Side(axes[0], axes[0].ends or (0.0, 1.0), LEFT, LEFT + width)
-    y = Side(axes[1], axes[1].ends or (0.0, 1.0), TOP + height, TOP)
-    right = LEFT + width + RIGHT
-    colour = Side(axes[2], (low, high), y.start, y.end)
-    scale = np.linspace(low, high, 128)[None, :]
+    aspect = (x_high - x_low) / (y_high - y_low)
+    width = max(60.0, min(widest, highest * aspect))
+    height = max(60.0, min(highest, width / aspect))
+    x = Side(axes[0], (x_low, x_high), LEFT, LEFT + width)
+    y = Side(axes[1], (y_low, y_high), TOP + height, TOP)
+    colour, right = Side(axes[2], (low, high), y.start, y.end), x.end + RIGHT
     parts = [
         _cells((values - low) / ((high - low) or 1.0), LEFT, TOP, width, height),
-        _cells((scale - low) / ((high - low) or 1.0), right, TOP, 12, height),
+        _cells(np.linspace(0.0, 1.0, 128)[None, :], right, TOP, 12, height),
         _frame(x, y, "frame"),
         *(_text(number, right + 16, place + 4) for place, number in colour.ticks()),
         _text(colour.label, right + 12, TOP + height + 34, "end"),
@@ -227,19 +216,17 @@ def png(shares: Array) -> bytes:
     pixels = np.where(np.isfinite(rows), index, 0).astype(np.uint8)
     nodes = np.array([list(bytes.fromhex(colour)) for colour in VIRIDIS.split()])
     along = np.linspace(0, len(nodes) - 1, 255)
-    colours = [np.interp(along, np.arange(len(nodes)), nodes[:, k]).round() for k in range(3)]
-    palette = b"\xff\xff\xff" + np.stack(colours, axis=1).astype(np.uint8).tobytes()
-    head = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 3, 0, 0, 0)
+    colours = np.stack([np.interp(along, range(len(nodes)), one) for one in nodes.T], axis=1)
     lines_of = np.insert(pixels, 0, 0, axis=1).tobytes()  # each begins with its filter, none
-    chunks = [
-        (b"IHDR", head),
-        (b"PLTE", palette),
-        (b"IDAT", zlib.compress(lines_of, 9)),
-        (b"IEND", b""),
-    ]
+    chunks = {
+        b"IHDR": struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 3, 0, 0, 0),
+        b"PLTE": b"\xff\xff\xff" + colours.round().astype(np.uint8).tobytes(),
+        b"IDAT": zlib.compress(lines_of, 9),
+        b"IEND": b"",
+    }
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks
+        for kind, data in chunks.items()
     )
 
 
@@ -283,15 +270,13 @@ def _frame(x: Side, y: Side, paper: str = "frame paper") -> str:
 
 
 def _curve(number: int, look: str, x: Side, y: Side, points: tuple[Array, Array]) -> str:
-    """Return a curve, cut off at the ends of y and x."""
-    places = np.stack([x.at(points[0]), y.at(points[1])], axis=1)
+    """Return a curve, or its points."""
+    places, colour = [*zip(x.at(points[0]), y.at(points[1]), strict=True)], number % 7
     if look == "points":
-        dots = (
-            f"<circle class='p{number % 7}' cx='{a:.1f}' cy='{b:.1f}' r='2.2'/>" for a, b in places
-        )
+        dots = (f"<circle class='p{colour}' cx='{a:.1f}' cy='{b:.1f}' r='2.2'/>" for a, b in places)
         return "".join(dots)
     text = " ".join(f"{a:.1f},{b:.1f}" for a, b in places)
-    return f"<polyline class='c{number % 7} {look}' points='{text}'/>"
+    return f"<polyline class='c{colour} {look}' points='{text}'/>"
 
 
 def _text(words: str, x: float, y: float, side: str = "start") -> str:

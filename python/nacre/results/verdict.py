@@ -47,13 +47,13 @@ class Verdict(Result):
     """Level: "good", "fair", "bad", or "unknown" where no limit is given or none can be judged."""
     words: str
     """Verdict in a sentence."""
-    lines: tuple[str, ...]
+    lines: tuple[str, ...] = ()
     """Further sentences: on every other part, and on limits that are missing."""
-    factor: float | None
+    factor: float | None = None
     """Limit over the value that decides; None without a limit."""
-    decided_by: str | None
+    decided_by: str | None = None
     """Part and quantity that decide; None without a limit."""
-    uncertainty: float | None
+    uncertainty: float | None = None
     """Estimated error of the factor, as a share of it; None where it is not known."""
 
     @property
@@ -119,24 +119,25 @@ def judged(
 
     With a `doubt` nothing holds; what fails does so nevertheless.
     """
-    parts = list(demands)
-    needs, limited = _needs([one for one in parts if one.factor is None]), []
-    for one in parts:
-        if one.factor is not None:
-            limited.append((outcome_of(one.factor, one.share), one.factor, one))
+    needs, ranked = [], []
+    for one in demands:
+        if one.factor is None:
+            needs.append(one)
+        else:
+            ranked.append((outcome_of(one.factor, one.share), one.factor, one))
     doubts = [] if doubt is None else [f"Cannot tell: {doubt}."]
-    if not limited:
-        words, *lines = [*doubts, *needs] or ["Cannot tell: nothing is loaded."]
-        return Verdict("unknown", words, (*lines, *notes), None, None, None)
-    outcome, factor, worst = min(limited, key=lambda row: row[:2])
+    if not ranked:
+        words, *lines = [*doubts, *_needs(needs)] or ["Cannot tell: nothing is loaded."]
+        return Verdict("unknown", words, (*lines, *notes))
+    outcome, factor, worst = min(ranked, key=lambda row: row[:2])
     level: Level = level_of(factor, worst.share) if doubt is None or outcome == 0 else "unknown"
-    ordered = [worst, *(one for _, _, one in limited if one is not worst)]
+    ordered = [worst, *(one for _, _, one in ranked if one is not worst)]
     if level == "unknown":
         ordered = [one._replace(outcomes=(one.outcomes[0], UNSURE, UNSURE)) for one in ordered]
     sentences = [_sentence(one) for one in ordered]
     sentences[level == "bad" : 0] = doubts
+    words, *lines = [*sentences, *_needs(needs), *notes]
     decided_by = f"{worst.part}, {worst.quantity}"
-    words, *lines = [*sentences, *needs, *notes]
     return Verdict(level, words, tuple(lines), factor, decided_by, worst.share)
 
 
@@ -176,14 +177,13 @@ def _place(demand: Demand) -> str:
 
 def number(value: float, unit: str) -> str:
     """Return a number with its unit, without an exponent."""
-    scale = display.scale_of(value, unit)
-    return f"{plain(scale.factor * value, DIGITS)} {scale.unit}".rstrip()
+    return beside(value, value, unit)
 
 
 def beside(value: float, limit: float, unit: str = "Pa") -> str:
     """Return a limit in the unit in which a value is printed."""
     scale = display.scale_of(value, unit)
-    return f"{plain(scale.factor * limit, DIGITS)} {scale.unit}"
+    return f"{plain(scale.factor * limit, DIGITS)} {scale.unit}".rstrip()
 
 
 def measured(value: float, error: float | None, unit: str = "Pa") -> str:

@@ -18,14 +18,15 @@ from hypothesis import strategies as st
 
 import nacre
 from nacre.app.answer import STAGES, Stopped, answer, file_text
-from nacre.app.cards import FieldError, cards, number, own_card
-from nacre.app.fields import CARDS, Field
+from nacre.app.cards import cards, own_card
+from nacre.app.fields import Field, FieldError
 from nacre.case import Case, CaseError, templates, toml
 from nacre.indent import _reading as reading
 from support import Capture, command, fuzz, written
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 
+CARDS = list(cards())
 QUICK = [name for name in CARDS if name not in ("bearing", "roller")]
 """Cards whose full answers take less than a second or so."""
 
@@ -49,7 +50,7 @@ def main_number(parts: dict[str, Any]) -> tuple[float, str]:
 def test_defaults_are_those_of_the_templates(name: str) -> None:
     data = tomllib.loads(templates.texts()[name])
     case = Case(cards()[name].base).data
-    for one in CARDS[name][2]:
+    for one in cards()[name].fields:
         try:
             in_template = _at(data, one.path)
         except LookupError:
@@ -87,7 +88,7 @@ def test_any_data_are_read_back(data: dict[str, Any]) -> None:
 def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys: Capture) -> None:
     load = next(
         one
-        for one in CARDS[name][2]
+        for one in cards()[name].fields
         if one.label in ("load", "largest load") or "load" in one.label
     )
     changed: dict[str, object] = {load.path: str(1.3 * (load.default or 0))}
@@ -223,7 +224,7 @@ def text_of(one: Field) -> st.SearchStrategy[str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CARDS)
 def test_any_values_have_an_answer_or_a_sentence(name: str) -> None:
-    fields = CARDS[name][2]
+    fields = cards()[name].fields
 
     @fuzz(8)
     @given(st.fixed_dictionaries({}, optional={one.path: text_of(one) for one in fields}))
@@ -308,7 +309,7 @@ def test_markup_in_names_is_text(tmp_path: Path) -> None:
 
 def test_numbers_of_fields_are_typed_in_their_unit() -> None:
     one = Field("a.b", "thing", "µm", 1, 0, 5)
-    assert number(one, " 2,5 ") == 2.5
+    assert one.number(" 2,5 ") == 2.5
     assert one.in_case(2.5, "N-mm-MPa") == 0.0025
 
 

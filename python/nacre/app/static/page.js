@@ -3,12 +3,12 @@
 const REST = 300, DELAYS = [200, 400, 800, 1600, 3200, 6400];
 const one = (selector, root = document) => root.querySelector(selector);
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-const forms = all("form"), status = one("output"), problem = one(".error"), note = one(".note");
+const forms = [...document.forms], status = one("output"), problem = one(".error"), note = one(".note");
 const verdict = one(".verdict"), id = crypto.randomUUID();
 let form, age = 0, timer, request = null, drafting = false;
 
 const inputs = () => all("input[name]", form);
-const changed = () => inputs().filter((input) => input.value !== input.dataset.default);
+const changed = () => inputs().filter((input) => input.value !== input.defaultValue);
 
 function show(state, words) {
   status.dataset.state = state;
@@ -22,7 +22,7 @@ function tell(element, words) {
 
 function question(stage) {
   const values = Object.fromEntries(changed().map((input) => [input.name, input.value]));
-  return { card: form.dataset.card, values, stage, page: id, age };
+  return { card: form.name, values, stage, page: id, age };
 }
 
 // Where the program does not answer, it is asked again until it does, or the question is given up.
@@ -50,7 +50,9 @@ function change() {
   clearTimeout(timer);
   show("busy", "computing …");
   all("[data-part]").forEach((part) => part.classList.add("stale"));
-  keep();
+  // The fragment of the address holds the card and the values that differ from its defaults.
+  const values = changed().map((input) => [input.dataset.key, input.value]);
+  history.replaceState(null, "", "#" + new URLSearchParams([["card", form.name], ...values]));
   if (!drafting) {
     request?.abort();
     ask("draft");
@@ -68,9 +70,10 @@ async function ask(stage) {
   if (mine !== age) return ask("draft");
   if (reply.error) return show("failed");
   if (reply.stopped) return;
-  const states = { draft: "draft", full: "solved" };
-  show(reply.next ? states[stage] : "done", reply.next ? `${states[stage]}, computing …` : "solved");
-  if (reply.next) timer = setTimeout(() => ask(reply.next), stage === "draft" ? REST : 0);
+  if (!reply.next) return show("done", "solved");
+  const state = stage === "draft" ? "draft" : "solved";
+  show(state, `${state}, computing …`);
+  timer = setTimeout(() => ask(reply.next), stage === "draft" ? REST : 0);
 }
 
 function put(reply) {
@@ -101,79 +104,68 @@ function list(element, texts) {
 // Sliders: the value over the default is 20 to their power, or they are linear.
 function slide(slider) {
   const input = one("input[name]", slider.parentElement), { scale, low, high } = slider.dataset;
-  const value = scale === "linear" ? +slider.value : input.dataset.default * 20 ** slider.value;
+  const value = scale === "linear" ? +slider.value : input.defaultValue * 20 ** slider.value;
   input.value = +Math.min(Math.max(value, low), high).toPrecision(3);
 }
 
 function follow(input) {
   const slider = one("input[type=range]", input.parentElement), value = +input.value.replace(",", ".");
   if (!slider) return;
-  slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.dataset.default) / Math.log(20) || 0;
+  slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.defaultValue) / Math.log(20) || 0;
 }
 
+// A material fills the numbers of a body, and shows its source; another number takes it off again.
 function choose(select) {
-  const option = select.selectedOptions[0], numbers = JSON.parse(option.dataset.numbers ?? "null");
-  const path = `materials.${select.dataset.material}.`;
-  for (const input of numbers ? inputs().filter((one) => one.name.startsWith(path)) : []) {
-    const value = numbers[input.name.slice(path.length)];
+  const { numbers, source } = select.selectedOptions[0].dataset, path = `materials.${select.dataset.material}.`;
+  const known = numbers ? JSON.parse(numbers) : null;
+  for (const input of known ? inputs().filter((one) => one.name.startsWith(path)) : []) {
+    const value = known[input.name.slice(path.length)];
     input.value = value === undefined ? "" : +(value / input.dataset.si).toPrecision(9);
     follow(input);
   }
-  tell(select.parentElement.nextElementSibling, option.dataset.source);
-  change();
+  tell(select.parentElement.nextElementSibling, source);
 }
 
 function release(input) {
-  for (const select of all(".material", form)) {
-    if (!input.name.startsWith(`materials.${select.dataset.material}.`)) continue;
-    select.value = "";
-    tell(select.parentElement.nextElementSibling);
-  }
+  const select = all(".material", form).find(({ dataset }) => input.name.startsWith(`materials.${dataset.material}.`));
+  if (!select) return;
+  select.value = "";
+  choose(select);
 }
 
 function open(card) {
   form = card;
   forms.forEach((other) => (other.hidden = other !== form));
   all(".tab").forEach((tab) => tab.setAttribute("aria-pressed", tab.dataset.group === form.dataset.group));
-  all(".variant", form).forEach((select) => (select.value = form.dataset.card));
-  one("[data-testid=copy-link]").disabled = form.dataset.card === "own";
+  all(".variant", form).forEach((select) => (select.value = form.name));
+  one("[data-testid=copy-link]").disabled = form.name === "own";
   all('[data-part^="picture"]').forEach((part) => part.replaceChildren());
+  all(".material", form).forEach(choose);
   inputs().forEach(follow);
   change();
 }
 
-// The fragment of the address holds the card and the values that differ from its defaults.
-function keep() {
-  const values = changed().map((input) => [input.dataset.key, input.value]);
-  history.replaceState(null, "", "#" + new URLSearchParams([["card", form.dataset.card], ...values]));
-}
-
 function restore() {
-  const values = new URLSearchParams(location.hash.slice(1)), left = [];
-  const card = forms.find((other) => other.dataset.card === values.get("card"));
-  form = card ?? forms.find((other) => other.dataset.card === "own") ?? forms.find((other) => other.dataset.card === "contact");
-  if (card) inputs().forEach((input) => (input.value = input.dataset.default));
-  for (const [key, value] of card ? values : []) {
+  const { card, ...values } = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
+  const linked = document.forms.namedItem(card), left = [];
+  form = linked ?? document.forms.namedItem("own") ?? document.forms.namedItem("contact");
+  linked?.reset();
+  for (const [key, value] of linked ? Object.entries(values) : []) {
     const input = inputs().find((other) => other.dataset.key === key);
     if (input) input.value = value;
-    else if (key !== "card") left.push(key);
+    else left.push(key);
   }
   tell(note, left.length ? `The link has values that are not known here: ${left.join(", ")}` : "");
   open(form);
 }
 
-function download(name, kind, text) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: kind }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1e4);
-}
-
-async function save(path, stage, kind, ending) {
+async function save(path, stage, type, ending) {
   const reply = await post(path, question(stage));
   tell(problem, reply.stopped ? "the values have changed: ask again" : reply.error);
-  if (reply[stage]) download(`${form.dataset.card}.${ending}`, kind, reply[stage]);
+  if (!reply[stage]) return;
+  const href = URL.createObjectURL(new Blob([reply[stage]], { type }));
+  Object.assign(document.createElement("a"), { href, download: `${form.name}.${ending}` }).click();
+  setTimeout(() => URL.revokeObjectURL(href), 1e4);
 }
 
 document.addEventListener("input", ({ target }) => {
@@ -184,8 +176,11 @@ document.addEventListener("input", ({ target }) => {
   change();
 });
 document.addEventListener("change", ({ target }) => {
-  if (target.className === "variant") open(forms.find((other) => other.dataset.card === target.value));
-  if (target.className === "material") choose(target);
+  if (target.className === "variant") open(document.forms.namedItem(target.value));
+  if (target.className === "material") {
+    choose(target);
+    change();
+  }
 });
 document.addEventListener("submit", (event) => event.preventDefault());
 all(".tab").forEach((tab) => tab.addEventListener("click", () => open(forms.find((other) => other.dataset.group === tab.dataset.group))));
