@@ -5,7 +5,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
+use super::{Kind, PyShape, inner_shape, object, shape_class};
 use crate::model::surface::HeightMap;
 use crate::python::arguments::{Coordinate, Pair, Real, Repr, flags, read_only, real_matrix};
 use crate::python::value::Arguments;

@@ -3,7 +3,7 @@
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
+use super::{Kind, PyShape, inner_shape, object, shape_class};
 use crate::model::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 use crate::python::arguments::Real;
 use crate::python::value::Arguments;

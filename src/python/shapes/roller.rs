@@ -3,8 +3,7 @@
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
-use super::profiles;
+use super::{Kind, PyShape, inner_shape, object, profiles, shape_class};
 use crate::error::Error;
 use crate::model::surface::{CrownedProfile, Profile, Roller};
 use crate::python::arguments::Real;
