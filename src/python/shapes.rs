@@ -38,25 +38,28 @@ trait Kind: Surface + Serialize + DeserializeOwned {
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>>;
 }
 
-/// Writes the class of a kind of shape, as [`class`](crate::python::value) does for other values.
+/// Writes the class of a kind of shape: the arguments of its constructor, which are also attributes, what follows from them,
+/// and the call that makes the shape. `of` names the shape and `py` Python in the expressions.
 macro_rules! shape_class {
     (
         $(#[$meta:meta])*
         $class:ident($kind:ty) is $name:literal;
         |$of:ident, $py:ident|
-        arguments { $($(#[$doc:meta])* $argument:ident: $of_type:ty = $read:expr;)* }
-        attributes { $($(#[$more:meta])* $attribute:ident: $type:ty = $compute:expr;)* }
-        methods { $($methods:tt)* }
+        arguments {
+            $($(#[$doc:meta])* $argument:ident($from:ty $(= $default:tt)?): $type:ty = $read:expr;)*
+        }
+        attributes { $($(#[$more:meta])* $attribute:ident: $of_type:ty = $compute:expr;)* }
+        make $make:block
     ) => {
         $(#[$meta])*
-        #[pyclass(name = $name, module = "nacre", frozen, extends = PyShape)]
+        #[pyclass(name = $name, module = "nacre", frozen, extends = $crate::python::shapes::PyShape)]
         pub(in crate::python) struct $class;
 
-        impl Kind for $kind {
+        impl $crate::python::shapes::Kind for $kind {
             type Class = $class;
             const CLASS: $class = $class;
 
-            fn arguments<'py>(&self, $py: Python<'py>) -> PyResult<Arguments<'py>> {
+            fn arguments<'py>(&self, $py: Python<'py>) -> PyResult<$crate::python::value::Arguments<'py>> {
                 let $of = self;
                 Ok(vec![$((stringify!($argument), ($read).into_bound_py_any($py)?),)*])
             }
@@ -64,20 +67,25 @@ macro_rules! shape_class {
 
         #[pymethods]
         impl $class {
-            $($methods)*
+            #[new]
+            #[pyo3(signature = ($($argument $(= $default)?),*))]
+            fn new($($argument: $from),*) -> PyResult<PyClassInitializer<Self>> {
+                let shape: $kind = $make;
+                Ok($crate::python::shapes::object(Self, shape))
+            }
 
             $($(#[$doc])*
             #[getter]
-            fn $argument<'py>(slf: &Bound<'py, Self>) -> PyResult<$of_type> {
-                let ($of, $py) = (inner_shape::<_, $kind>(slf), slf.py());
+            fn $argument<'py>(slf: &Bound<'py, Self>) -> PyResult<$type> {
+                let ($of, $py) = ($crate::python::shapes::inner_shape::<_, $kind>(slf), slf.py());
                 let _ = $py;
                 Ok($read)
             })*
 
             $($(#[$more])*
             #[getter]
-            fn $attribute<'py>(slf: &Bound<'py, Self>) -> PyResult<$type> {
-                let $of = inner_shape::<_, $kind>(slf);
+            fn $attribute<'py>(slf: &Bound<'py, Self>) -> PyResult<$of_type> {
+                let $of = $crate::python::shapes::inner_shape::<_, $kind>(slf);
                 Ok($compute)
             })*
         }
