@@ -56,8 +56,6 @@
 
 mod compliance;
 pub mod contact;
-#[cfg(feature = "serde")]
-mod data;
 pub mod error;
 pub mod fatigue;
 pub mod friction;
@@ -86,10 +84,8 @@ pub use influence::Method;
 pub use material::Elastic;
 pub use response::{Body, Response};
 pub use stress::{Member, Section, Side, Stress, StressOptions, StressPlan, stress};
-pub use surface::{
-    Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
-    Superposition, Surface,
-};
+pub use surface::shapes::*;
+pub use surface::{LogarithmicProfile, SampledProfile, Superposition, Surface};
 pub use traction::{TractionCoefficients, traction_coefficients};
 
 /// The Rust program of the README, which runs as a test.

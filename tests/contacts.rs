@@ -20,6 +20,8 @@ mod contact {
     mod fuzz;
     mod hardness;
     mod invariants;
+    #[cfg(feature = "serde")]
+    mod json;
     mod layouts;
     mod line;
     mod matrix;

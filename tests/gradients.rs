@@ -11,6 +11,5 @@ mod gradient {
     mod differences;
     mod identities;
     mod kinks;
-    mod shapes;
     mod stresses;
 }

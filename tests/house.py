@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 CHAIN = [
     *("error", "numerics", "model", "compliance", "contact"),
-    *("stress", "fatigue", "friction", "wear", "indent", "gradient", "data", "python"),
+    *("stress", "fatigue", "friction", "wear", "indent", "gradient", "python"),
 ]
 """Modules; each imports only from those before it."""
 
@@ -24,7 +24,7 @@ QUIET = re.compile(
     r'//[^\n]*|/\*.*?\*/|r(#*)".*?"\1|"(?:\\.|[^"\\])*"|\'(?:\\[^\'\n]+|[^\'\\\n])\'', re.DOTALL
 )
 TESTS = re.compile(r"#\[cfg\(test\)\]\s*(?:mod\s+(\w+)\s*;|mod\s+\w+\s*\{.*?^\})", re.DOTALL | re.M)
-INLINE = re.compile(r"^mod \w+ \{(.*?)^\}", re.DOTALL | re.MULTILINE)
+INLINE = re.compile(r"^(?:pub\(\w+\) )?mod \w+ \{(.*?)^\}", re.DOTALL | re.MULTILINE)
 USE = re.compile(r"(\bpub(?:\s*\([^)]*\))?\s+|#\[pymodule_export\]\s*)?\buse\s+([^;]+);")
 GROUP = re.compile(r"([\w:]*)\{([^{}]*)\}")
 NAMED = re.compile(r"(?<![\w:$])(?:\w+::)+\w+")

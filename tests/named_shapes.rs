@@ -1,4 +1,4 @@
-//! Contacts of named shapes against closed forms and published numbers.
+//! Every shape, and contacts of named shapes against closed forms and published numbers.
 
 #[macro_use]
 #[path = "support/root.rs"]
@@ -6,6 +6,7 @@
 mod support;
 
 mod shapes {
+    mod all;
     mod coated_sphere;
     mod counterparts;
     mod hertz;

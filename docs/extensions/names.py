@@ -13,6 +13,18 @@ DIRECTIVE = re.compile(
 )
 
 
+def expanded(text: str) -> str:
+    """Text of a page, with the classes of all shapes in place of ``.. shapes::``."""
+    shapes = import_module("nacre.types").Shape.__subclasses__()
+    classes = (f".. autoclass:: nacre.{shape.__name__}\n" for shape in shapes)
+    return text.replace(".. shapes::\n", "\n".join(classes))
+
+
+def reference(page: str) -> str:
+    """Text of a page of the reference."""
+    return expanded((API / f"{page}.rst").read_text(encoding="utf-8"))
+
+
 def names() -> dict[str, str]:
     """Names in the order of the pages, each with its page."""
     pages = re.findall(
@@ -21,9 +33,7 @@ def names() -> dict[str, str]:
     return {
         name: page
         for page in pages
-        for name in DIRECTIVE.findall(
-            (API / f"{page}.rst").read_text(encoding="utf-8")
-        )
+        for name in DIRECTIVE.findall(reference(page))
     }
 
 
@@ -49,8 +59,8 @@ def table() -> str:
 
 
 def fill(app: Any, page: str, source: list[str]) -> None:
-    """Put the table in the place of a `{names}` block."""
-    source[0] = source[0].replace("```{names}\n```\n", table())
+    """Put the table in the place of a `{names}` block, and the shapes in that of theirs."""
+    source[0] = expanded(source[0].replace("```{names}\n```\n", table()))
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -1,6 +1,7 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
 use crate::error::{Error, Result, finite, not_negative, positive, refuse_if, require};
+use crate::model::data::value;
 use crate::model::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -91,6 +92,14 @@ impl Spring {
     }
 }
 
+value! {
+    Spring by SpringData {
+        normal: Option<f64> = of.normal();
+        tangential: Option<f64> = of.tangential();
+    }
+    of, fields => Self::new(fields.normal, fields.tangential)
+}
+
 /// One layer of uniform thickness, and the interface **below** it.
 ///
 /// ```
@@ -158,6 +167,23 @@ impl Layer {
     /// Name of the layer, if it has one.
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
+    }
+}
+
+value! {
+    Layer by LayerData {
+        material: Elastic = of.material();
+        thickness: f64 = of.thickness();
+        #[serde(default)]
+        interface: Interface = of.interface();
+        name: Option<String> = of.name().map(String::from);
+    }
+    of, fields => {
+        let layer = Self::new(fields.material, fields.thickness)?.with_interface(fields.interface);
+        match fields.name {
+            Some(name) => layer.with_name(name),
+            None => Ok(layer),
+        }
     }
 }
 
@@ -334,6 +360,17 @@ impl HalfSpace {
     }
 }
 
+value! {
+    HalfSpace by HalfSpaceData {
+        substrate: Substrate = of.substrate();
+        #[serde(default)]
+        layers: Vec<Layer> = of.layers().to_vec();
+        #[serde(default, skip_serializing_if = "crate::model::data::is_default")]
+        ends: [Option<f64>; 2] = of.ends();
+    }
+    of, fields => Self::new(fields.substrate, fields.layers)?.with_ends(fields.ends)
+}
+
 impl From<Elastic> for HalfSpace {
     fn from(material: Elastic) -> Self {
         Self { substrate: material.into(), layers: Vec::new(), ends: [None; 2] }
@@ -479,6 +516,61 @@ impl HalfSpace {
             (Some(layer), _) => Some(layer.material),
             (None, Substrate::Elastic(material)) if place == self.layers.len() => Some(material),
             _ => None,
+        }
+    }
+}
+
+/// Interfaces as data.
+#[cfg(feature = "serde")]
+mod data {
+    use serde::de::value::MapAccessDeserializer;
+    use serde::de::{MapAccess, Visitor};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Interface, Spring};
+
+    /// A word, or the numbers of a spring.
+    impl Serialize for Interface {
+        fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+            match self {
+                Self::Bonded => serializer.serialize_str("bonded"),
+                Self::Frictionless => serializer.serialize_str("frictionless"),
+                Self::Spring(spring) => spring.serialize(serializer),
+            }
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Interface {
+        fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
+            struct Read;
+
+            impl<'de> Visitor<'de> for Read {
+                type Value = Interface;
+
+                fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                    f.write_str("\"bonded\", \"frictionless\", or the stiffnesses of a spring, normal and tangential")
+                }
+
+                fn visit_str<E: serde::de::Error>(
+                    self,
+                    word: &str,
+                ) -> std::result::Result<Interface, E> {
+                    match word {
+                        "bonded" => Ok(Interface::Bonded),
+                        "frictionless" => Ok(Interface::Frictionless),
+                        _ => Err(E::unknown_variant(word, &["bonded", "frictionless"])),
+                    }
+                }
+
+                fn visit_map<A: MapAccess<'de>>(
+                    self,
+                    map: A,
+                ) -> std::result::Result<Interface, A::Error> {
+                    Spring::deserialize(MapAccessDeserializer::new(map)).map(Interface::Spring)
+                }
+            }
+
+            data.deserialize_any(Read)
         }
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use ndarray::Array1;
 
 use crate::error::{Error, Result, finite, positive, refuse_if, require};
+use crate::model::data::value;
 use crate::numerics::parallel::check_memory;
 
 /// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
@@ -249,6 +250,25 @@ impl Grid {
         Array1::from_shape_fn(n, |i| {
             self.center[axis] + (i as f64 - 0.5 * (n - 1) as f64) * spacing
         })
+    }
+}
+
+value! {
+    // A line has one cell along x.
+    Grid by GridData {
+        shape: [usize; 2] = of.shape();
+        size: [f64; 2] = of.size();
+        #[serde(default)]
+        center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "crate::model::data::is_default")]
+        periodic: [bool; 2] = of.is_periodic();
+    }
+    of, fields => {
+        let grid = match fields.shape {
+            [1, cells] => Self::line(cells, fields.size[1])?,
+            shape => Self::new(shape, fields.size)?,
+        };
+        grid.centered_at(fields.center)?.periodic(fields.periodic)
     }
 }
 

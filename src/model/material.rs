@@ -1,6 +1,7 @@
 //! Isotropic linear elastic materials.
 
 use crate::error::{Result, positive, require};
+use crate::model::data::value;
 
 /// An isotropic linear elastic material.
 ///
@@ -47,4 +48,9 @@ impl Elastic {
     pub fn plane_strain_modulus(&self) -> f64 {
         self.young / ((1.0 - self.poisson) * (1.0 + self.poisson))
     }
+}
+
+value! {
+    Elastic by ElasticData { young: f64 = of.young(); poisson: f64 = of.poisson(); }
+    of, fields => Self::new(fields.young, fields.poisson)
 }

@@ -17,10 +17,15 @@ use crate::model::grid::Grid;
 use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::each_row;
 
-pub use height_map::HeightMap;
 pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
-pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
-pub use roller::Roller;
+pub use shapes::*;
+
+/// The shapes, which the root of the crate names, too.
+pub(crate) mod shapes {
+    pub use super::height_map::HeightMap;
+    pub use super::quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
+    pub use super::roller::Roller;
+}
 
 /// Array of `value(i, j)` at the cells of a grid.
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {

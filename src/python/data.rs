@@ -1,5 +1,4 @@
-//! Results as fields, in which they cross to Python, and as JSON text of files, in which they come back. `src/data.rs`
-//! says which fields they have.
+//! Results as fields, in which they cross to Python, and as JSON text of files, in which they come back.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

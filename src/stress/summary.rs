@@ -39,7 +39,7 @@ pub struct LayerSummary {
     /// Name of the layer, if it has one; the substrate has none.
     pub name: Option<String>,
     /// Depths of the top and bottom faces \[m\]; the substrate's bottom is at infinity.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::depths"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "depths"))]
     pub depths: [f64; 2],
     /// Largest von Mises stress.
     pub von_mises: Peak,
@@ -53,6 +53,13 @@ pub struct LayerSummary {
     /// Safety factor against fracture: the tensile strength divided by the largest tension; none where
     /// there is no tension.
     pub strength_safety_factor: Option<f64>,
+}
+
+/// Depths of two faces, of which the lower one is infinite where it is null, as JSON has it.
+#[cfg(feature = "serde")]
+fn depths<'de, D: serde::Deserializer<'de>>(of: D) -> std::result::Result<[f64; 2], D::Error> {
+    let (top, bottom) = <(f64, Option<f64>) as serde::Deserialize>::deserialize(of)?;
+    Ok([top, bottom.unwrap_or(f64::INFINITY)])
 }
 
 /// The extremes at one interface.

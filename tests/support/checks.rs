@@ -62,3 +62,15 @@ pub(crate) fn seeded(cases: u32) -> ProptestConfig {
         ..ProptestConfig::default()
     }
 }
+
+/// Asserts that JSON gives a value back; without the feature `serde` nothing.
+#[cfg(feature = "serde")]
+pub(crate) fn kept<T>(value: &T)
+where
+    T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    let text = serde_json::to_string(value).unwrap_or_default();
+    assert_eq!(serde_json::from_str::<T>(&text).ok().as_ref(), Some(value), "{text}");
+}
+#[cfg(not(feature = "serde"))]
+pub(crate) fn kept<T>(_: &T) {}

@@ -6,10 +6,14 @@ quantity, give the result an attribute of its name, and add a row here.
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
+
+import nacre._core as core
 
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
@@ -414,7 +418,19 @@ FILM = (
 )
 """Quantities of an oil film."""
 
-PARAMETERS = {
+
+def _units_of_shapes() -> dict[str, str]:
+    """Return the SI units of the arguments of shapes, which their docstrings have in brackets."""
+    texts = {
+        name: str(getattr(shape, name).__doc__)
+        for shape in core.Shape.__subclasses__()
+        for name in inspect.signature(shape).parameters
+    }
+    units = {name: re.search(r"\[(?:1|(.+?))\]", text) for name, text in texts.items()}
+    return {name: unit[1] or "" for name, unit in units.items() if unit}
+
+
+PARAMETERS = _units_of_shapes() | {
     "load": "N",
     "approach": "m",
     "eccentricity": "m",
@@ -424,13 +440,9 @@ PARAMETERS = {
     "torque": "N m",
     "young": "Pa",
     "thickness": "m",
-    "radius": "m",
-    "crown_radius": "m",
-    "flat_length": "m",
     "depth": "m",
     "diameter": "m",
     "pitch_diameter": "m",
-    "length": "m",
     "clearance": "m",
     "hardness": "Pa",
     "work": "N/m",
@@ -453,19 +465,7 @@ PARAMETERS = {
 BY_LAYER = ("rate", "counter_rate")
 """Parameters that may have a number for each layer, by its name."""
 LENGTHS = (
-    *(
-        "amplitude",
-        "apex",
-        "center",
-        "corners",
-        "drop",
-        "ends",
-        "heights",
-        "radii",
-        "size",
-        "width",
-    ),
-    *("counter_radius", "counter_radius_x", "counter_radius_y", "radius_x", "radius_y", "spacing"),
+    *("amplitude", "corners", "drop", "ends", "radii", "size", "width"),
     *("groove_radius", "profile_radius", "raceway_crown", "raceway_diameters", "shoulder_height"),
     *("shift", "smoothing", "x"),
 )

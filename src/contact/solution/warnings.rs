@@ -504,6 +504,83 @@ impl Outline {
     }
 }
 
+/// Warnings as data.
+#[cfg(feature = "serde")]
+mod data {
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Unestimated, Warning};
+
+    /// A warning by its kind, axis and figure, which are 0 where it has none.
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct WarningData {
+        kind: String,
+        axis: usize,
+        figure: f64,
+    }
+
+    /// Reasons why sliding or rolling has no estimate, by their numbers in a file.
+    const REASONS: [Unestimated; 4] = [
+        Unestimated::Coarse,
+        Unestimated::Unsolved,
+        Unestimated::Coefficients,
+        Unestimated::Before,
+    ];
+
+    impl Serialize for Warning {
+        fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+            let (axis, figure) = match *self {
+                Self::GridEdge | Self::SharpEdge | Self::FreeEnd | Self::CoatedEnd => (0, 0.0),
+                Self::UnknownStations => (0, 0.0),
+                Self::EndlessCrown { at } => (0, at),
+                Self::SharpEnd { axis } | Self::MapRim { axis } => (axis, 0.0),
+                Self::Coarse { axis, cells } => (axis, cells as f64),
+                Self::CoarseSpots { axis, cells } => (axis, cells),
+                Self::LargeContact { axis, ratio } => (axis, ratio),
+                Self::OutsideGrid { depth } => (0, depth),
+                Self::PeakError { error } | Self::Stations { error } => (0, error),
+                Self::LargeMotion { size } => (0, size),
+                Self::Unestimated { reason } => (reason as usize, 0.0),
+            };
+            WarningData { kind: self.kind().into(), axis, figure }.serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Warning {
+        fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
+            let WarningData { kind, axis, figure } = WarningData::deserialize(data)?;
+            let all = [
+                Self::GridEdge,
+                Self::SharpEnd { axis },
+                Self::FreeEnd,
+                Self::CoatedEnd,
+                Self::SharpEdge,
+                Self::MapRim { axis },
+                Self::Coarse { axis, cells: figure as usize },
+                Self::CoarseSpots { axis, cells: figure },
+                Self::LargeContact { axis, ratio: figure },
+                Self::OutsideGrid { depth: figure },
+                Self::PeakError { error: figure },
+                Self::Stations { error: figure },
+                Self::UnknownStations,
+                Self::EndlessCrown { at: figure },
+                Self::LargeMotion { size: figure },
+            ];
+            let unestimated = || {
+                let reason = *REASONS.get(axis)?;
+                Some(Self::Unestimated { reason }).filter(|warning| warning.kind() == kind)
+            };
+            let warning = all.iter().find(|warning| warning.kind() == kind);
+            warning
+                .copied()
+                .or_else(unestimated)
+                .ok_or_else(|| D::Error::custom(format!("no warning is of the kind {kind:?}")))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use ndarray::Array2;

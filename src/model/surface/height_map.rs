@@ -6,6 +6,7 @@ use ndarray::{Array2, ArrayRef2};
 
 use super::{Extent, Surface, sampled};
 use crate::error::{Result, all_finite, positive, require};
+use crate::model::data::value;
 use crate::model::grid::Grid;
 
 /// A measured surface: heights at the centres of a grid's cells, positive towards the other body.
@@ -90,6 +91,26 @@ impl HeightMap {
     /// Centre of the map \[m\].
     pub fn center(&self) -> [f64; 2] {
         self.grid.center()
+    }
+}
+
+value! {
+    HeightMap by HeightMapData {
+        heights: Vec<Vec<f64>> = of.heights().outer_iter().map(|row| row.to_vec()).collect();
+        spacing: [f64; 2] = of.spacing();
+        #[serde(default)]
+        center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "crate::model::data::is_default")]
+        periodic: [bool; 2] = of.is_periodic();
+    }
+    of, fields => {
+        let shape = [fields.heights.len(), fields.heights.first().map_or(0, Vec::len)];
+        let heights = Array2::from_shape_vec(shape, fields.heights.concat()).map_err(|_| {
+            crate::error::Error::Inconsistent("heights must be rows of the same length")
+        })?;
+        Self::new(heights, fields.spacing)?
+            .centered_at(fields.center)?
+            .periodic(fields.periodic)
     }
 }
 

@@ -6,6 +6,7 @@ mod stations;
 use std::f64::consts::PI;
 
 use crate::error::{Result, not_negative, positive, require};
+use crate::model::data::value;
 use crate::model::hertz::Line;
 use crate::model::surface::quadric::sagitta;
 use crate::model::surface::sagitta_slope;
@@ -209,6 +210,14 @@ impl CrownedProfile {
             _ => None,
         }
     }
+}
+
+value! {
+    CrownedProfile by CrownedProfileData {
+        flat_length: f64 = of.flat_length();
+        crown_radius: f64 = of.crown_radius();
+    }
+    of, fields => Self::new(fields.flat_length, fields.crown_radius)
 }
 
 /// A logarithmic profile, which has a straight middle where `flat_length` > 0.
@@ -451,6 +460,16 @@ impl LogarithmicProfile {
         };
         self.amplitude * crowned / root * sum
     }
+}
+
+value! {
+    LogarithmicProfile by LogarithmicProfileData {
+        amplitude: f64 = of.amplitude();
+        length: f64 = of.length();
+        flat_length: f64 = of.flat_length();
+        end_factor: f64 = of.end_factor();
+    }
+    of, fields => Self::new(fields.amplitude, fields.length, fields.flat_length, fields.end_factor)
 }
 
 /// Parameters of the profile of Fujiwara and Kawase.

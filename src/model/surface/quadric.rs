@@ -4,6 +4,7 @@ use ndarray::Array2;
 
 use super::{Extent, Surface, absent, by_difference, sagitta_slope, sampled};
 use crate::error::{Result, positive, require};
+use crate::model::data::value;
 use crate::model::grid::Grid;
 use crate::model::hertz::equivalent_radius;
 
@@ -72,6 +73,16 @@ impl Sphere {
     pub fn equivalent_radii(&self) -> [f64; 2] {
         self.counterpart.equivalent([self.radius; 2])
     }
+}
+
+value! {
+    Sphere by SphereData {
+        radius: f64 = of.radius();
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
+    }
+    of, fields => Self::new(fields.radius)?
+        .with_counter_radii([fields.counter_radius_x, fields.counter_radius_y])
 }
 
 impl Surface for Sphere {
@@ -186,6 +197,17 @@ impl Paraboloid {
     }
 }
 
+value! {
+    Paraboloid by ParaboloidData {
+        radius_x: f64 = of.radius_x();
+        radius_y: f64 = of.radius_y();
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
+    }
+    of, fields => Self::new(fields.radius_x, fields.radius_y)?
+        .with_counter_radii([fields.counter_radius_x, fields.counter_radius_y])
+}
+
 impl Surface for Paraboloid {
     fn gap(&self, x: f64, y: f64) -> f64 {
         let [radius_x, radius_y] = self.equivalent_radii;
@@ -268,6 +290,20 @@ impl Cylinder {
     }
 }
 
+value! {
+    Cylinder by CylinderData {
+        radius: f64 = of.radius();
+        counter_radius: Option<f64> = of.counter_radius();
+    }
+    of, fields => {
+        let cylinder = Self::new(fields.radius)?;
+        match fields.counter_radius {
+            Some(radius) => cylinder.with_counter_radius(radius),
+            None => Ok(cylinder),
+        }
+    }
+}
+
 impl Surface for Cylinder {
     fn gap(&self, x: f64, y: f64) -> f64 {
         sagitta(self.radius, y * y) + self.counterpart.gap(x, y)
@@ -331,6 +367,11 @@ impl FlatPunch {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+}
+
+value! {
+    FlatPunch by FlatPunchData { radius: f64 = of.radius(); }
+    of, fields => Self::new(fields.radius)
 }
 
 impl Surface for FlatPunch {

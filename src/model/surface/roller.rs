@@ -6,6 +6,7 @@ use super::profile::{CrownedProfile, Profile};
 use super::quadric::{ACROSS, Counterpart, convex, sagitta};
 use super::{Extent, Surface, absent, by_difference, sagitta_slope, sampled};
 use crate::error::{Result, positive, require};
+use crate::model::data::value;
 use crate::model::grid::Grid;
 
 /// A roller of radius R with its axis along x and an axial profile d(x).
@@ -226,6 +227,30 @@ impl Roller {
         }
         sagitta(self.radius, drop * (2.0 * self.radius - drop) + y * y)
             + self.counterpart.gap(0.0, y)
+    }
+}
+
+value! {
+    Roller by RollerData {
+        radius: f64 = of.radius();
+        profile: Profile = of.profile().clone();
+        length: Option<f64> = of.length();
+        counter_radius: Option<f64> = of.counter_radius();
+        #[serde(default, skip_serializing_if = "crate::model::data::is_default")]
+        apex: Option<f64> = of.apex();
+    }
+    of, fields => {
+        let mut roller = Self::with_profile(fields.radius, fields.profile)?;
+        if let Some(length) = fields.length {
+            roller = roller.with_length(length)?;
+        }
+        if let Some(radius) = fields.counter_radius {
+            roller = roller.with_counter_radius(radius)?;
+        }
+        match fields.apex {
+            Some(apex) => roller.with_apex(apex),
+            None => Ok(roller),
+        }
     }
 }
 

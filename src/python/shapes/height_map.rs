@@ -5,10 +5,9 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
+use super::shape_class;
 use crate::model::surface::HeightMap;
 use crate::python::arguments::{Coordinate, Pair, Real, Repr, flags, read_only, real_matrix};
-use crate::python::value::Arguments;
 
 shape_class! {
     /// A measured surface: heights at cell centres, positive towards the other body.
@@ -44,40 +43,31 @@ shape_class! {
     |of, py|
     arguments {
         /// Heights ``(nx, ny)`` [m].
-        heights: Bound<'py, PyArrayDyn<f64>> = read_only(py, of.heights().to_owned().into_dyn())?;
+        heights(&Bound<'_, PyAny>): Bound<'py, PyArrayDyn<f64>> = read_only(py, of.heights().to_owned().into_dyn())?;
         /// Distances between samples ``(dx, dy)`` [m].
-        spacing: (f64, f64) = <(f64, f64)>::from(of.spacing());
+        spacing(&Bound<'_, PyAny>): (f64, f64) = <(f64, f64)>::from(of.spacing());
         /// Centre [m].
-        center: (f64, f64) = <(f64, f64)>::from(of.center());
+        center(Option<Pair> = None): (f64, f64) = <(f64, f64)>::from(of.center());
         /// Whether the surface repeats along x and along y.
-        periodic: (bool, bool) = <(bool, bool)>::from(of.is_periodic());
+        periodic(Option<&Bound<'_, PyAny>> = None): (bool, bool) = <(bool, bool)>::from(of.is_periodic());
     }
     attributes {}
-    methods {
-        #[new]
-        #[pyo3(signature = (heights, spacing, center=None, periodic=None))]
-        fn new(
-            heights: &Bound<'_, PyAny>,
-            spacing: &Bound<'_, PyAny>,
-            center: Option<Pair>,
-            periodic: Option<&Bound<'_, PyAny>>,
-        ) -> PyResult<PyClassInitializer<Self>> {
-            let both = spacing.extract::<Real>().map(|spacing| [spacing.0; 2]);
-            let spacing =
-                both.or_else(|_| spacing.extract::<Pair>().map(|pair| pair.0)).map_err(|_| {
-                    PyTypeError::new_err(format!(
-                        "spacing must be a number or a pair of numbers, got {}",
-                        Repr(spacing)
-                    ))
-                })?;
-            let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-            for (coordinate, spacing) in Coordinate::both(heights)?.iter().zip(spacing) {
-                if let Some(coordinate) = coordinate {
-                    coordinate.check_spacing("heights", spacing)?;
-                }
+    make {
+        let both = spacing.extract::<Real>().map(|spacing| [spacing.0; 2]);
+        let spacing =
+            both.or_else(|_| spacing.extract::<Pair>().map(|pair| pair.0)).map_err(|_| {
+                PyTypeError::new_err(format!(
+                    "spacing must be a number or a pair of numbers, got {}",
+                    Repr(spacing)
+                ))
+            })?;
+        let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
+        for (coordinate, spacing) in Coordinate::both(heights)?.iter().zip(spacing) {
+            if let Some(coordinate) = coordinate {
+                coordinate.check_spacing("heights", spacing)?;
             }
-            let map = map.centered_at(center.map_or([0.0; 2], |center| center.0))?;
-            Ok(object(Self, map.periodic(flags("periodic", periodic)?)?))
         }
+        let map = map.centered_at(center.map_or([0.0; 2], |center| center.0))?;
+        map.periodic(flags("periodic", periodic)?)?
     }
 }

@@ -3,10 +3,9 @@
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
+use super::shape_class;
 use crate::model::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 use crate::python::arguments::Real;
-use crate::python::value::Arguments;
 
 shape_class! {
     /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
@@ -42,11 +41,11 @@ shape_class! {
     |of, py|
     arguments {
         /// Radius [m].
-        radius: f64 = of.radius();
+        radius(Real): f64 = of.radius();
         /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
-        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_x(Option<Real> = None): Option<f64> = of.counter_radii()[0];
         /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
-        counter_radius_y: Option<f64> = of.counter_radii()[1];
+        counter_radius_y(Option<Real> = None): Option<f64> = of.counter_radii()[1];
     }
     attributes {
         /// Equivalent radius along x [m], ``1/(1/R + 1/R_x)``.
@@ -54,17 +53,9 @@ shape_class! {
         /// Equivalent radius along y [m], ``1/(1/R + 1/R_y)``.
         equivalent_radius_y: f64 = of.equivalent_radii()[1];
     }
-    methods {
-        #[new]
-        #[pyo3(signature = (radius, counter_radius_x=None, counter_radius_y=None))]
-        fn new(
-            radius: Real,
-            counter_radius_x: Option<Real>,
-            counter_radius_y: Option<Real>,
-        ) -> PyResult<PyClassInitializer<Self>> {
-            let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
-            Ok(object(Self, Sphere::new(radius.0)?.with_counter_radii(counter)?))
-        }
+    make {
+        let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
+        Sphere::new(radius.0)?.with_counter_radii(counter)?
     }
 }
 
@@ -95,13 +86,13 @@ shape_class! {
     |of, py|
     arguments {
         /// Radius of curvature along x [m].
-        radius_x: f64 = of.radius_x();
+        radius_x(Real): f64 = of.radius_x();
         /// Radius of curvature along y [m].
-        radius_y: f64 = of.radius_y();
+        radius_y(Real): f64 = of.radius_y();
         /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
-        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_x(Option<Real> = None): Option<f64> = of.counter_radii()[0];
         /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
-        counter_radius_y: Option<f64> = of.counter_radii()[1];
+        counter_radius_y(Option<Real> = None): Option<f64> = of.counter_radii()[1];
     }
     attributes {
         /// Equivalent radius along x [m], ``1/(1/radius_x + 1/counter_radius_x)``.
@@ -109,19 +100,9 @@ shape_class! {
         /// Equivalent radius along y [m], ``1/(1/radius_y + 1/counter_radius_y)``.
         equivalent_radius_y: f64 = of.equivalent_radii()[1];
     }
-    methods {
-        #[new]
-        #[pyo3(signature = (radius_x, radius_y, counter_radius_x=None, counter_radius_y=None))]
-        fn new(
-            radius_x: Real,
-            radius_y: Real,
-            counter_radius_x: Option<Real>,
-            counter_radius_y: Option<Real>,
-        ) -> PyResult<PyClassInitializer<Self>> {
-            let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
-            let shape = Paraboloid::new(radius_x.0, radius_y.0)?.with_counter_radii(counter)?;
-            Ok(object(Self, shape))
-        }
+    make {
+        let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
+        Paraboloid::new(radius_x.0, radius_y.0)?.with_counter_radii(counter)?
     }
 }
 
@@ -152,23 +133,19 @@ shape_class! {
     |of, py|
     arguments {
         /// Radius [m].
-        radius: f64 = of.radius();
+        radius(Real): f64 = of.radius();
         /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
-        counter_radius: Option<f64> = of.counter_radius();
+        counter_radius(Option<Real> = None): Option<f64> = of.counter_radius();
     }
     attributes {
         /// Equivalent radius [m], ``1/(1/radius + 1/counter_radius)``.
         equivalent_radius: f64 = of.equivalent_radius();
     }
-    methods {
-        #[new]
-        #[pyo3(signature = (radius, counter_radius=None))]
-        fn new(radius: Real, counter_radius: Option<Real>) -> PyResult<PyClassInitializer<Self>> {
-            let cylinder = Cylinder::new(radius.0)?;
-            Ok(object(Self, match counter_radius {
-                Some(counter_radius) => cylinder.with_counter_radius(counter_radius.0)?,
-                None => cylinder,
-            }))
+    make {
+        let cylinder = Cylinder::new(radius.0)?;
+        match counter_radius {
+            Some(counter_radius) => cylinder.with_counter_radius(counter_radius.0)?,
+            None => cylinder,
         }
     }
 }
@@ -194,13 +171,10 @@ shape_class! {
     |of, py|
     arguments {
         /// Radius [m].
-        radius: f64 = of.radius();
+        radius(Real): f64 = of.radius();
     }
     attributes {}
-    methods {
-        #[new]
-        fn new(radius: Real) -> PyResult<PyClassInitializer<Self>> {
-            Ok(object(Self, FlatPunch::new(radius.0)?))
-        }
+    make {
+        FlatPunch::new(radius.0)?
     }
 }

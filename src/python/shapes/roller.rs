@@ -3,12 +3,10 @@
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::base::{Kind, PyShape, inner_shape, object, shape_class};
-use super::profiles;
+use super::{profiles, shape_class};
 use crate::error::Error;
 use crate::model::surface::{CrownedProfile, Profile, Roller};
 use crate::python::arguments::Real;
-use crate::python::value::Arguments;
 
 shape_class! {
     /// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
@@ -58,19 +56,19 @@ shape_class! {
     |of, py|
     arguments {
         /// Radius [m].
-        radius: f64 = of.radius();
+        radius(Real): f64 = of.radius();
         /// Length of the straight part of a crowned roller [m].
-        flat_length: Option<f64> = crown(of).map(CrownedProfile::flat_length);
+        flat_length(Option<Real> = None): Option<f64> = crown(of).map(CrownedProfile::flat_length);
         /// Radius of the ends of a crowned roller [m].
-        crown_radius: Option<f64> = crown(of).map(CrownedProfile::crown_radius);
+        crown_radius(Option<Real> = None): Option<f64> = crown(of).map(CrownedProfile::crown_radius);
         /// Whole length [m] of a roller that is cut off; None for an endless one.
-        length: Option<f64> = of.length();
+        length(Option<Real> = None): Option<f64> = of.length();
         /// Axial profile; None for a crowned roller.
-        profile: Option<Bound<'py, PyAny>> = profiles::to_python(py, of.profile())?;
+        profile(Option<&Bound<'_, PyAny>> = None): Option<Bound<'py, PyAny>> = profiles::to_python(py, of.profile())?;
         /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
-        counter_radius: Option<f64> = of.counter_radius();
+        counter_radius(Option<Real> = None): Option<f64> = of.counter_radius();
         /// Coordinate x of the apex of a tapered roller [m]; None of a cylindrical one.
-        apex: Option<f64> = of.apex();
+        apex(Option<Real> = None): Option<f64> = of.apex();
     }
     attributes {
         /// Coordinates x of both ends [m], which `HalfSpace` takes as those of the roller's body.
@@ -81,47 +79,31 @@ shape_class! {
         /// Equivalent radius of roller and raceway [m], ``1/(1/radius + 1/counter_radius)``.
         equivalent_radius: f64 = of.equivalent_radius();
     }
-    methods {
-        #[new]
-        #[pyo3(
-            signature = (
-                radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None, apex=None
-            )
-        )]
-        fn new(
-            radius: Real,
-            flat_length: Option<Real>,
-            crown_radius: Option<Real>,
-            length: Option<Real>,
-            profile: Option<&Bound<'_, PyAny>>,
-            counter_radius: Option<Real>,
-            apex: Option<Real>,
-        ) -> PyResult<PyClassInitializer<Self>> {
-            let mut roller = match (flat_length, crown_radius, profile) {
-                (Some(flat_length), Some(crown_radius), None) => {
-                    Roller::new(radius.0, flat_length.0, crown_radius.0)?
-                }
-                (None, None, Some(profile)) => {
-                    Roller::with_profile(radius.0, profiles::profile(profile)?)?
-                }
-                _ => {
-                    return Err(Error::Inconsistent(
-                        "either flat_length and crown_radius or profile must be given",
-                    )
-                    .into());
-                }
-            };
-            if let Some(length) = length {
-                roller = roller.with_length(length.0)?;
+    make {
+        let mut roller = match (flat_length, crown_radius, profile) {
+            (Some(flat_length), Some(crown_radius), None) => {
+                Roller::new(radius.0, flat_length.0, crown_radius.0)?
             }
-            if let Some(counter_radius) = counter_radius {
-                roller = roller.with_counter_radius(counter_radius.0)?;
+            (None, None, Some(profile)) => {
+                Roller::with_profile(radius.0, profiles::profile(profile)?)?
             }
-            if let Some(apex) = apex {
-                roller = roller.with_apex(apex.0)?;
+            _ => {
+                return Err(Error::Inconsistent(
+                    "either flat_length and crown_radius or profile must be given",
+                )
+                .into());
             }
-            Ok(object(Self, roller))
+        };
+        if let Some(length) = length {
+            roller = roller.with_length(length.0)?;
         }
+        if let Some(counter_radius) = counter_radius {
+            roller = roller.with_counter_radius(counter_radius.0)?;
+        }
+        if let Some(apex) = apex {
+            roller = roller.with_apex(apex.0)?;
+        }
+        roller
     }
 }
 

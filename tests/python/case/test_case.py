@@ -18,6 +18,7 @@ import xarray
 import nacre
 from bodies import STEEL, coated
 from nacre.case import Case, CaseError
+from shapes import TABLES
 from support import Capture, command, python, written
 
 TEXT = """
@@ -377,21 +378,8 @@ FUJIWARA = {
     **{"k1": 1.5, "k2": 0.5, "z_m": 1e-5},
 }
 SHAPES: list[tuple[dict[str, Any], nacre.types.Shape]] = [
-    (of("sphere"), nacre.Sphere(1)),
-    (of("sphere", counter_radius_x=-6), nacre.Sphere(1, -6)),
+    *TABLES,
     (of("sphere", shift=[1, 2]), nacre.Sphere(1).shifted(1, 2)),
-    (of("cylinder", radius=1.5), nacre.Cylinder(1.5)),
-    (of("cylinder", counter_radius=2), nacre.Cylinder(1, 2)),
-    (of("flat_punch"), nacre.FlatPunch(1)),
-    ({"kind": "paraboloid", "radius_x": 1, "radius_y": 2}, nacre.Paraboloid(1, 2)),
-    (
-        {"kind": "paraboloid", "radius_x": 1, "radius_y": 2, "counter_radius_y": -3},
-        nacre.Paraboloid(1, 2, counter_radius_y=-3),
-    ),
-    (
-        of("roller", flat_length=8, crown_radius=2, counter_radius=-5, apex=30),
-        nacre.Roller(1, 8, 2, counter_radius=-5, apex=30),
-    ),
     (
         of("roller", length=9, profile={"kind": "logarithmic", "amplitude": 1e-6, "length": 2}),
         nacre.Roller(1, length=9, profile=nacre.LogarithmicProfile(1e-6, 2)),

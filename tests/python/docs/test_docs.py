@@ -20,6 +20,7 @@ import nacre.rough
 from support import ROOT, command, printed, python
 
 DOCS = ROOT / "docs"
+NAMES: dict[str, Any] = runpy.run_path(str(DOCS / "extensions" / "names.py"))
 MODULES = (
     *(nacre.bearing, nacre.design, nacre.friction, nacre.hertz, nacre.indent, nacre.plot),
     *(nacre.rough, nacre.types, nacre.verify),
@@ -135,12 +136,10 @@ def test_the_list_of_pages_says_what_each_is_for() -> None:
 
 
 def test_the_reference_opens_with_a_line_on_every_name() -> None:
-    source = DOCS / "extensions" / "names.py"
-    names: dict[str, Any] = runpy.run_path(str(source))
-    missing = [name for name in names["names"]() if not names["sentence"](name)]
+    missing = [name for name in NAMES["names"]() if not NAMES["sentence"](name)]
     values = {"nacre.RIGID", "nacre.FREE", "nacre.materials", "nacre.plot.STYLE"}
     assert {name for name in missing if not name.startswith(("nacre.torch", "nacre.jax"))} == values
-    assert len(names["table"]().splitlines()) == 2 + len(names["names"]()) > 150
+    assert len(NAMES["table"]().splitlines()) == 2 + len(NAMES["names"]()) > 150
 
 
 def test_all_installs_what_readme_says() -> None:
@@ -155,7 +154,7 @@ def test_all_installs_what_readme_says() -> None:
 
 
 def test_every_public_name_is_in_the_reference() -> None:
-    text = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.rst"))
+    text = "\n".join(NAMES["reference"](page.stem) for page in (DOCS / "api").glob("*.rst"))
     listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"

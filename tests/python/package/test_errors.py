@@ -12,6 +12,7 @@ import pytest
 import nacre
 import support
 from bodies import BALL, COATED, HARD, HELD, NAN, STEEL, quiet
+from shapes import SHAPES
 from support import errors, table
 
 PROFILE = nacre.LogarithmicProfile(1e-6, length=1.0)
@@ -69,16 +70,6 @@ VALUES = {
     "solve(ROLLER, STEEL, ENDS, load=1.0)": r"ends of the counterbody must not lie within the "
     r"shape that it carries: it ends at x = 1e-5, and the shape at 5e-4",
     # shapes
-    "Sphere(0.0)": r"radius must be .*above 0, got 0",
-    "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
-    "Cylinder(-30e-3)": r"radius must be .*raceway or groove use counter_radius.*got -0\.03",
-    "Roller(-1.0, 1.0, 1.0)": r"radius must be .*counter_radius.*above 0, got -1",
-    "Roller(1.0, 1.0, 1.0, apex=0.0)": r"apex must be finite and not 0, got 0",
-    "Cylinder(5e-3, counter_radius=-4e-3)": r"counter_radius must be .*raceway.*wider.*got -0\.004",
-    "Cylinder(5e-3, counter_radius=0.0)": r"counter_radius must be finite, and above 0.*got 0",
-    "Sphere(5e-3, counter_radius_x=-5e-3)": r"counter_radius_x must be .*groove.*got -0\.005",
-    "Sphere(5e-3, counter_radius_y=NAN)": r"counter_radius_y must be finite.*got NaN",
-    "Paraboloid(1.0, 1.0, counter_radius_y=-0.5)": r"counter_radius_y must be .*got -0\.5",
     "hertz.equivalent_radius(5e-3, -4e-3)": r"1/radius \+ 1/counter_radius must be above 0",
     "hertz.relative_radii((None, 5e-3), (None, 5e-3), 0.0)": r"parallel cylinders touch along",
     "hertz.relative_radii((None, 0.0), (None, 5e-3), 1.0)": r"radii must be other than 0.*got 0",
@@ -88,14 +79,6 @@ VALUES = {
     "hertz.Ellipse(1.0, 1.0, 1.0, 1.0, counter_radius_x=-1.0)": r"must be convex together",
     "hertz.Ellipse(1.0, 1e300, 1.0, 1.0)": r"radii.*too different",
     "hertz.Point(1.0, 1.0, 1.0).max_shear(0.6)": r"poisson must be .*at most 0\.5, got 0\.6",
-    "FlatPunch(0.0)": r"radius must be .*above 0, got 0",
-    "Roller(0.0, 1.0, 1.0)": r"radius must be .*above 0, got 0",
-    "Roller(1.0, -1.0, 1.0)": r"flat_length must be .*at least 0, got -1",
-    "Roller(1.0, 1.0, 0.0)": r"crown_radius must be .*above 0, got 0",
-    "Roller(1.0, 1.0, 1.0, length=0.5)": r"length must be at least flat_length.*got 0\.5",
-    "Roller(1.0)": r"flat_length.*crown_radius.*profile",
-    "Roller(1.0, 1.0)": r"flat_length.*crown_radius.*profile",
-    "Roller(1.0, 1.0, 1.0, profile=PROFILE)": r"flat_length.*crown_radius.*profile",
     "LogarithmicProfile(0.0, 1.0)": r"amplitude must be .*above 0, got 0",
     "LogarithmicProfile(1.0, INF)": r"length must be finite.*got inf",
     "LogarithmicProfile(1.0, 1.0, 1.0)": r"flat_length must be .*below.*length, got 1",
@@ -110,13 +93,6 @@ VALUES = {
     "SampledProfile(HEIGHTS, HEIGHTS)": r"x must have one dimension.*\[4, 5\]",
     "BALL.shifted(NAN, 0.0)": r"x must be finite, got NaN",
     # height maps
-    "HeightMap(NAN_AT_1_2, 1.0)": r"heights is not finite at \[1, 2\]",
-    "HeightMap([1.0, 2.0], 1.0)": r"heights must have two dimensions.*\[2\]",
-    "HeightMap(np.zeros((2, 2, 2)), 1.0)": r"heights must have two dimensions.*\[2, 2, 2\]",
-    "HeightMap([[1.0, 2.0]], 1.0)": "number of heights .* at least 2, got 1",
-    "HeightMap(np.zeros((0, 0)), 1.0)": "number of heights .* at least 2, got 0",
-    "HeightMap(HEIGHTS, (1.0, -1.0))": r"spacing must be .*above 0, got -1",
-    "HeightMap(HEIGHTS, 1.0, center=(NAN, 0.0))": r"center must be finite, got NaN",
     "HeightMap(HEIGHTS, 1e-9).gaps(GRID)": r"grid spacing must be at most twice.*got (0\.0|2\.5e-)",
     # grids
     "Grid((-4, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got -4",
@@ -539,6 +515,7 @@ NAMES = globals() | {
 
 @table(
     *errors(ValueError, VALUES | FRICTION_VALUES | FIELD_VALUES),
+    *(row for shape in SHAPES.values() for row in errors(ValueError, shape.refused)),
     *errors(TypeError, TYPES | FRICTION_TYPES | FIELD_TYPES),
     ("slides(force=(1.0, None), max_convolutions=1)", nacre.ConvergenceError, "max_convolutions"),
 )

@@ -13,11 +13,12 @@ import nacre
 from bodies import STEEL, quiet
 from nacre import _core as core
 from nacre.results import values
+from nacre.results.quantities import PARAMETERS
+from shapes import SHAPES
 from support import python
 
 COATING = nacre.Layer(nacre.Elastic(3e9, 0.4), 2e-6, "frictionless", "lacquer")
 BONDED = nacre.Layer(COATING.material, COATING.thickness, name=COATING.name)
-PROFILE = nacre.LogarithmicProfile(1e-6, 10e-3, flat_length=2e-3, end_factor=0.9)
 MADE: dict[str, list[dict[str, Any]]] = {
     "Elastic": [{"young": 2e11, "poisson": 0.25}],
     "Layer": [
@@ -41,29 +42,7 @@ MADE: dict[str, list[dict[str, Any]]] = {
             **{"corners": (5e-4,), "smoothing": 2e-4},
         },
     ],
-    "Sphere": [{"radius": 5e-3, "counter_radius_x": 6e-2, "counter_radius_y": 7e-2}],
-    "Paraboloid": [
-        {
-            "radius_x": 5e-3,
-            "radius_y": 6e-3,
-            "counter_radius_x": 6e-2,
-            "counter_radius_y": 7e-2,
-        }
-    ],
-    "Cylinder": [{"radius": 5e-3, "counter_radius": 6e-2}],
-    "Roller": [
-        {"radius": 5e-3, "flat_length": 8e-3, "crown_radius": 7.5, "length": 9e-3},
-        {"radius": 5e-3, "profile": PROFILE, "counter_radius": 6e-2, "apex": 0.1},
-    ],
-    "FlatPunch": [{"radius": 1e-3}],
-    "HeightMap": [
-        {
-            "heights": ((0.0, 1e-6), (2e-6, 3e-6)),
-            "spacing": (1e-6, 2e-6),
-            "center": (1e-6, 0.0),
-            "periodic": (True, True),
-        }
-    ],
+    **{name: row.arguments for name, row in SHAPES.items()},
     "Tip.sphere": [{"radius": 1e-6}],
     "Tip.paraboloid": [{"radius": 1e-6}],
     "Tip.cone": [{"slope": 0.3}],
@@ -142,6 +121,12 @@ def test_every_argument_of_every_value_is_tried() -> None:
             for field, value in given.items():
                 default = defaults[field].default
                 assert name == "Response" or default is inspect.Parameter.empty or value != default
+
+
+def test_numbers_of_shapes_have_units() -> None:
+    calls = (arguments for row in SHAPES.values() for arguments in row.arguments)
+    numbers = {name for call in calls for name, value in call.items() if type(value) is float}
+    assert numbers - PARAMETERS.keys() == set(), "their docstrings must have units: [m], [1]"
 
 
 @each

@@ -16,6 +16,8 @@ from nacre._tools.units import written
 from nacre.results import values
 from nacre.results.base import Fields
 from results import LISTED, solved
+from shapes import LOGARITHMIC, SAMPLED
+from shapes import VALUES as SHAPES
 from support import python
 
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
@@ -26,8 +28,6 @@ FLOATING = nacre.HalfSpace(
 GRID = nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4))
 SMALL = nacre.Grid(shape=(16, 12), size=(4e-4, 4.1e-4))
 THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives them
-LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
-SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
 SOLUTION = nacre.solve(BALL, COATED, load=10.0, grid=GRID)
 SLID = nacre.slide(BALL, COATED, STEEL, load=10.0, grid=GRID, friction=0.1, force=(0.3, None))
 SUMMARY = SOLUTION.stress_summary(strength={0: 1e9}, threads=1)
@@ -53,29 +53,12 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "grid": GRID,
     "grid off the origin": nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4), center=(-1e-3 / 7, 0.1)),
     "line grid": nacre.Grid.line(cells=48, width=1e-3 / 3, center=1e-4 / 7),
-    "sphere": BALL,
-    "paraboloid": nacre.Paraboloid(5e-3, 1.0),
-    "cylinder": nacre.Cylinder(5e-3),
-    "roller": nacre.Roller(5e-3, 19.13e-3, 7.5),
-    "cut roller": nacre.Roller(5e-3, 19.13e-3, 7.5, length=26e-3),
+    **SHAPES,
     "logarithmic profile": LOGARITHMIC,
     "sampled profile": SAMPLED,
-    "logarithmic roller": nacre.Roller(5e-3, profile=LOGARITHMIC),
-    "sampled roller": nacre.Roller(5e-3, profile=SAMPLED, length=18e-3),
-    "punch": nacre.FlatPunch(1e-3),
-    "ball in a groove": nacre.Sphere(
-        5e-3, counter_radius_x=-5e-3 * 1.04, counter_radius_y=1e-2 / 3
-    ),
-    "ball in a trough": nacre.Sphere(5e-3, counter_radius_y=-6e-3),
-    "barrel on a ring": nacre.Paraboloid(5e-3, 1.0, counter_radius_x=-1e-2 / 3 * 2),
-    "cylinder on a ring": nacre.Cylinder(5e-3, counter_radius=1e-1 / 3),
-    "roller in a raceway": nacre.Roller(5e-3, 19.13e-3, 7.5, counter_radius=-0.1 / 3),
-    "tapered roller": nacre.Roller(5e-3, 19.13e-3, 7.5, apex=0.4 / 3),
     "point contact": nacre.hertz.Point(5e-3, 1e11 / 3, 10.0),
     "line contact": nacre.hertz.Line(5e-3, 1e11 / 3, 1e4 / 3),
     "ellipse": nacre.hertz.Ellipse(5e-3, None, 1e11 / 3, 10.0, counter_radius_y=0.1 / 3),
-    "height map": nacre.HeightMap(THIRDS, spacing=0.1, center=(1e-6, -2e-6)),
-    "oblong height map": nacre.HeightMap(THIRDS, spacing=(1e-6, 2e-6)),
     "shifted": BALL.shifted(1e-3 / 3, -2e-3),
     "sum": BALL + nacre.FlatPunch(1e-3),
     "sum of three": (BALL + nacre.FlatPunch(1e-3)) + nacre.Cylinder(5e-3),

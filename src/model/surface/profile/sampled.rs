@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::stations::{Piece, chords, limit, smoothed, spline};
 use crate::error::{Error, Result, positive, refuse_if, require};
+use crate::model::data::value;
 
 /// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
 /// its length a tilt changes little.
@@ -215,6 +216,27 @@ impl SampledProfile {
         let pieces = self.pieces[self.piece_at(a)..].iter();
         let pieces = pieces.take_while(|piece| piece.ends[0] < b);
         pieces.map(|piece| piece.integral(piece.ends[0].max(a), piece.ends[1].min(b))).sum()
+    }
+}
+
+value! {
+    SampledProfile by SampledProfileData {
+        x: Vec<f64> = of.samples().map(|[x, _]| x).collect();
+        drop: Vec<f64> = of.samples().map(|[_, drop]| drop).collect();
+        smooth: bool = !of.is_straight();
+        #[serde(default, skip_serializing_if = "crate::model::data::is_default")]
+        corners: Vec<f64> = of.corners().to_vec();
+        smoothing: Option<f64> = of.smoothing();
+    }
+    of, fields => {
+        let mut profile = Self::new(&fields.x, &fields.drop)?.with_corners(&fields.corners)?;
+        if !fields.smooth {
+            profile = profile.straight();
+        }
+        match fields.smoothing {
+            Some(wavelength) => profile.smoothed(wavelength),
+            None => Ok(profile),
+        }
     }
 }
 
