@@ -1,4 +1,5 @@
-//! Time and process. Web programs without a system have neither: time stands still there, and the process is 0.
+//! Time and process. Web programs without a system have no clock: time stands still there. No WebAssembly can fork:
+//! its process is 0.
 
 use std::time::Duration;
 
@@ -33,5 +34,5 @@ impl Stopwatch {
 
 /// Number of this process: a fork has another one.
 pub(crate) fn process() -> u32 {
-    if cfg!(all(target_arch = "wasm32", target_os = "unknown")) { 0 } else { std::process::id() }
+    if cfg!(target_family = "wasm") { 0 } else { std::process::id() }
 }
