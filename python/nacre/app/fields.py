@@ -14,7 +14,7 @@ import numpy as np
 from nacre._tools.units import System, size_of
 from nacre.case.bearing import UNITS
 from nacre.case.reference import place
-from nacre.results.quantities import BY_LAYER, INPUTS
+from nacre.results.parameters import BY_LAYER, INPUTS
 
 SCALES: dict[str, Callable[[float], float]] = {
     "1/min": lambda value: value * 2 * math.pi / 60,

@@ -32,7 +32,8 @@ from nacre.contact.arguments import (
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
-from nacre.results.quantities import INPUTS, WEAR
+from nacre.results.parameters import INPUTS
+from nacre.results.quantities import WEAR
 from nacre.results.report import Picture, Sections, contact_pictures, table, writer
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.tables import heading

@@ -10,7 +10,8 @@ import numpy as np
 
 from nacre._tools.units import symbol
 from nacre.results.files import dataset
-from nacre.results.quantities import FIT, INDENT, PARAMETERS
+from nacre.results.parameters import PARAMETERS
+from nacre.results.quantities import FIT, INDENT
 from nacre.results.values import encode
 
 if TYPE_CHECKING:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
-from nacre.results.quantities import ERROR, PARAMETERS, units
+from nacre.results.parameters import PARAMETERS
+from nacre.results.quantities import ERROR, units
 
 with extra("plot"):
     from matplotlib.axes import Axes

@@ -23,7 +23,8 @@ import nacre._core as core
 from nacre._tools.markup import Markup, Parts, text_of
 from nacre._tools.units import rounded, symbol
 from nacre.results import display, svg, tables
-from nacre.results.quantities import INPUTS, Quantity
+from nacre.results.parameters import INPUTS
+from nacre.results.quantities import Quantity
 from nacre.results.values import encode
 
 if TYPE_CHECKING:

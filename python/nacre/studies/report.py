@@ -11,7 +11,8 @@ import numpy as np
 
 from nacre._tools.units import display_units, symbol
 from nacre.results import display, files, svg
-from nacre.results.quantities import ERROR, PARAMETERS
+from nacre.results.parameters import PARAMETERS
+from nacre.results.quantities import ERROR
 from nacre.results.report import Picture, Rows, Sections, Table, table, write
 
 if TYPE_CHECKING:

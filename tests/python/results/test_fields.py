@@ -13,7 +13,7 @@ import nacre
 from bodies import STEEL, quiet
 from nacre import _core as core
 from nacre.results import values
-from nacre.results.quantities import PARAMETERS
+from nacre.results.parameters import PARAMETERS
 from shapes import SHAPES
 from support import python
 

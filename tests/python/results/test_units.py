@@ -16,7 +16,8 @@ import nacre
 from nacre._tools.units import Scale, symbol, system, written
 from nacre.bearing import CylindricalRoller
 from nacre.results import quantities
-from nacre.results.quantities import PARAMETERS, Quantity
+from nacre.results.parameters import PARAMETERS
+from nacre.results.quantities import Quantity
 
 # Read by hand here, apart from the code that writes: units of SI in newtons, metres and others.
 PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
