@@ -93,7 +93,7 @@ class Field(NamedTuple):
             return SCALES[self.unit](value)
         return tidy(value * self._factor(units))
 
-    def typed(self, entry: object, units: str) -> float | None:
+    def typed(self, entry: Any, units: str) -> float | None:
         """Return an entry of a case, the largest of a list, in the unit of the field."""
         largest = max(entry) if isinstance(entry, list) else entry
         return None if largest is None else tidy(largest / self._factor(units))
@@ -114,7 +114,7 @@ def keys_of(path: str) -> list[Any]:
     return [int(key) if key.isdigit() else key for key in re.findall(r"[^.\[\]]+", path)]
 
 
-def entry_at(data: object, path: str) -> Any:
+def entry_at(data: Any, path: str) -> Any:
     """Return the entry of a case at a path, or None."""
     try:
         return reduce(getitem, keys_of(path), data)
