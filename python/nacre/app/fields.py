@@ -111,7 +111,8 @@ def tidy(value: float) -> float:
 
 def keys_of(path: str) -> list[Any]:
     """Return the keys and the numbers in lists along a path."""
-    return [int(key) if key.isdigit() else key for key in re.findall(r"[^.\[\]]+", path)]
+    steps = re.findall(r"\[(\d+)\]|([^.\[\]]+)", path)
+    return [int(number) if number else key for number, key in steps]
 
 
 def entry_at(data: Any, path: str) -> Any:
