@@ -254,7 +254,7 @@ def test_a_material_may_have_digits_as_its_name(tmp_path: Path) -> None:
     card = own_card(path)
     assert card.by_path["materials.1045.young"].default == 210e3
     case = card.case({"materials.1045.young": "200e3"})
-    assert case.data["materials"]["1045"]["young"] == 200e3
+    assert _at(case.data, "materials.1045.young") == 200e3
 
 
 def test_a_measured_surface_is_read_once(tmp_path: Path) -> None:
@@ -315,7 +315,7 @@ def test_sizes_are_limited_wherever_they_stand(data: dict[str, Any], what: str) 
 
 @pytest.mark.parametrize("stage", ["full", "report"])
 def test_what_does_not_converge_is_a_sentence(stage: str) -> None:
-    data = cards()["contact"].case({}).data
+    data: dict[str, Any] = cards()["contact"].case({}).data
     data["solve"]["max_iterations"] = 1
     reply = answer(Case(data, "contact"), stage)
     assert "converge" in reply["error"]
