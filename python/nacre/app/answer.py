@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -64,8 +64,10 @@ EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension
 """Extremes of stresses that the page shows."""
 DIGITS = 5
 """Digits of the main number."""
-PRESSURE = Axis("pressure", "Pa")
-"""Axis of most pictures."""
+PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
+"""Axes of pictures."""
+HEAVIEST = "Pressure along the heaviest element, inner ring."
+"""Caption of the first picture of a bearing."""
 ERRORS = (ArithmeticError, LookupError, MemoryError, RuntimeError, TypeError, ValueError)
 """What calculations raise."""
 
@@ -149,7 +151,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     solution = _solved_contact(case, arguments, wanted)
     bare = _bare(case, arguments, wanted)
     rows, beside = (_selected(one, CONTACT_ROWS) for one in (solution, bare))
-    pictures, warnings, verdict = [_pressures(solution, bare)], solution._warnings, None
+    pictures, warnings, verdict = [_pressures(coated=solution, bare=bare)], solution._warnings, None
     if stage == "stress":
         keywords = case.stress() or {}
         try:
@@ -206,7 +208,7 @@ def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     except nacre.ConvergenceError as error:
         raise CaseError(f"no history was found: {error}") from error
     new, worn = (history.states[k].solution for k in (0, -1))
-    pictures = [_pressures(worn, new, ("worn", "new")), _figure(history._depth_picture())]
+    pictures = [_pressures(worn=worn, new=new), _figure(history._depth_picture())]
     peak = ("last peak pressure", worn.peak_pressure, "Pa")
     following = "full" if stage == "draft" else None
     return _answer(peak, history._rows(), pictures, history.warnings, history.verdict, following)
@@ -224,10 +226,10 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     if isinstance(solution, PairSolution):
         pictures = [_ring(one) for one in solution.bearings]
     else:
-        compared = [solution]
+        profiles = {"as it stands": _profile(solution)}
         if is_tilted and stage != "full":
-            compared.append(bearing.solve(**keywords | {"tilt": (0.0, 0.0)}))
-        pictures = [_along_roller(*compared), _ring(solution)]
+            profiles["aligned"] = _profile(bearing.solve(**keywords | {"tilt": (0.0, 0.0)}))
+        pictures = [_drawn(HEAVIEST, Axis("x", "m"), PRESSURE, profiles), _ring(solution)]
     is_compared = is_tilted and isinstance(bearing, RollerBearing)
     following = NEXT.get(stage) if stage == "draft" or is_compared else None
     peak = ("peak pressure", solution.peak_pressure, "Pa")
@@ -324,31 +326,21 @@ def _figure(picture: Picture) -> str:
     return f"<figure>{drawing}<figcaption>{words}</figcaption></figure>"
 
 
-def _drawn(caption: str, curves: Sequence[Curve], x: Axis, y: Axis) -> str:
-    """Return a picture of curves; one alone needs no label."""
-    named = curves if len(curves) > 1 else [one._replace(label="") for one in curves]
-    return _figure(Picture(caption, lines(named, (x, y))))
+def _drawn(caption: str, x: Axis, y: Axis, curves: Mapping[str, tuple[Field, Field]]) -> str:
+    """Return a picture of curves by name, the second one dashed; one alone needs no name."""
+    looks = zip(curves.items(), ("line", "dashed"), strict=False)
+    drawn = [Curve(*curve, name if len(curves) > 1 else "", look) for (name, curve), look in looks]
+    return _figure(Picture(caption, lines(drawn, (x, y))))
 
 
-def _pressures(
-    solution: Contact, other: Contact | None, names: tuple[str, str] = ("coated", "bare")
-) -> str:
-    """Return the picture of the pressure along the longer side of a contact, and of another."""
-    along_x, along_y = np.ptp(solution.contact_extent, axis=1)
-    axis = 0 if along_x >= along_y and not solution.grid.is_line else 1
-    x, pressure = section(solution, axis)
-    curves = [Curve(x, pressure, names[0])]
-    if other is not None:
-        curves.append(Curve(*section(other, axis), names[1], "dashed"))
-    return _drawn("Pressure through the largest.", curves, Axis("xy"[axis], "m"), PRESSURE)
-
-
-def _along_roller(*solutions: BearingSolution) -> str:
-    """Return the picture of the pressure along the heaviest element, and of aligned rings."""
-    looks = (("as it stands", "line"), ("aligned", "dashed"))
-    curves = [Curve(*_profile(one), *look) for one, look in zip(solutions, looks, strict=False)]
-    caption = "Pressure along the heaviest element, inner ring."
-    return _drawn(caption, curves, Axis("x", "m"), PRESSURE)
+def _pressures(**contacts: Contact | None) -> str:
+    """Return the picture of the pressure along the longer side of the first contact."""
+    solutions = {name: one for name, one in contacts.items() if one is not None}
+    first = next(iter(solutions.values()))
+    along_x, along_y = np.ptp(first.contact_extent, axis=1)
+    axis = 0 if along_x >= along_y and not first.grid.is_line else 1
+    curves = {name: section(one, axis) for name, one in solutions.items()}
+    return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
 
 
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:
@@ -375,17 +367,16 @@ def _ring(solution: BearingSolution) -> str:
 
 def _loads(arguments: Answer, solution: IndentSolution) -> str:
     """Return the picture of load over depth, and of the film without a substrate."""
-    curves = [Curve(solution.approach, solution.load, "on the substrate")]
+    curves = {"on the substrate": (solution.approach, solution.load)}
     if layers := solution.body.layers:
         bare = solve_indentation(**arguments | {"body": core.HalfSpace(layers[0].material)})
-        curves.append(Curve(bare.approach, bare.load, "film alone", "dashed"))
-    return _drawn("Load over depth.", curves, Axis("depth", "m"), Axis("load", "N"))
+        curves["film alone"] = bare.approach, bare.load
+    return _drawn("Load over depth.", DEPTH, Axis("load", "N"), curves)
 
 
 def _moduli(reading: Reading) -> str:
     """Return the picture of the modulus that a bare film of each depth's load would have."""
-    depths, film = reading.depths, np.full_like(reading.moduli, reading.modulus)
-    curves = [Curve(depths, reading.moduli, "read as a bare film")]
-    curves.append(Curve(depths, film, "film", "dashed"))
-    x, y = Axis("depth", "m"), Axis("apparent modulus", "Pa")
-    return _drawn("Apparent modulus over depth.", curves, x, y)
+    film = np.full_like(reading.moduli, reading.modulus)
+    moduli = {"read as a bare film": reading.moduli, "film": film}
+    curves = {name: (reading.depths, one) for name, one in moduli.items()}
+    return _drawn("Apparent modulus over depth.", DEPTH, Axis("apparent modulus", "Pa"), curves)

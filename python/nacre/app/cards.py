@@ -103,7 +103,7 @@ def check_size(data: Data) -> None:
             raise CaseError(f"{name} must be at most {most} on the page, got {size:g}")
 
 
-def _sizes(data: object) -> Iterator[tuple[str, float]]:
+def _sizes(data: Any) -> Iterator[tuple[str, float]]:
     """Yield the sizes of a case that take time, by what they are."""
     if isinstance(data, list):
         for one in data:

@@ -93,7 +93,7 @@ class Field(NamedTuple):
             return SCALES[self.unit](value)
         return tidy(value * self._factor(units))
 
-    def typed(self, entry: object, units: str) -> float | None:
+    def typed(self, entry: Any, units: str) -> float | None:
         """Return an entry of a case, the largest of a list, in the unit of the field."""
         largest = max(entry) if isinstance(entry, list) else entry
         return None if largest is None else tidy(largest / self._factor(units))
@@ -111,10 +111,11 @@ def tidy(value: float) -> float:
 
 def keys_of(path: str) -> list[Any]:
     """Return the keys and the numbers in lists along a path."""
-    return [int(key) if key.isdigit() else key for key in re.findall(r"[^.\[\]]+", path)]
+    steps = re.findall(r"\[(\d+)\]|([^.\[\]]+)", path)
+    return [int(number) if number else key for number, key in steps]
 
 
-def entry_at(data: object, path: str) -> Any:
+def entry_at(data: Any, path: str) -> Any:
     """Return the entry of a case at a path, or None."""
     try:
         return reduce(getitem, keys_of(path), data)

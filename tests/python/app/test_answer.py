@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 import nacre
 from nacre.app.answer import STAGES, Stopped, answer, file_text
-from nacre.app.cards import cards, own_card
+from nacre.app.cards import cards, check_size, own_card
 from nacre.app.fields import Field, FieldError
 from nacre.case import Case, CaseError, templates, toml
 from nacre.indent import _reading as reading
@@ -248,6 +248,15 @@ def test_a_file_is_a_card_of_its_own(tmp_path: Path) -> None:
     assert "30 N" in reply["parts"]["rows"]
 
 
+def test_a_material_may_have_digits_as_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(templates.texts()["contact"].replace("steel", "1045"), encoding="utf-8")
+    card = own_card(path)
+    assert card.by_path["materials.1045.young"].default == 210e3
+    case = card.case({"materials.1045.young": "200e3"})
+    assert _at(case.data, "materials.1045.young") == 200e3
+
+
 def test_a_measured_surface_is_read_once(tmp_path: Path) -> None:
     heights = "\n".join(
         " ".join(str((i - 8) ** 2 + (k - 8) ** 2) for k in range(16)) for i in range(16)
@@ -288,6 +297,28 @@ def test_large_files_are_refused(old: str, new: str, what: str, tmp_path: Path) 
     path.write_text(templates.texts()["contact"].replace(old, new, 1), encoding="utf-8")
     with pytest.raises(CaseError, match=f"{what} must be at most"):
         own_card(path)
+
+
+@pytest.mark.parametrize(
+    ("data", "what"),
+    [
+        ({"wear": {"steps": 201.0}}, "steps"),
+        ({"slide": {"steps": [{}] * 201}}, "steps"),
+        ({"roll": {"cells": 65_537.0}}, "cells"),
+        ({"bearing": {"first": {"count": 101, "rows": 2}}}, "elements"),
+    ],
+)
+def test_sizes_are_limited_wherever_they_stand(data: dict[str, Any], what: str) -> None:
+    with pytest.raises(CaseError, match=f"{what} must be at most"):
+        check_size(data)
+
+
+@pytest.mark.parametrize("stage", ["full", "report"])
+def test_what_does_not_converge_is_a_sentence(stage: str) -> None:
+    data: dict[str, Any] = cards()["contact"].case({}).data
+    data["solve"]["max_iterations"] = 1
+    reply = answer(Case(data, "contact"), stage)
+    assert "converge" in reply["error"]
 
 
 def test_markup_in_names_is_text(tmp_path: Path) -> None:

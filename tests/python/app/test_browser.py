@@ -252,9 +252,11 @@ def test_a_wrong_value_is_a_line_and_the_next_one_counts(opened: Opened) -> None
     assert opened.at("error").text_content() == (
         "largest load must be between 0.0001 and 1000 mN, got -3"
     )
+    wrong = opened.page.locator("input:invalid")
+    assert wrong.evaluate_all("inputs => inputs.map((one) => one.name)") == ["indent.load"]
     opened.type("indent.load", "1,5")
     opened.wait()
-    assert opened.at("error").count() == 0
+    assert (opened.at("error").count(), wrong.count()) == (0, 0)
     assert "<td>1500 µN</td>" in opened.at("rows").inner_html()
 
 

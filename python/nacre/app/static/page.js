@@ -4,7 +4,7 @@ const REST = 300, DELAYS = [200, 400, 800, 1600, 3200, 6400];
 const one = (selector, root = document) => root.querySelector(selector);
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
 const forms = [...document.forms], status = one("output"), problem = one(".error"), note = one(".note");
-const verdict = one(".verdict"), id = crypto.randomUUID();
+const id = crypto.randomUUID();
 let form, age = 0, timer, request = null, drafting = false;
 
 const inputs = () => all("input[name]", form);
@@ -78,23 +78,22 @@ async function ask(stage) {
 
 function put(reply) {
   tell(problem, reply.error);
-  all(".field.wrong").forEach((field) => field.classList.remove("wrong"));
-  if (reply.field) form.elements[reply.field]?.closest(".field").classList.add("wrong");
+  inputs().forEach((input) => input.setCustomValidity(input.name === reply.field ? reply.error : ""));
   for (const [name, content] of Object.entries(reply.parts ?? {})) {
     const part = one(`[data-part="${name}"]`);
     part.classList.remove("stale");
-    if (name === "verdict") judge(content);
+    if (name === "verdict") judge(part, content);
     else if (name === "warnings") list(part, content);
     else if (name === "peak") [one(".name", part).textContent, one("strong", part).textContent] = content;
     else part.innerHTML = content; // pictures and tables, escaped by the server
   }
 }
 
-function judge({ level, words, lines }) {
-  verdict.dataset.level = level;
-  one(".level", verdict).textContent = level;
-  one(".words", verdict).textContent = words;
-  list(one("ul", verdict), lines);
+function judge(part, { level, words, lines }) {
+  part.dataset.level = level;
+  one(".level", part).textContent = level;
+  one(".words", part).textContent = words;
+  list(one("ul", part), lines);
 }
 
 function list(element, texts) {
