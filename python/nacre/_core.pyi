@@ -652,7 +652,13 @@ class Indentation:
     def surface_modulus(self) -> float: ...
     def parameters(self) -> list[str]: ...
     def at(
-        self, branch: str, *, load: object = None, approach: object = None, radius: object = None
+        self,
+        branch: str,
+        *,
+        load: object = None,
+        approach: object = None,
+        radius: object = None,
+        progress: Callable[[int, int], object] | None = None,
     ) -> IndentStates: ...
     def curve(
         self, approach: _Vector, wrt: Sequence[str]

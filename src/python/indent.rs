@@ -42,16 +42,28 @@ fn one<T: Send + 'static>(
 }
 
 /// Results of `work` on each of the items, on a thread of its own, so that Ctrl-C is seen at once; the work ends before its
-/// next item then.
+/// next item then. `progress` is told the number of finished items and of all.
 fn worked<I: Send + 'static, T: Send + 'static>(
     py: Python<'_>,
+    progress: Option<Py<PyAny>>,
     items: Vec<I>,
     work: impl Fn(&I) -> Result<T> + Send + 'static,
 ) -> PyResult<Vec<T>> {
-    let results = background::run(py, None, move |caller: &mut Caller<()>| {
-        let going = items.iter().take_while(|_| caller.go_on().is_continue());
-        going.map(work).collect::<Result<Vec<T>>>()
-    })?;
+    let results = background::run(
+        py,
+        progress,
+        move |caller: &mut Caller<(usize, usize)>| -> Result<Vec<T>> {
+            let mut results = Vec::with_capacity(items.len());
+            for item in &items {
+                if caller.go_on().is_break() {
+                    break;
+                }
+                results.push(work(item)?);
+                caller.tell(|| (results.len(), items.len()));
+            }
+            Ok(results)
+        },
+    )?;
     Ok(results?)
 }
 
@@ -153,7 +165,7 @@ impl PyIndentation {
     }
 
     /// Contacts by load, approach or radius, whichever is given.
-    #[pyo3(signature = (branch, *, load=None, approach=None, radius=None))]
+    #[pyo3(signature = (branch, *, load=None, approach=None, radius=None, progress=None))]
     fn at(
         &self,
         py: Python<'_>,
@@ -161,6 +173,7 @@ impl PyIndentation {
         load: Option<Bound<'_, PyAny>>,
         approach: Option<Bound<'_, PyAny>>,
         radius: Option<Bound<'_, PyAny>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<PyIndentStates> {
         let branch: Branch = word("branch", branch)?;
         let all = [
@@ -181,7 +194,7 @@ impl PyIndentation {
         };
         let shape = values.shape().to_vec();
         let indent = self.indent.clone();
-        let points = worked(py, values.into_iter().collect(), move |value| match held {
+        let points = worked(py, progress, values.into_iter().collect(), move |value| match held {
             Held::Load => indent.at(Control::Load, *value, branch),
             Held::Approach => indent.at(Control::Approach, *value, branch),
             Held::Radius => indent.at_radius(*value),
@@ -319,13 +332,14 @@ impl PyIndentStates {
         let more = r.shape().to_vec();
         let r: Vec<f64> = r.into_iter().collect();
         let (held, variable) = (self.held, wrt.map(|path| self.variable(path)).transpose()?);
-        let all = worked(py, self.points.clone(), move |point| match (variable, name.as_str()) {
-            (None, "pressure") => point.pressure(&r),
-            (None, "displacement") => point.displacement(&r),
-            (None, _) => point.gap(&r),
-            (Some(variable), "pressure") => point.derivative(variable, held)?.pressure(&r),
-            (Some(variable), _) => point.derivative(variable, held)?.displacement(&r),
-        })?;
+        let all =
+            worked(py, None, self.points.clone(), move |point| match (variable, name.as_str()) {
+                (None, "pressure") => point.pressure(&r),
+                (None, "displacement") => point.displacement(&r),
+                (None, _) => point.gap(&r),
+                (Some(variable), "pressure") => point.derivative(variable, held)?.pressure(&r),
+                (Some(variable), _) => point.derivative(variable, held)?.displacement(&r),
+            })?;
         self.shaped(py, all.into_iter().flatten().collect(), &more)
     }
 
@@ -346,7 +360,7 @@ impl PyIndentStates {
         let r = real_array("r", r)?;
         let more = r.shape().to_vec();
         let r: Vec<f64> = r.into_iter().collect();
-        let all = worked(py, self.points.clone(), move |point| point.stress(0, z.0, &r))?;
+        let all = worked(py, None, self.points.clone(), move |point| point.stress(0, z.0, &r))?;
         let component = |(name, of): (&'static str, Component)| {
             Ok((name, self.shaped(py, all.iter().flatten().map(of).collect(), &more)?))
         };
@@ -360,7 +374,7 @@ impl PyIndentStates {
     /// Derivatives of radius, load, approach, stiffness and outer radius with respect to a parameter.
     fn derivatives<'py>(&self, py: Python<'py>, wrt: &str) -> PyResult<Five<'py>> {
         let (held, variable) = (self.held, self.variable(wrt)?);
-        let values = worked(py, self.points.clone(), move |point| {
+        let values = worked(py, None, self.points.clone(), move |point| {
             let change = point.derivative(variable, held)?;
             let outer = change.outer_radius.unwrap_or(change.radius);
             Ok([change.radius, change.load, change.approach, change.stiffness, outer])

@@ -243,8 +243,7 @@ def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> A
     if stage == "draft":
         values = values[::-1][::EVERY][::-1]
     arguments = arguments | {variable: values}
-    solution = solve_indentation(**arguments)
-    wanted()
+    solution = solve_indentation(**arguments, progress=wanted)
     last = int(np.argmax(solution.approach))
     rows = [
         (words, display.number(float(getattr(solution, name)[last]), UNITS[name]))

@@ -92,7 +92,8 @@ def _film(solution: BearingSolution, ring: Ring, **keywords: float) -> Film:
 
 def _indentation(case: Case, arguments: Options, options: Options) -> Results:
     with naming(case, "indent"):
-        return {"indent": solve_indentation(**arguments)}
+        progress = options.get("progress")
+        return {"indent": solve_indentation(**arguments, progress=progress)}
 
 
 SOLVERS: dict[str, Callable[[Case, Options, Options], Results]] = {

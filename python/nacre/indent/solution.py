@@ -6,7 +6,7 @@ import copyreg
 import math
 import types
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Literal, Self, get_args, overload
@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import printable, written
 from nacre.indent._reading import apparent_modulus, substrate_verdict
@@ -43,6 +44,8 @@ Variable = Literal["load", "approach", "radius"]
 Branch = Literal["stable", "unstable"]
 Control = Literal["load", "approach"]
 Numbers = float | Vector | Matrix
+PointProgress = Callable[[int, int], object]
+"""Function that is told the number of finished contacts and of all."""
 
 NUMBERS = ("load", "approach", "radius", "stiffness", "outer_radius", "central_pressure")
 """Numbers of each contact that are kept."""
@@ -597,6 +600,7 @@ class Indentation:
         approach: float | None = None,
         radius: float | None = None,
         branch: Branch = "stable",
+        progress: PointProgress | None = None,
     ) -> IndentSolution[float]: ...
     @overload
     def at(
@@ -606,6 +610,7 @@ class Indentation:
         approach: Vector | Matrix | None = None,
         radius: Vector | Matrix | None = None,
         branch: Branch = "stable",
+        progress: PointProgress | None = None,
     ) -> IndentSolution[Field]: ...
     def at(
         self,
@@ -614,6 +619,7 @@ class Indentation:
         approach: Numbers | None = None,
         radius: Numbers | None = None,
         branch: Branch = "stable",
+        progress: PointProgress | None = None,
     ) -> IndentSolution:
         """Contacts by load, approach or contact radius.
 
@@ -623,6 +629,9 @@ class Indentation:
             Loads [N], approaches [m] or contact radii [m] of any shape; exactly one of them.
         branch : {"stable", "unstable"}, optional
             Branch of the curve where adhesion gives two contacts the same load or approach.
+        progress : callable, optional
+            Function that is called with the number of finished contacts and of all contacts. Its
+            result is ignored.
 
         Returns
         -------
@@ -636,12 +645,18 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        return self._at({"load": load, "approach": approach, "radius": radius}, branch, "load")
+        return self._at({"load": load, "approach": approach, "radius": radius}, branch, "load", progress)
 
     def _at(
-        self, numbers: Mapping[Variable, object], branch: Branch, control: Control
+        self,
+        numbers: Mapping[Variable, object],
+        branch: Branch,
+        control: Control,
+        progress: PointProgress | None = None,
     ) -> IndentSolution:
-        states = self._planned.at(branch, **{str(name): one for name, one in numbers.items()})
+        check_progress(progress)
+        values: dict[str, Any] = {str(name): one for name, one in numbers.items()}
+        states = self._planned.at(branch, **values, progress=progress)
         # What was given is the value that is not None.
         name = next(name for name, value in numbers.items() if value is not None)
         return IndentSolution._of(self, states, name, branch, control)
@@ -750,6 +765,7 @@ def solve(
     radius: npt.ArrayLike | None = None,
     branch: Branch = "stable",
     control: Control = "load",
+    progress: PointProgress | None = None,
 ) -> IndentSolution:
     """Solve an indentation to a result that can be saved, and that studies take outputs from.
 
@@ -769,6 +785,9 @@ def solve(
         Branch of the curve where adhesion gives two contacts the same load or approach.
     control : {"load", "approach"}
         What is held while the tip is pulled off.
+    progress : callable, optional
+        Function that is called with the number of finished contacts and of all contacts. Its result
+        is ignored.
 
     Returns
     -------
@@ -798,4 +817,4 @@ def solve(
     if not among(control, get_args(Control)):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
-    return test._at({"load": load, "approach": approach, "radius": radius}, branch, control)
+    return test._at({"load": load, "approach": approach, "radius": radius}, branch, control, progress)

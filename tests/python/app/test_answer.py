@@ -211,6 +211,13 @@ def test_answers_that_nobody_wants_stop(name: str, stage: str) -> None:
         answer(cards()[name].case({}), stage, lambda: False)
 
 
+def test_an_indentation_is_given_up_between_two_loads() -> None:
+    answers = iter([True, True, True])
+    with pytest.raises(Stopped):
+        answer(cards()["indentation"].case({}), "full", lambda: next(answers, False))
+    assert list(answers) == []
+
+
 def text_of(one: Field) -> st.SearchStrategy[str]:
     """Return what may be typed into a field: the ends of its range, and what lies between."""
     if one.is_count:

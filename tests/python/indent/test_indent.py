@@ -28,6 +28,23 @@ def test_states_have_the_shape_of_what_is_given() -> None:
     assert bare().at(load=[[1e-3, 2e-3]]).approach.shape == (1, 2)
 
 
+def test_progress_counts_contacts_and_an_exception_ends_the_work() -> None:
+    counts: list[tuple[int, int]] = []
+    loads = [1e-3, 2e-3, 3e-3]
+    state = bare().at(load=loads, progress=lambda *count: counts.append(count))
+    assert counts == [(1, 3), (2, 3), (3, 3)]
+    assert (state.load == bare().at(load=loads).load).all()
+
+    def end(finished: int, _: int) -> None:
+        counts.append((finished, 0))
+        if finished == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        solve(STEEL, Tip.paraboloid(1e-5), load=loads, progress=end)
+    assert counts[3:] == [(1, 0), (2, 0)]
+
+
 @pytest.mark.parametrize(
     "value",
     [Tip.paraboloid(1e-5), Tip.cone(slope=0.3), Adhesion.jkr(0.1), Adhesion.dmt(0.1)],
