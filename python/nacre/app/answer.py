@@ -294,7 +294,7 @@ def _answer(
 
 def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
     """Return some of the printed rows of a result, none of None."""
-    return [row for row in result._rows() if row[0] in names] if result else []
+    return [] if result is None else [row for row in result._rows() if row[0] in names]
 
 
 def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
