@@ -86,7 +86,7 @@ def test_readme_has_no_relative_link_where_an_index_shows_it(metadata: Any, copy
 
 
 def test_readme_is_rendered_as_pypi_does(metadata: Any) -> None:
-    pytest.importorskip("cmarkgfm", reason="readme-renderer[md] is not installed")
+    pytest.importorskip("comrak", reason="readme-renderer[md] is not installed")
     from readme_renderer import markdown
 
     text = metadata.absolute((ROOT / "README.md").read_text("utf-8"), metadata.address(), "0.1.0")
