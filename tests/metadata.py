@@ -15,7 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PLACEHOLDER = "https://project-url.invalid/nacre"
 """Address until there is one; .invalid never becomes a domain (RFC 2606)."""
-LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")
+LINK = re.compile(r"(!\[[^\]]*\]|\])\((?!https?://|#)([^)\s]+)\)")
+"""The end of a link, which may be around a picture, or a picture; with the path."""
 
 
 def address(root: Path = ROOT) -> str:
@@ -33,9 +34,9 @@ def absolute(text: str, url: str, version: str) -> str:
     """Return Markdown whose relative links and pictures lead to files of a version."""
 
     def replaced(match: re.Match[str]) -> str:
-        picture, words, path = match.groups()
-        kind = "raw" if picture else "blob"
-        return f"{picture}[{words}]({url}/{kind}/v{version}/{path})"
+        before, path = match.groups()
+        kind = "raw" if before.startswith("!") else "blob"
+        return f"{before}({url}/{kind}/v{version}/{path})"
 
     return LINK.sub(replaced, text)
 

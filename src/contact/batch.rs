@@ -14,7 +14,7 @@ use crate::contact::solver::Termination;
 use crate::contact::start::Sampled;
 use crate::error::Result;
 use crate::model::surface::Surface;
-use crate::numerics::parallel::{SetOnDrop, Threads, check_memory};
+use crate::numerics::parallel::{CAN_START_THREADS, SetOnDrop, Threads, check_memory};
 
 /// One of many load cases.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +76,8 @@ impl Contact {
     ///
     /// `take` gets the number of a case and its solution as soon as it is finished, on the thread
     /// that solved it. `ask` is called on the calling thread, every 20 ms and at the end; its break
-    /// stops the rest, which are not handed over.
+    /// stops the rest, which are not handed over. Where no thread can be started, as in a browser, the cases are
+    /// solved on the calling thread, which asks before each.
     ///
     /// # Errors
     /// Too little memory for the cases that are solved at once. An error of one case is that case's own
@@ -117,32 +118,44 @@ impl Contact {
         let threads = self.convolution().threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let go_on = || match stopped.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let work = |before_each: &mut dyn FnMut() -> ControlFlow<()>| {
+            let mut sampled = Sampled::default();
+            while before_each().is_continue() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(Case { shape, motion }) = cases.get(number) else {
+                    break;
+                };
+                let progress = &mut |_: &_| go_on();
+                let solved = plan.solve_watched(*shape, &mut sampled, motion, options, progress);
+                let unfinished = matches!(&solved, Ok(solution)
+                    if solution.report.termination == Termination::Stopped);
+                if !unfinished {
+                    take(number, solved);
+                }
+            }
+        };
+        let mut ask_and_stop = || {
+            if ask().is_break() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            go_on()
+        };
+        if !CAN_START_THREADS {
+            work(&mut ask_and_stop);
+            return Ok(());
+        }
         // Nothing is ever sent: the channel closes with the last worker.
         let (alive, ended) = mpsc::channel::<Infallible>();
         std::thread::scope(|scope| {
             for _ in 0..workers {
-                let alive = alive.clone();
-                let (plan, next, stopped) = (&plan, &next, &stopped);
+                let (alive, work) = (alive.clone(), &work);
                 scope.spawn(move || {
-                    let (_alive, mut sampled) = (alive, Sampled::default());
-                    let check_stop = || match stopped.load(Ordering::Relaxed) {
-                        true => ControlFlow::Break(()),
-                        false => ControlFlow::Continue(()),
-                    };
-                    while check_stop().is_continue() {
-                        let number = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(Case { shape, motion }) = cases.get(number) else {
-                            break;
-                        };
-                        let progress = &mut |_: &_| check_stop();
-                        let solved =
-                            plan.solve_watched(*shape, &mut sampled, motion, options, progress);
-                        let unfinished = matches!(&solved, Ok(solution)
-                        if solution.report.termination == Termination::Stopped);
-                        if !unfinished {
-                            take(number, solved);
-                        }
-                    }
+                    let _alive = alive;
+                    work(&mut || go_on());
                 });
             }
             drop(alive);
@@ -153,9 +166,7 @@ impl Contact {
             while working {
                 working =
                     ended.recv_timeout(ASKING_INTERVAL) != Err(RecvTimeoutError::Disconnected);
-                if ask().is_break() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
+                let _ = ask_and_stop();
             }
             drop(stop);
         });

@@ -17,7 +17,9 @@ pub(crate) use lanes::{
 };
 pub(crate) use memory::{check_memory, memory_of};
 pub(crate) use rows::{Row, Rows, Total};
-pub(crate) use threads::{LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number};
+pub(crate) use threads::{
+    CAN_START_THREADS, LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number,
+};
 
 /// A store of memory that is not in use; clones share the store.
 pub(crate) struct Pool<T>(Arc<Mutex<Vec<T>>>);

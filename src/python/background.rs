@@ -1,5 +1,6 @@
 //! Work on a thread of its own, while Python's thread looks for Ctrl-C. A signal is seen within
-//! [`POLL_INTERVAL`], whatever the work does; interrupted work ends by itself, at its next iteration.
+//! [`POLL_INTERVAL`], whatever the work does; interrupted work ends by itself, at its next iteration. Where no thread
+//! can be started, the work runs on Python's thread, and each call looks for signals.
 
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -11,6 +12,8 @@ use std::time::Duration;
 
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
+
+use crate::numerics::parallel::CAN_START_THREADS;
 
 /// Time between two looks for Ctrl-C: short enough to feel immediate, long enough to cost nothing.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
@@ -66,6 +69,9 @@ where
     M: for<'py> PyCallArgs<'py> + Send + 'static,
     T: Send + 'static,
 {
+    if !CAN_START_THREADS {
+        return run_here(py, callback, work);
+    }
     let (sender, mut messages) = mpsc::channel();
     let (answer, answers) = mpsc::channel::<bool>();
     let stopped = Arc::new(AtomicBool::new(false));
@@ -108,6 +114,30 @@ where
     };
     stopped.store(true, Ordering::Relaxed);
     outcome.and_then(|done| py.check_signals().map(|()| done))
+}
+
+/// [`run`] on this thread.
+fn run_here<M, T>(
+    py: Python<'_>,
+    callback: Option<Py<PyAny>>,
+    work: impl FnOnce(&mut Caller<M>) -> T + Send,
+) -> PyResult<T>
+where
+    M: for<'py> PyCallArgs<'py> + Send + 'static,
+    T: Send,
+{
+    let (failure, failures) = mpsc::channel();
+    let stopped = Arc::new(AtomicBool::new(false));
+    let failed = Arc::clone(&stopped);
+    let call = move |message, asks| {
+        Python::attach(|py| tell(py, callback.as_ref(), message, asks)).unwrap_or_else(|error| {
+            failed.store(true, Ordering::Relaxed);
+            failure.send(error).is_err()
+        })
+    };
+    let mut caller = Caller { stopped, callback: Some(Box::new(call)) };
+    let done = py.detach(move || work(&mut caller));
+    failures.try_recv().map_or(Ok(done), Err)
 }
 
 /// Calls the callback; returns whether to go on.

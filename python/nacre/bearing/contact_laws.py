@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,6 +19,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.rounding import ceil, floor
+from nacre._tools.threads import thread_pool
 from nacre.bearing.geometry import RINGS, STEEL, Bearing, laminae_of
 from nacre.contact import Contact
 from nacre.contact.solution import Solution
@@ -340,7 +340,7 @@ class Solved:
             self._plan(element, ring)
         groups = self._equal(tasks, places)
         solved: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
-        pool = ThreadPoolExecutor(self.workers)
+        pool = thread_pool(self.workers)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)

@@ -149,7 +149,7 @@ AREA, STRIPS = needed(nacre.Grid), needed(nacre.Grid.line)
 class Grid(Table):
     """Cells of an area, by shape and size; or strips of a line contact, by cells and width."""
 
-    center: Pair | Number | None = Field(
+    center: Number | Pair | None = Field(
         None, description="Centre [m]: a pair for an area, a number for a line. By default 0."
     )
 

@@ -6,13 +6,13 @@ import inspect
 import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from threading import Event, Lock, Thread
+from threading import Event, Lock
 from typing import TYPE_CHECKING, Any
 
 import nacre._core as core
@@ -20,6 +20,7 @@ from nacre._tools.arguments import keywords_of
 from nacre._tools.extras import extra
 from nacre._tools.paths import holder, numbers
 from nacre._tools.progress import case_progress
+from nacre._tools.threads import thread_pool
 from nacre.contact import roll, slide, solve, wear
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
@@ -416,7 +417,7 @@ def _run(
     A record is kept by the thread that solved it, before that thread begins another case: a kill
     loses only the cases that are being solved.
     """
-    pool = executor or ThreadPoolExecutor(max_workers=default_threads())
+    pool = executor or thread_pool(default_threads())
     futures: list[Future[Record]] = []
     endings: SimpleQueue[BaseException | None] = SimpleQueue()
     turn, stopped = Lock(), Event()
@@ -443,8 +444,8 @@ def _run(
 
     # Ctrl-C interrupts only the main thread. No case is submitted there, so that every case that
     # begins is also kept.
-    submitter = Thread(target=submit)
-    submitter.start()
+    submitter = thread_pool(1)
+    submitter.submit(submit)
     try:
         for _ in tasks:
             while True:
@@ -456,7 +457,7 @@ def _run(
             yield
     finally:
         stopped.set()
-        submitter.join()
+        submitter.shutdown()
         for future in futures:
             future.cancel()
         if executor is None:

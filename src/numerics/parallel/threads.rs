@@ -39,7 +39,7 @@ pub(crate) fn worth_dividing(cells: usize) -> bool {
 }
 
 /// Whether the system can start threads: not in a browser.
-const CAN_START_THREADS: bool = !cfg!(target_arch = "wasm32");
+pub(crate) const CAN_START_THREADS: bool = !cfg!(target_family = "wasm");
 
 /// Environment variable that limits the number of threads of plans.
 const OWN_VARIABLE: &str = "NACRE_NUM_THREADS";

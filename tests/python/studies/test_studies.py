@@ -13,6 +13,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -30,6 +31,7 @@ import xarray
 import nacre
 from bodies import BALL, ROD, STEEL, coated, quiet
 from nacre import design
+from nacre._tools import threads
 from nacre.bearing import CylindricalRoller
 from support import Capture, Patch, python
 
@@ -249,6 +251,23 @@ def test_the_executor_changes_no_bit(kind: str, tmp_path: Path, monkeypatch: Pat
         study = nacre.sweep(ball, PARAMETERS, outputs=outputs, executor=executor)
     assert study.identical(expected)
     assert bits(study) == bits(expected)
+
+
+def test_where_no_thread_can_be_started_no_bit_changes(monkeypatch: Patch) -> None:
+    def refused(_: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")  # what Python says in a browser
+
+    def solved() -> tuple[Any, Any]:
+        study = nacre.sweep(ball, PARAMETERS, outputs=["peak_pressure", "pressure"])
+        return study, quiet(BEARING.solve, force=(1e3, 0.0, None), cells=(40, 24)).loads
+
+    study, loads = solved()
+    monkeypatch.setattr(threads, "CAN_START", False)
+    monkeypatch.setattr(threading.Thread, "start", refused)
+    alone, alone_loads = solved()
+    assert alone.identical(study)
+    assert bits(alone) == bits(study)
+    assert np.array_equal(alone_loads, loads)
 
 
 def test_parameters_that_share_a_dimension_vary_together() -> None:
