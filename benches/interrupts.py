@@ -34,6 +34,15 @@ def calls() -> dict[str, Callable[[], object]]:
     return {
         "solve": lambda: contact.solve(ball, load=5.0, tolerance=1e-300, max_iterations=10**12),
         "slide": lambda: pair.slide(ball, 10**4 * steps, load=5.0, friction=0.3),
+        "wear": lambda: contact.wear(ball, load=5.0, rate=1e-16, sliding=1e9, steps=10**6),
+        "fretting": lambda: pair.wear(
+            ball,
+            load=5.0,
+            rate=1e-16,
+            cycles=1e9,
+            steps=10**6,
+            slide={"friction": 0.3, "steps": steps},
+        ),
         "roll": lambda: pair.roll(
             ball, cells=10**6, creepage=(1e-3, None), direction="+x", load=5.0, friction=0.3
         ),

@@ -150,6 +150,19 @@ pub struct WearState {
     pub settled: bool,
     /// Number of times that the grid has grown.
     pub regrids: usize,
+    /// Why the step wore nothing, if it did not: by cycles of friction alone.
+    pub idle: Option<Idle>,
+}
+
+/// Why a cycle of friction wears nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Idle {
+    /// No cell in contact slips.
+    Sticks,
+    /// Cells slip when the steps are made for the first time, and no more the second time: the steps do not lead back.
+    DoesNotReturn,
 }
 
 /// A layer is worn through at one place.

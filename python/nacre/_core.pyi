@@ -729,6 +729,7 @@ class WearSteps:
         Solved,
         list[dict[str, Any]],
         float | None,
+        str | None,
         tuple[bool, bool],
         int,
     ]: ...

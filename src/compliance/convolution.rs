@@ -208,7 +208,7 @@ impl Convolution {
     }
 
     /// This convolution with springs, whose compliances (nx, ny) \[m/Pa\] are those of the cells in C order.
-    pub(crate) fn on_springs(self, springs: Vec<f64>) -> Self {
+    pub(crate) fn on_springs(self, springs: &[f64]) -> Self {
         Self { springs: Some(springs.into()), ..self }
     }
 

@@ -211,7 +211,7 @@ impl Level {
     /// This level on springs of these compliances (nx, ny) \[m/Pa\], with the threads and memory of `finest`.
     pub(super) fn on_springs(&self, springs: &Array2<f64>, finest: &Convolution) -> Self {
         let convolution = self.convolution.sharing_with(finest);
-        let level = self.with(convolution.on_springs(slice(springs).to_vec()));
+        let level = self.with(convolution.on_springs(&slice(springs)));
         let local = level.local.with_springs(level.convolution.mean_spring());
         Self { local, ..level }
     }

@@ -122,13 +122,9 @@ impl Contact {
         if let Some(compliance) = &options.compliance {
             let springs = compliance.on(&self.grid)?;
             let without = Options { compliance: None, ..options.clone() };
-            // Without any give, nothing is changed.
-            // From a given pressure, a solve begins on the finest grid.
-            let grids = if options.initial.is_some() { 1 } else { self.levels.len() };
-            let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(&springs, grids));
-            let plan = soft.as_ref().unwrap_or(self);
-            let mut solution = plan.solve_sampled(shape, sampled, motion, &without, progress)?;
-            solution.take_springs(compliance.clone(), springs);
+            let mut solution =
+                self.press_springs(shape, sampled, &springs, motion, &without, progress)?;
+            solution.compliance = Some(compliance.clone());
             return Ok(solution);
         }
         let Some(before) = &options.indentation else {
@@ -142,6 +138,38 @@ impl Contact {
             Some(deeper) => deeper + before,
             None => before.clone(),
         });
+        Ok(solution)
+    }
+
+    /// [`Contact::solve_alone`] with springs of these compliances (nx, ny) \[m/Pa\] between the surfaces, which the options do
+    /// not have. The gap has what they give; the displacement is that of the bodies.
+    pub(crate) fn solve_on_springs(
+        &self,
+        shape: &dyn Surface,
+        springs: &Array2<f64>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        self.press_springs(shape, &mut Sampled::default(), springs, motion, options, progress)
+    }
+
+    fn press_springs<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        springs: &Array2<f64>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        // From a given pressure, a solve begins on the finest grid.
+        let grids = if options.initial.is_some() { 1 } else { self.levels.len() };
+        // Without any give, nothing is changed.
+        let soft = springs.iter().any(|c| *c > 0.0).then(|| self.on_springs(springs, grids));
+        let plan = soft.as_ref().unwrap_or(self);
+        let mut solution = plan.solve_sampled(shape, sampled, motion, options, progress)?;
+        solution.take_springs(springs);
         Ok(solution)
     }
 

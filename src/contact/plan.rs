@@ -1,8 +1,9 @@
 //! A body on a grid, planned: coefficients, their transform, and the coarser grids.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::{ArcArray2, Array2, ArrayRef2};
 
 use crate::compliance::convolution::{Addition, Beside, Convolution};
 use crate::compliance::datum::Datum;
@@ -198,11 +199,12 @@ impl Contact {
     /// and memory are shared.
     pub(crate) fn on_springs(&self, springs: &Array2<f64>, grids: usize) -> Self {
         let finest = self.convolution();
-        let mut springs = springs.clone();
+        let mut springs = Cow::Borrowed(springs);
         let mut levels = Vec::new();
         for (number, level) in self.levels.iter().take(grids).enumerate() {
             if number > 0 {
-                springs = coarse_means(&springs, halved(self.levels[number - 1].grid()));
+                let halved = halved(self.levels[number - 1].grid());
+                springs = Cow::Owned(coarse_means(&springs, halved));
             }
             levels.push(level.on_springs(&springs, finest));
         }
@@ -231,6 +233,24 @@ impl Contact {
             tangential: self.tangential.clone(),
             halved: OnceLock::new(),
         }
+    }
+
+    /// The influence coefficients that were given, changed by what exact ones change from the plan's bodies to `body` and
+    /// the counterbody of a `setup`; `None` where none were given.
+    ///
+    /// # Errors
+    /// As [`Contact::plan`].
+    pub(crate) fn given_coefficients_of(
+        &self,
+        body: &Body,
+        setup: &Setup,
+    ) -> Result<Option<ArcArray2<f64>>> {
+        let Some(given) = &self.setup.coefficients else { return Ok(None) };
+        let exact = |body: &Body, setup: &Setup| {
+            total_coefficients(body, setup, &self.grid, self.convolution().own_threads())
+        };
+        let change = exact(body, setup)? - &exact(&self.body, &self.setup)?;
+        Ok(Some((change + given).into_shared()))
     }
 
     /// Calls `work`, a whole solve, on the plan's threads.

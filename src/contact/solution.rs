@@ -154,25 +154,20 @@ impl Solution {
     }
 
     /// Takes what `springs` give from the displacement, which then is that of the bodies alone.
-    pub(in crate::contact) fn take_springs(
-        &mut self,
-        compliance: Compliance,
-        springs: Array2<f64>,
-    ) {
+    pub(in crate::contact) fn take_springs(&mut self, springs: &Array2<f64>) {
         let deflections = springs * &self.pressure;
         self.displacement -= &deflections;
-        self.compliance = Some(compliance);
         if let Gap::Computed { deflection, .. } = &mut self.gap {
             *deflection = Some(deflections);
         }
     }
 
-    /// Leaves the springs away; the gap has `depth` for what they gave.
-    pub(crate) fn release_springs(&mut self, depth: Array2<f64>) {
-        if self.compliance.take().is_some()
-            && let Gap::Computed { deflection, .. } = &mut self.gap
+    /// Makes what the springs gave a part of the undeformed gap; `depth` takes its place, where there is one.
+    pub(crate) fn release_springs(&mut self, depth: Option<Array2<f64>>) {
+        if let Gap::Computed { undeformed, deflection, .. } = &mut self.gap
+            && let Some(deflection) = deflection.take()
         {
-            *deflection = Some(depth);
+            *Arc::make_mut(undeformed) += &depth.unwrap_or(deflection);
         }
     }
 

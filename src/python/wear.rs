@@ -15,7 +15,7 @@ use super::shapes::Shape;
 use super::solved::PySolved;
 use crate::contact::{Options, Report};
 use crate::model::surface::Surface;
-use crate::wear::{Slip, Wear, WearScheme, WearSession, WearSteps, WearThrough};
+use crate::wear::{Idle, Slip, Wear, WearScheme, WearSession, WearSteps, WearThrough};
 
 /// `nacre.wear.arguments.WearOptions`.
 #[derive(FromPyObject)]
@@ -82,13 +82,15 @@ impl PyWear<'_> {
 #[pyclass(name = "WearSteps", module = "nacre._core", frozen)]
 pub(super) struct PyWearSteps(Arc<Mutex<WearSession<Shape>>>);
 
-/// Depths, solution, layers that are through, error of the step, whether it rings and is settled, and how often the grid has grown.
+/// Distance, depths, solution, layers that are through, error of the step, why it wore nothing, whether it rings and is settled, and
+/// how often the grid has grown.
 type State<'py> = (
     f64,
     [Bound<'py, PyArray2<f64>>; 2],
     PySolved,
     Plain<Vec<WearThrough>>,
     Option<f64>,
+    Plain<Option<Idle>>,
     [bool; 2],
     usize,
 );
@@ -122,6 +124,7 @@ impl PyWearSteps {
             state.solution.into(),
             Plain(state.through),
             state.step_error,
+            Plain(state.idle),
             [state.rings, state.settled],
             state.regrids,
         )))

@@ -51,6 +51,12 @@ impl Rates {
         self.rates.iter().all(|rate| *rate <= 0.0)
     }
 
+    /// κ where it is the same at all depths.
+    pub(super) fn uniform(&self) -> Option<f64> {
+        let first = *self.rates.first()?;
+        self.rates.iter().all(|rate| (rate - first).abs() <= 0.0).then_some(first)
+    }
+
     /// Number of layers that are through at a depth.
     fn layers_through(&self, depth: f64) -> usize {
         self.bottoms.iter().take_while(|bottom| depth >= **bottom * (1.0 - THROUGH)).count()

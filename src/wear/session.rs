@@ -7,12 +7,12 @@ use ndarray::{Array2, Zip};
 use super::rates::{Rates, THROUGH};
 use super::regrid::{grown, regridded};
 use super::thickness::TopLayers;
-use super::{Slip, Thickness, Wear, WearScheme, WearState, WearSteps, WearThrough};
+use super::{Idle, Slip, Thickness, Wear, WearScheme, WearState, WearSteps, WearThrough};
 use crate::compliance::response::Body;
-use crate::contact::{
-    Compliance, Contact, Motion, Options, Progress, Setup, Solution, Termination,
+use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, Termination};
+use crate::error::{
+    Error, Result, fraction, none_negative, not_negative, refuse_if, require, same_shape,
 };
-use crate::error::{Result, fraction, none_negative, not_negative, refuse_if, require, same_shape};
 use crate::friction::{
     FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
 };
@@ -47,6 +47,9 @@ const FIRST: f64 = 0.02;
 const RINGING: f64 = -0.3;
 const LEAST_CHANGE: f64 = 1e-3;
 
+/// Slip in contact, relative to how far the surfaces move, up to which they stick: rounding.
+const NO_SLIP: f64 = 1e-6;
+
 /// Growth of the number of cells beyond which cells are doubled instead.
 const MORE_CELLS: usize = 4;
 
@@ -80,6 +83,7 @@ struct Start<'a> {
     /// Pressure that wears there.
     pressure: &'a Array2<f64>,
     slipping: Slipping,
+    idle: Option<Idle>,
 }
 
 /// Where surfaces slip in a step.
@@ -95,11 +99,12 @@ struct Trial {
     length: f64,
     depth: [Array2<f64>; 2],
     solution: Solution,
-    /// Pressure that wears at the end: [`worn_by`].
-    pressure: Array2<f64>,
+    /// Pressure that wears at the end, where it is not that of the solution: [`worn_by`].
+    pressure: Option<Array2<f64>>,
     error: Option<f64>,
     /// Whether the search for the distance at which a layer is through came to its end.
     settled: bool,
+    idle: Option<Idle>,
 }
 
 impl Trial {
@@ -108,9 +113,9 @@ impl Trial {
         length: f64,
         depth: [Array2<f64>; 2],
         solution: Solution,
-        pressure: Array2<f64>,
+        pressure: Option<Array2<f64>>,
     ) -> Self {
-        Self { length, depth, solution, pressure, error: None, settled: true }
+        Self { length, depth, solution, pressure, error: None, settled: true, idle: None }
     }
 }
 
@@ -214,7 +219,7 @@ impl<S: Surface> WearSession<S> {
     fn first(&self, progress: &mut Progress) -> Result<Option<WearState>> {
         let zeros = || Array2::zeros(self.plan.grid().shape());
         let depth = self.wear.initial.clone().unwrap_or_else(|| [zeros(), zeros()]);
-        let solution = self.solved(&depth[0] + &depth[1], &depth, None, None, progress)?;
+        let solution = self.solved(&depth[0] + &depth[1], Some(&depth), None, None, progress)?;
         Ok(solution.map(|solution| WearState {
             distance: 0.0,
             depth,
@@ -224,13 +229,15 @@ impl<S: Surface> WearSession<S> {
             rings: false,
             settled: true,
             regrids: 0,
+            idle: None,
         }))
     }
 
     /// Error of the last pressure by the thickness of the layers: the root of its mean square within the contact, relative to the
     /// peak. It is the difference from the pressure on layers that are thinner by the mean of their depths, weighted by the
     /// pressure; to first order, that between two pressures on layers that are thinner by this mean, to first order and
-    /// exactly. `None` where no layer wears, and where nothing would be left on a rigid or free base.
+    /// exactly. Given influence coefficients change by what exact ones do. `None` where no layer wears, where nothing would be
+    /// left on a rigid or free base, and where given coefficients do not hold so thin a layer.
     ///
     /// # Errors
     /// As [`WearSession::advance`].
@@ -264,13 +271,20 @@ impl<S: Surface> WearSession<S> {
         let body = thinner(0, self.plan.body())?;
         let counterbody = setup.counterbody.as_ref().map(|body| thinner(1, body)).transpose()?;
         let counterbody = counterbody.flatten();
-        if body.is_none() && counterbody.is_none() || setup.coefficients.is_some() {
+        if body.is_none() && counterbody.is_none() {
             return Ok(None);
         }
         let body = body.unwrap_or_else(|| self.plan.body().clone());
         let counterbody = counterbody.or_else(|| setup.counterbody.clone());
-        let setup = Setup { counterbody, ..setup.clone() };
-        let plan = Contact::plan(body, *self.plan.grid(), setup)?;
+        let setup = Setup { counterbody, coefficients: None, ..setup.clone() };
+        let coefficients = self.plan.given_coefficients_of(&body, &setup)?;
+        let is_given = coefficients.is_some();
+        let setup = Setup { coefficients, ..setup };
+        let plan = match Contact::plan(body, *self.plan.grid(), setup) {
+            // Given coefficients may have too little of the layer that is taken away.
+            Err(Error::Indefinite) if is_given => return Ok(None),
+            plan => plan?,
+        };
         let options = Options { initial: Some(pressure.clone()), ..self.wear.options.clone() };
         let worn = self.worn(last);
         let other = plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress))?;
@@ -299,27 +313,28 @@ impl<S: Surface> WearSession<S> {
     fn solved(
         &self,
         worn: Array2<f64>,
-        missing: &[Array2<f64>; 2],
-        springs: Option<Array2<f64>>,
-        initial: Option<&Array2<f64>>,
+        missing: Option<&[Array2<f64>; 2]>,
+        springs: Option<&Array2<f64>>,
+        initial: Option<Array2<f64>>,
         progress: &mut Progress,
     ) -> Result<Option<Solution>> {
-        let mut options = Options {
-            compliance: springs.map(Compliance::Cells),
-            initial: initial.cloned(),
-            ..self.wear.options.clone()
-        };
-        let is_new = worn.iter().all(|depth| *depth <= 0.0) && initial.is_none();
+        let mut options = Options { initial, ..self.wear.options.clone() };
+        let is_new = worn.iter().all(|depth| *depth <= 0.0) && options.initial.is_none();
         let worn = OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn);
         let shape: &dyn Surface = if is_new { &self.shape } else { &worn };
-        let thinned = self.thinned_plan(missing);
+        let thinned = missing.and_then(|missing| self.thinned_plan(missing));
         if thinned.is_some() && options.initial.is_none() {
             // Coarser grids have layers as thick as before.
             let start = self.plan.solve_alone(shape, &self.motion, &options, progress)?;
             options.initial = Some(start.pressure);
         }
         let plan = thinned.as_ref().unwrap_or(&self.plan);
-        let solution = plan.solve_alone(shape, &self.motion, &options, progress)?;
+        let solution = match springs {
+            Some(springs) => {
+                plan.solve_on_springs(shape, springs, &self.motion, &options, progress)?
+            }
+            None => plan.solve_alone(shape, &self.motion, &options, progress)?,
+        };
         if solution.report.termination == Termination::Stopped {
             return Ok(None);
         }
@@ -363,7 +378,7 @@ impl<S: Surface> WearSession<S> {
                         < RINGING
                 });
             self.change = through.is_empty().then_some((change, trial.length));
-            self.start = Some(trial.pressure);
+            self.start = trial.pressure;
             return Ok(Some(WearState {
                 distance,
                 depth: trial.depth,
@@ -373,6 +388,7 @@ impl<S: Surface> WearSession<S> {
                 rings,
                 settled: trial.settled,
                 regrids: last.regrids,
+                idle: trial.idle,
             }));
         }
     }
@@ -405,7 +421,7 @@ impl<S: Surface> WearSession<S> {
         if self.rates.iter().all(Rates::vanish) {
             return self.trial(&begun, left, begun.pressure.clone(), progress);
         }
-        let mut length = self.length.unwrap_or_else(|| self.first_length(last)).min(left);
+        let mut length = self.length.unwrap_or_else(|| self.first_length(&begun)).min(left);
         loop {
             let Some(trial) = self.halved(&begun, length, progress)? else {
                 return Ok(None);
@@ -427,16 +443,16 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Length of the first step.
-    fn first_length(&self, last: &WearState) -> f64 {
-        let solution = &last.solution;
+    fn first_length(&self, begun: &Start) -> f64 {
+        let solution = &begun.state.solution;
         let deepest = solution.displacement.iter().zip(&solution.pressure);
         let deepest = deepest.filter(|(_, p)| **p > 0.0).fold(0.0_f64, |a, (u, _)| a.max(u.abs()));
         let rate: f64 = self.rates.iter().map(|rates| rates.at(0.0)).sum();
-        let slip = match &self.wear.slip {
-            Slip::Cells(slip) => slip.fold(0.0_f64, |most, s| most.max(*s)),
-            _ => 1.0,
+        let work = match &begun.slipping {
+            Slipping::Cells(slip) => slip * &solution.pressure,
+            Slipping::Track(track) => track.clone(),
         };
-        let length = FIRST * deepest / (rate * slip * solution.peak_pressure());
+        let length = FIRST * deepest / (rate * work.fold(0.0_f64, |most, work| most.max(*work)));
         if length.is_finite() && length > 0.0 { length } else { f64::MAX }
     }
 
@@ -449,18 +465,22 @@ impl<S: Surface> WearSession<S> {
     ) -> Result<Option<Start<'a>>> {
         let slipping = self.slipping(state, progress)?;
         let pressure = pressure.unwrap_or(&state.solution.pressure);
-        Ok(slipping.map(|slipping| Start { state, pressure, slipping }))
+        Ok(slipping.map(|(slipping, idle)| Start { state, pressure, slipping, idle }))
     }
 
-    /// Where worn bodies slip; `None` where it was stopped.
-    fn slipping(&self, state: &WearState, progress: &mut Progress) -> Result<Option<Slipping>> {
+    /// Where worn bodies slip, and why nowhere; `None` where it was stopped.
+    fn slipping(
+        &self,
+        state: &WearState,
+        progress: &mut Progress,
+    ) -> Result<Option<(Slipping, Option<Idle>)>> {
         let shape = self.plan.grid().shape();
         if self.rates.iter().all(Rates::vanish) {
-            return Ok(Some(Slipping::Cells(Array2::zeros(shape))));
+            return Ok(Some((Slipping::Cells(Array2::zeros(shape)), None)));
         }
         Ok(match &self.wear.slip {
-            Slip::Everywhere => Some(Slipping::Cells(Array2::ones(shape))),
-            Slip::Cells(slip) => Some(Slipping::Cells(slip.clone())),
+            Slip::Everywhere => Some((Slipping::Cells(Array2::ones(shape)), None)),
+            Slip::Cells(slip) => Some((Slipping::Cells(slip.clone()), None)),
             Slip::Cycle(steps, options) => {
                 let mut twice: Vec<Step> = [&steps[..], &steps[..]].concat();
                 if let Some(first) = twice.first_mut() {
@@ -473,7 +493,8 @@ impl<S: Surface> WearSession<S> {
                     for pair in solutions.windows(2).skip(steps.len().saturating_sub(1)) {
                         slip += &passed(&pair[0], &pair[1]);
                     }
-                    Slipping::Cells(slip)
+                    let idle = idle(&solutions, steps.len());
+                    (Slipping::Cells(slip), idle)
                 })
             }
             Slip::Pass(rolling, options) => {
@@ -485,7 +506,7 @@ impl<S: Surface> WearSession<S> {
                     let line = (magnitude(&pass) * &pass.normal.pressure).sum_axis(axis) * width;
                     line.insert_axis(axis).broadcast(shape).map(|track| track.to_owned())
                 });
-                track.map(Slipping::Track)
+                track.map(|track| (Slipping::Track(track), None))
             }
         })
     }
@@ -514,7 +535,8 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Pressure that is to be expected at the end of a step: it goes on as in the step before, and no further where the step
-    /// is longer, as pressures fall ever more slowly.
+    /// is longer, as pressures fall ever more slowly. That takes a fifth of the iterations less than from the last pressure; a
+    /// parabola through three takes half as many more than the line, as cells at the edge jump.
     fn expected(&self, begun: &Start, length: f64) -> Array2<f64> {
         let now = &begun.state.solution.pressure;
         match &self.change {
@@ -537,7 +559,7 @@ impl<S: Surface> WearSession<S> {
         };
         let middle =
             WearState { depth: half.depth, solution: half.solution, ..begun.state.clone() };
-        let Some(middle) = self.begun(&middle, Some(&half.pressure), progress)? else {
+        let Some(middle) = self.begun(&middle, half.pressure.as_ref(), progress)? else {
             return Ok(None);
         };
         let expected = whole.solution.pressure.clone();
@@ -549,7 +571,7 @@ impl<S: Surface> WearSession<S> {
         let orders = if self.is_second_order() { 3.0 } else { 1.0 };
         let peak = end.solution.peak_pressure();
         let error = if peak > 0.0 { error / (orders * peak) } else { 0.0 };
-        Ok(Some(Trial { length, error: Some(error), ..end }))
+        Ok(Some(Trial { length, error: Some(error), idle: begun.idle, ..end }))
     }
 
     /// The step, or the shorter one at whose end the first cell of a layer is through.
@@ -613,6 +635,9 @@ impl<S: Surface> WearSession<S> {
         let grid = self.plan.grid();
         let mut events = Vec::new();
         for (k, member) in [Member::Body, Member::Counterbody].into_iter().enumerate() {
+            if self.through[k] >= self.rates[k].bottoms.len() {
+                continue;
+            }
             let cells = depth[k].indexed_iter();
             let Some(((i, j), deepest)) = cells.max_by(|a, b| a.1.total_cmp(b.1)) else {
                 continue;
@@ -639,8 +664,7 @@ impl<S: Surface> WearSession<S> {
         let last = begun.state;
         if self.rates.iter().all(Rates::vanish) {
             let (depth, solution) = (last.depth.clone(), last.solution.clone());
-            let pressure = solution.pressure.clone();
-            return Ok(Some(Trial::new(length, depth, solution, pressure)));
+            return Ok(Some(Trial::new(length, depth, solution, None)));
         }
         let end_weight = if self.is_second_order() { 0.5 } else { 1.0 };
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
@@ -651,48 +675,58 @@ impl<S: Surface> WearSession<S> {
                 slip * (length * end_weight),
             ),
         };
-        let mut rates = [0, 1].map(|k| last.depth[k].mapv(|depth| self.rates[k].at(depth)));
-        let mut depth = last.depth.clone();
-        for (depth, rates) in depth.iter_mut().zip(&rates) {
-            let cells = Zip::from(depth).and(rates).and(&per_pressure).and(&expected).and(&first);
-            cells.for_each(|depth, rate, per_pressure, p, first| {
-                *depth += rate * (per_pressure * p + first);
-            });
-        }
+        let mut rates = [0, 1].map(|k| match self.rates[k].uniform() {
+            Some(rate) => Array2::from_elem(last.depth[k].dim(), rate),
+            None => last.depth[k].mapv(|depth| self.rates[k].at(depth)),
+        });
+        let work = |pressure: &Array2<f64>| {
+            let cells = Zip::from(&per_pressure).and(pressure).and(&first);
+            cells.map_collect(|per_pressure, p, first| per_pressure * p + first)
+        };
+        // Depths by which layers are thinner.
+        let mut missing = self.layers.as_ref().map(|_| {
+            let work = work(&expected);
+            [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work))
+        });
         let mut initial = expected;
         for round in 1.. {
             let cells = Zip::from(&rates[0]).and(&rates[1]);
             let springs = cells.and(&per_pressure).map_collect(|a, b, work| (a + b) * work);
             let cells = Zip::from(&last.depth[0]).and(&last.depth[1]).and(&rates[0]).and(&rates[1]);
             let worn = cells.and(&first).map_collect(|v, w, a, b, work| v + w + (a + b) * work);
-            let soft = springs.iter().any(|c| *c > 0.0).then(|| springs.clone());
-            let solution = self.solved(worn, &depth, soft, Some(&initial), progress)?;
+            let solution =
+                self.solved(worn, missing.as_ref(), Some(&springs), Some(initial), progress)?;
             let Some(mut solution) = solution else {
                 return Ok(None);
             };
             let one_cell = self.plan.convolution().self_influence();
             let pressure = worn_by(&solution, &springs, one_cell);
             // What springs gave is worn off.
-            solution.release_springs(springs * &pressure);
-            let cells = Zip::from(&per_pressure).and(&pressure).and(&first);
-            let work = cells.map_collect(|per_pressure, p, first| per_pressure * p + first);
+            solution.release_springs(pressure.as_ref().map(|pressure| springs * pressure));
+            let work = work(pressure.as_ref().unwrap_or(&solution.pressure));
             let mut reached = last.depth.clone();
             let mut changed = 0.0_f64;
             for (k, (rates, depth)) in rates.iter_mut().zip(&mut reached).enumerate() {
-                Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
-                    let mean = self.rates[k].mean(*depth, *work);
-                    changed =
-                        changed.max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
-                    *depth += *rate * work;
-                    *rate = mean;
-                });
+                match self.rates[k].uniform() {
+                    Some(rate) if rate > 0.0 => depth.scaled_add(rate, &work),
+                    Some(_) => (),
+                    None => Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
+                        let mean = self.rates[k].mean(*depth, *work);
+                        changed = changed
+                            .max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
+                        *depth += *rate * work;
+                        *rate = mean;
+                    }),
+                }
             }
-            let lag = self.layers.as_ref().map_or(0.0, |layers| layers.apart(&reached, &depth));
-            depth = reached;
+            let lag = self.layers.as_ref().zip(missing.as_ref());
+            let lag = lag.map_or(0.0, |(layers, missing)| layers.apart(&reached, missing));
             if changed <= SETTLED && lag <= LAG || round == ROUNDS {
-                return Ok(Some(Trial::new(length, depth, solution, pressure)));
+                let idle = begun.idle;
+                return Ok(Some(Trial { idle, ..Trial::new(length, reached, solution, pressure) }));
             }
-            initial.clone_from(&solution.pressure);
+            missing = self.layers.as_ref().map(|_| reached);
+            initial = solution.pressure;
         }
         unreachable!("the loop ends by its limit")
     }
@@ -740,7 +774,7 @@ impl<S: Surface> WearSession<S> {
         }
         let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
         let worn = &depth[0] + &depth[1];
-        let solution = self.solved(worn, &depth, None, None, progress)?;
+        let solution = self.solved(worn, Some(&depth), None, None, progress)?;
         (self.change, self.start) = (None, None);
         Ok(solution.map(|solution| WearState {
             depth,
@@ -769,7 +803,8 @@ fn thinned(body: &HalfSpace, depth: f64) -> Result<Body> {
 /// residual within the tolerance is a large part of what they give, c p: there the gap is closed, p ← [p − g/(c + K₀)]₊, with
 /// the displacement K₀ of a cell under its own unit pressure. Springs that are alike stay as they are: the worn volume is
 /// κ s W as exactly as the pressure carries the load.
-fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Array2<f64> {
+/// `None` where all stay.
+fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Option<Array2<f64>> {
     let (mut given, mut squares) = (0.0, 0.0);
     Zip::from(&solution.pressure).and(springs).for_each(|p, c| {
         given += c * p * p;
@@ -777,12 +812,14 @@ fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Array2<
     });
     let softest = springs.fold(0.0_f64, |most, c| most.max(*c));
     if softest * squares <= given + one_cell * squares {
-        return solution.pressure.clone();
+        return None;
     }
-    Zip::from(&solution.pressure).and(springs).and(&solution.gap()).map_collect(|p, c, g| {
+    let gap = solution.gap();
+    let cells = Zip::from(&solution.pressure).and(springs).and(&gap);
+    Some(cells.map_collect(|p, c, g| {
         let is_soft = *c * squares > given + one_cell * squares;
         if is_soft { (p - g / (c + one_cell)).max(0.0) } else { *p }
-    })
+    }))
 }
 
 /// Difference of the last two pressures: the root of its mean square over the cells that are in contact with all their
@@ -838,6 +875,31 @@ fn shift_and_twist(solution: &FrictionSolution) -> Option<[f64; 3]> {
     }
 }
 
+/// Why the second of two times that so many `steps` are made lets nothing slip in contact; `None` where something does.
+fn idle(solutions: &[FrictionSolution], steps: usize) -> Option<Idle> {
+    let most = |solutions: &[FrictionSolution]| {
+        let mut slip = Array2::<f64>::zeros(solutions.first()?.normal.pressure.dim());
+        for solution in solutions {
+            let own = magnitude(solution);
+            let cells = Zip::from(&mut slip).and(&own).and(&solution.normal.pressure);
+            cells.for_each(|slip, own, p| *slip += if *p > 0.0 { *own } else { 0.0 });
+        }
+        Some(slip.fold(0.0_f64, |most, slip| most.max(*slip)))
+    };
+    let (first, second) = solutions.split_at(steps.min(solutions.len()));
+    let [first_slip, second_slip] = [most(first)?, most(second)?];
+    let (mut moved, mut before) = (0.0, [0.0; 3]);
+    for solution in first {
+        let [lx, ly] = solution.normal.grid().size();
+        let at = shift_and_twist(solution)?;
+        let [x, y, turn] = [0, 1, 2].map(|k| at[k] - before[k]);
+        moved += x.hypot(y) + turn.abs() * lx.hypot(ly);
+        before = at;
+    }
+    let reason = if first_slip > NO_SLIP * moved { Idle::DoesNotReturn } else { Idle::Sticks };
+    (second_slip <= NO_SLIP * first_slip.max(moved)).then_some(reason)
+}
+
 /// Which bodies wear, or are worn before.
 fn wears(rates: &[Rates; 2], before: Option<&[Array2<f64>; 2]>) -> [bool; 2] {
     [0, 1].map(|k| {
@@ -847,10 +909,18 @@ fn wears(rates: &[Rates; 2], before: Option<&[Array2<f64>; 2]>) -> [bool; 2] {
 
 /// Correlation of two changes of a pressure; 0 where the largest is below `least`, and where the grids differ.
 fn correlation(a: &Array2<f64>, b: &Array2<f64>, least: f64) -> f64 {
-    let largest = a.fold(0.0_f64, |most, v| most.max(v.abs()));
-    if a.dim() != b.dim() || largest < least {
+    if a.dim() != b.dim() {
         return 0.0;
     }
-    let product = |a: &Array2<f64>, b: &Array2<f64>| (a * b).sum();
-    product(a, b) / (product(a, a) * product(b, b)).sqrt().max(f64::MIN_POSITIVE)
+    let (mut largest, mut product, mut squares) = (0.0_f64, 0.0, [0.0; 2]);
+    Zip::from(a).and(b).for_each(|a, b| {
+        largest = largest.max(a.abs());
+        product += a * b;
+        squares[0] += a * a;
+        squares[1] += b * b;
+    });
+    if largest < least {
+        return 0.0;
+    }
+    product / (squares[0] * squares[1]).sqrt().max(f64::MIN_POSITIVE)
 }

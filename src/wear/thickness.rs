@@ -102,13 +102,19 @@ impl TopLayers {
         operators
     }
 
-    /// Largest difference of two depths, relative to the thickness of the layer.
+    /// Difference of two depths, relative to the thickness of the layer: the root of its mean square over the worn cells. The
+    /// few that the contact has just reached hardly count, as in the error of a step.
     pub(super) fn apart(&self, one: &[Array2<f64>; 2], other: &[Array2<f64>; 2]) -> f64 {
         let mut most = 0.0_f64;
         for TopLayer { member, thickness, .. } in &self.0 {
+            let (mut squares, mut cells) = (0.0, 0.0);
             Zip::from(&one[*member]).and(&other[*member]).for_each(|a, b| {
-                most = most.max((a.min(*thickness) - b.min(*thickness)).abs() / thickness);
+                if a.max(*b) > 0.0 {
+                    squares += ((a.min(*thickness) - b.min(*thickness)) / thickness).powi(2);
+                    cells += 1.0;
+                }
             });
+            most = most.max(f64::sqrt(squares / f64::max(cells, 1.0)));
         }
         most
     }

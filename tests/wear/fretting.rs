@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nacre::friction::{FrictionOptions, Rolling, RollingDirection, Step};
-use nacre::wear::{Slip, Wear, WearScheme, WearSession, WearState, WearSteps};
+use nacre::wear::{Idle, Slip, Wear, WearScheme, WearSession, WearState, WearSteps};
 use nacre::{Contact, Elastic, Grid, Motion, Paraboloid, Result, Setup};
 use ndarray::Array2;
 
@@ -140,6 +140,72 @@ fn friction_stops_where_it_is_told_to() -> Result<()> {
         })?;
         assert!(stopped.is_none());
         assert_eq!(calls, 3);
+    }
+    Ok(())
+}
+
+/// A cylinder between equal bodies, of half-width 1, and its load.
+fn pair() -> Result<(Arc<Contact>, Motion)> {
+    let steel = Elastic::new(1.0, 0.0)?;
+    let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    let plan = Arc::new(Contact::plan(steel, Grid::line(64, 3.0)?, setup)?);
+    Ok((plan, Motion::load(PI / (8.0 * RADIUS))))
+}
+
+/// The first of the steps that are chosen wears a fiftieth of the approach, whatever a cell slips in a cycle or a pass: the deepest
+/// cell is not that of the largest work alone, and a step that errs too much is cut to a fifth.
+#[test]
+fn chosen_steps_begin_with_the_slip_that_there_is() -> Result<()> {
+    let (plan, motion) = pair()?;
+    let load = motion.load.unwrap_or(0.0);
+    let options = FrictionOptions::default();
+    let pull =
+        |part: f64| Step { force: [None, Some(0.3 * part * load)], ..Step::press(motion, 0.6) };
+    let rolling = Rolling {
+        creepage: [Some(1e-4), None],
+        ..Rolling::new(motion, 0.3, RollingDirection::PlusY)
+    };
+    for slip in
+        [Slip::Cycle(vec![pull(1.0), pull(-1.0)], options), Slip::Pass(Box::new(rolling), options)]
+    {
+        let wear = Wear { slip, ..Wear::sliding([vec![1e-6], vec![0.0]], 1e30) };
+        let shape = Paraboloid::new(RADIUS, RADIUS)?;
+        let mut session = WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?;
+        let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
+        let first = session.advance(go_on)?.expect("a state");
+        let next = session.advance(go_on)?.expect("a step");
+        let deepest = next.depth[0].fold(0.0_f64, |most, depth| most.max(*depth));
+        let part = deepest / first.solution.displacement.fold(0.0_f64, |most, u| most.max(u.abs()));
+        assert!(part > 0.2 * 0.02 && part < 1.5 * 0.02, "{part:e}");
+    }
+    Ok(())
+}
+
+/// A path that does not lead back slips the first time alone, and a small force on coarse cells nowhere; a cycle that slips wears.
+#[test]
+fn cycles_say_why_they_wear_nothing() -> Result<()> {
+    let (plan, motion) = pair()?;
+    let load = motion.load.unwrap_or(0.0);
+    let press = Step::press(motion, 0.6);
+    let pull = |part: f64| Step { force: [None, Some(part * load)], ..press.clone() };
+    let push = |shift: f64| Step { shift: [None, Some(shift)], ..press.clone() };
+    for (steps, due) in [
+        (vec![pull(0.3), pull(-0.3)], None),
+        (vec![pull(0.3)], Some(Idle::DoesNotReturn)),
+        (vec![push(1.0)], Some(Idle::DoesNotReturn)),
+        // The outermost cells carry a hundredth of the load and more.
+        (vec![pull(1e-6), pull(-1e-6)], Some(Idle::Sticks)),
+    ] {
+        let wear = Wear {
+            slip: Slip::Cycle(steps, FrictionOptions::default()),
+            steps: WearSteps::Ends(vec![1.0]),
+            ..Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
+        };
+        let shape = Paraboloid::new(RADIUS, RADIUS)?;
+        let session = WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?;
+        let states = states(session)?;
+        assert_eq!(states[1].idle, due);
+        assert_eq!(states[0].idle, None);
     }
     Ok(())
 }

@@ -156,3 +156,35 @@ fn what_has_no_thinner_layers_is_refused() -> Result<()> {
     );
     Ok(())
 }
+
+/// Depths that the pressure expected at the end of a step gives are those of its end to a ten-thousandth of the thickness, but in
+/// cells that have just come into contact: a step is solved once.
+#[test]
+fn steps_of_thinner_layers_are_solved_once() -> Result<()> {
+    let (grid, motion) = contacts()?[1];
+    let plan = Arc::new(Contact::plan(coated(THICKNESS)?, grid, Setup::default())?);
+    // A tenth of the coat where the pressure is largest, in twenty steps.
+    let end = 0.1 * THICKNESS;
+    let wear = Wear {
+        steps: WearSteps::Ends((1..=20).map(|k| end * f64::from(k) / 20.0).collect()),
+        thickness: Thickness::FirstOrder,
+        ..Wear::sliding([vec![1.0], vec![0.0]], end)
+    };
+    let shape = Paraboloid::new(RADIUS, RADIUS)?;
+    let mut session = WearSession::new(plan, shape, motion, wear, false)?;
+    let mut solves = Vec::new();
+    loop {
+        let mut count = 0;
+        let state = session.advance(&mut |report: &nacre::Report| {
+            count += usize::from(report.iterations == 0);
+            ControlFlow::Continue(())
+        })?;
+        if state.is_none() {
+            break;
+        }
+        solves.push(count);
+    }
+    // Before the second step, nothing tells how the pressure changes.
+    assert_eq!(solves[3..], [1; 18], "{solves:?}");
+    Ok(())
+}

@@ -543,7 +543,7 @@ def wear(
         which never do.
     thickness : {"frozen", "first order"}, optional
         How thick the layers are in the elastic contact: as before wear, or, to first order in the
-        depth, thinner in each cell of the top layers by what is worn there. That takes four times
+        depth, thinner in each cell of the top layers by what is worn there. That takes 3.5 times
         as long, 1.3 times in line contact. Slips of `slide` and `roll`, stiffness, gradients and
         stresses of the solutions are those of layers as thick as before.
     initial : WearHistory or array_like, optional

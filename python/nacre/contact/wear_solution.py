@@ -88,7 +88,9 @@ class Sliding:
         if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
             several = " and ".join(known) or "none"
             raise ValueError(f"one of sliding, cycles and passes must be given, got {several}")
-        core.real(known[0], getattr(self, known[0]))
+        distance = core.real(known[0], getattr(self, known[0]))
+        if not 0.0 <= distance < math.inf:
+            raise ValueError(f"{known[0]} must be finite and at least 0, got {distance:g}")
         for name, one in (("slide", "cycles"), ("roll", "passes")):
             if (getattr(self, name) is None) != (getattr(self, one) is None):
                 raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
@@ -896,6 +898,12 @@ def wear_history(
     regrids, earlier = 0, before.report if before else None
     settled = earlier is None or NOT_SETTLED not in earlier.warnings
     members = (bodies.body, bodies.counterbody)
+    first_notes = _rate_notes(options)
+    for note in first_notes:  # before what may take long
+        warnings.warn(note, core.NacreWarning, stacklevel=3)
+    idle: set[str] = set()
+    if earlier is not None:
+        idle = {reason for reason, note in NOTHING_WORN.items() if note in earlier.warnings}
 
     def history(*, converged: bool, thickness: float | None = None) -> WearHistory:
         known = [state.step_error for state in states if state.step_error is not None]
@@ -905,7 +913,11 @@ def wear_history(
             thickness_error=thickness,
             regrids=regrids + (earlier.regrids if earlier else 0),
             converged=converged,
-            warnings=_notes(states, events, control.thickness, thickness, settled=settled),
+            warnings=(
+                *first_notes,
+                *(NOTHING_WORN[reason] for reason in sorted(idle)),
+                *_notes(states, events, control.thickness, thickness, settled=settled),
+            ),
             seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
         )
         return WearHistory(tuple(states), tuple(events), sliding.unit, report, inputs)
@@ -914,8 +926,9 @@ def wear_history(
     try:
         steps = core.wear(shape, motion, options, on)
         with lasting("wear", control.progress) as tell:
-            for distance, depths, solved, through, error, signs, grown in steps:
+            for distance, depths, solved, through, error, why_idle, signs, grown in steps:
                 rings, at_event = signs
+                idle |= {why_idle} - {None}
                 regrids, settled = grown, settled and at_event
                 if before and distance == 0.0:
                     continue
@@ -941,9 +954,20 @@ def wear_history(
     whole = history(converged=converged, thickness=thickness)
     if control.store is not None:
         whole.save(control.store)
-    for note in whole.warnings:
+    for note in whole.warnings[len(first_notes) :]:
         warnings.warn(note, core.NacreWarning, stacklevel=3)
     return whole
+
+
+def _rate_notes(options: WearOptions) -> list[str]:
+    """Return what is wrong with rates that no test has measured."""
+    named = (("rate", options.rate), ("counter_rate", options.counter_rate))
+    return [
+        f"{name} is in m²/N, and {max(rates):.3g} m²/N are {1e9 * max(rates):.3g} mm³/(N m), more "
+        "than dry wear takes off: give a rate in mm³/(N m) times 1e-9"
+        for name, rates in named
+        if max(rates) > MOST_RATE
+    ]
 
 
 def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
@@ -1003,11 +1027,21 @@ def _notes(
         )
     if not settled:
         notes.append(NOT_SETTLED)
+    deepest, width = _deepest(states[-1]), _narrowest(states[-1].solution)
+    if deepest > width > 0:
+        notes.append(
+            f"{number(deepest, 'm')} are worn off a contact that is {number(width, 'm')} wide, "
+            "which wear of a surface does not do: look at the rate, which is in m²/N, 1e-9 of "
+            "that in mm³/(N m), and at the distance"
+        )
     part, frozen = _worn_part(states[-1]), model == "frozen"
     went_on = events and events[0].distance < states[-1].distance
     if went_on or _worn_part(states[0]) >= 1.0:
         rest = "still has it" if frozen else "lacks it there to first order only"
-        notes.append(f"a layer is through, and the elastic contact {rest}: what follows is a bound")
+        notes.append(
+            f"a layer is through, and the elastic contact {rest}: what follows errs by an unknown "
+            "part, to either side"
+        )
     elif frozen and error is not None and error > MOST_THINNING:
         notes.append(
             "the worn layer counts as thick as before: the pressure errs by some "
@@ -1020,6 +1054,17 @@ def _notes(
             f"errs {size}"
         )
     return tuple(dict.fromkeys(notes))
+
+
+def _deepest(state: WearState) -> float:
+    """Return the largest depth that is removed from one body."""
+    return float(max(state.depth.max(), state.counter_depth.max()))
+
+
+def _narrowest(solution: Solution) -> float:
+    """Return the width of the contact along the axis along which it is narrower; NaN if endless."""
+    along_x, along_y = (end - start for start, end in solution.contact_extent)
+    return float(along_y if solution.grid.is_line else min(along_x, along_y))
 
 
 def _worn_part(state: WearState) -> float:
@@ -1039,6 +1084,19 @@ NOT_SETTLED = (
     "shorter steps"
 )
 """Warning of a search for an event that ended before it was there."""
+NOTHING_WORN = {
+    "sticks": "no cell slips in the steps of slide, and nothing is worn: give more force or shift, "
+    "or smaller cells, of which those at the rim slip first",
+    "does-not-return": "the steps of slide slip the first time alone, and nothing is worn by "
+    "further cycles: give the steps of a cycle, which end where they begin, as to and fro",
+}
+"""Warnings of cycles that wear nothing, by the reason."""
+MOST_RATE = 1e-9
+"""Rate [m²/N] from which on there is a warning: 1 mm³/(N m).
+
+Archard's K = κH is at most some 0.1, that of abrasion (NPTEL, course 112104122, lecture 7.5), and
+the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
+"""
 MOST_THINNING = 0.05
 """Error of the pressure by the thickness of layers from which on there is a warning."""
 FIRST_ORDER = 0.4

@@ -217,7 +217,7 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
     @cached_property
     def _states(self) -> core.IndentStates:
         """Contacts of the compiled module, solved again."""
-        arguments: dict[str, object] = {self.given: getattr(self, self.given)}
+        arguments: dict[str, Any] = {self.given: getattr(self, self.given)}
         return self.indentation._planned.at(self.branch, **arguments)
 
     @property
@@ -645,7 +645,9 @@ class Indentation:
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
         """
-        return self._at({"load": load, "approach": approach, "radius": radius}, branch, "load", progress)
+        return self._at(
+            {"load": load, "approach": approach, "radius": radius}, branch, "load", progress
+        )
 
     def _at(
         self,
@@ -817,4 +819,6 @@ def solve(
     if not among(control, get_args(Control)):
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
-    return test._at({"load": load, "approach": approach, "radius": radius}, branch, control, progress)
+    return test._at(
+        {"load": load, "approach": approach, "radius": radius}, branch, control, progress
+    )

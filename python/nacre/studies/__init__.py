@@ -513,7 +513,20 @@ def _solve(
         marks = {"line": normal.report.grid.is_line, "rolls": rolling}
         return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
-        return {"error": _reason(error)}
+        return {"error": _reason(error)} | _marks(arguments)
+
+
+def _marks(arguments: Mapping[str, Any]) -> Record:
+    """Return what the record of a case that failed tells of its kind, by its arguments."""
+    grid = arguments.get("grid")
+    marks = {
+        "indents": "tip" in arguments,
+        "bears": "bearing" in arguments,
+        "wears": "rate" in arguments,
+        "counts": any(arguments.get(name) is not None for name in ("cycles", "passes")),
+        "line": isinstance(grid, core.Grid) and grid.is_line,
+    }
+    return {name: True for name, holds in marks.items() if holds}
 
 
 def _worn(history: WearHistory, outputs: dict[str, Output]) -> Record:

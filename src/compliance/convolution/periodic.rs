@@ -76,18 +76,14 @@ impl Convolution {
             periodic = with(coefficients);
             [_, largest] = transform.extremes(&periodic.spectrum);
         }
-        let (stiffened, scale) = match &self.springs {
-            Some(springs) => {
-                let (own, mean) = (coefficients[[0, 0]], self.mean_spring());
-                let mut with_mean = coefficients.to_owned();
-                with_mean[[0, 0]] += mean;
-                let scale = springs.iter().map(|c| ((own + mean) / (own + c)).sqrt());
-                (Some(with(&with_mean)), Some(scale.collect()))
-            }
-            None => (None, None),
-        };
-        let invertible = &stiffened.as_ref().unwrap_or(&periodic).spectrum;
-        let inverse = || transform.inverse_spectrum(invertible, FLOOR * largest);
+        let mean = self.mean_spring();
+        let uneven =
+            |springs: &&Arc<[f64]>| springs.windows(2).any(|pair| (pair[0] - pair[1]).abs() > 0.0);
+        let scale = self.springs.as_ref().filter(uneven).map(|springs| {
+            let own = coefficients[[0, 0]];
+            springs.iter().map(|c| ((own + mean) / (own + c)).sqrt()).collect()
+        });
+        let inverse = || transform.inverse_spectrum(&periodic.spectrum, mean, FLOOR * largest);
         let inverse = periodic.clock.during(inverse);
         periodic.springs.clone_from(&self.springs);
         let inverse = Self {

@@ -75,7 +75,7 @@ impl Tangent {
         let mut convolution = convolution.plus(within.collect());
         let springs = solution.compliance.as_ref().map(|c| c.on(grid)).transpose()?;
         if let Some(springs) = &springs {
-            convolution = convolution.on_springs(copied(springs, &window));
+            convolution = convolution.on_springs(&copied(springs, &window));
         }
         let inverse = convolution.approximation(&corner, repeats).inverse;
         let contact = block(&solution.pressure, &window);

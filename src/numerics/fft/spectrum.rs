@@ -171,11 +171,17 @@ impl PaddedTransform {
         extremes
     }
 
-    /// Spectrum of the inverse kernel. Entries of `spectrum` below `bound` are raised to it, so that the
-    /// inverse is positive and finite.
-    pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, bound: f64) -> EvenSpectrum {
+    /// Spectrum of the inverse of the kernel of a `spectrum` with so much more at the offset 0, its `diagonal`. Entries below `bound` are raised to
+    /// it, so that the inverse is positive and finite.
+    pub(crate) fn inverse_spectrum(
+        &self,
+        spectrum: &EvenSpectrum,
+        diagonal: f64,
+        bound: f64,
+    ) -> EvenSpectrum {
         let points = self.points();
-        let inverse = |c: &f64| 1.0 / (c.max(bound) * points * points);
+        let more = diagonal / points;
+        let inverse = |c: &f64| 1.0 / ((c + more).max(bound) * points * points);
         let values = spectrum.0.iter().map(inverse).collect();
         EvenSpectrum(values)
     }

@@ -48,6 +48,7 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert further.distance[-1] > further.life.distance
 
 
+@pytest.mark.slow
 def test_a_history_goes_on_and_comes_back_from_files(tmp_path: Path) -> None:
     whole = worn(steps=4, scheme="euler")
     half = worn(sliding=50.0, scheme="euler")
@@ -113,12 +114,73 @@ def test_fretting_wears_where_it_slips() -> None:
     assert np.corrcoef(worn_depth.ravel(), (slip * loop[0].pressure).ravel())[0, 1] > 0.99
 
 
+@pytest.mark.parametrize(
+    ("steps", "message"),
+    [
+        # The second time, the roller is where it was.
+        ([{"shift": (None, 1e-6)}], "slip the first time alone, and nothing is worn"),
+        # The pressure of the outermost cells carries a thousandth of the load.
+        ([{"force": (None, f)} for f in (3.0, -3.0)], "no cell slips in the steps of slide"),
+    ],
+)
+def test_cycles_that_wear_nothing_are_warned_of(steps: Any, message: str) -> None:
+    contact = nacre.Contact(STEEL, nacre.Grid.line(129, 3.4e-4), STEEL)
+    cycle: dict[str, Any] = {"friction": 0.6, "steps": steps}
+    keywords: dict[str, Any] = {"load": 1e5, "rate": 1e-16, "cycles": 1e6, "slide": cycle}
+    for choice in ("auto", 1):
+        with pytest.warns(nacre.NacreWarning, match=message) as caught:
+            history = contact.wear(ROLLER, steps=choice, **keywords)
+        assert len(caught) == 1
+        assert len(history.warnings) == 1
+        # Rounding of displacements is 1e-16 of them, some 1e-21 m.
+        assert history.deepest.max() < 1e-16
+
+
+def test_a_rate_in_the_wrong_unit_is_warned_of() -> None:
+    """1e-8 mm³/(N m) of DLC given as m²/N, and half of the limit of 1 mm³/(N m)."""
+    keywords: dict[str, Any] = {"sliding": 1e-9, "steps": 1, "scheme": "euler"}
+    match = r"^rate is in m²/N, and 1e-08 m²/N are 10 mm³/\(N m\), more"
+    with pytest.warns(nacre.NacreWarning, match=match) as caught:
+        history = worn(rate={0: 1e-8, "substrate": 1e-15}, **keywords)
+    assert len(caught) == 1
+    assert history.warnings == (str(caught[0].message),)
+    match = "^counter_rate is in m²/N, and 1.5e-09"
+    with pytest.warns(nacre.NacreWarning, match=match):
+        worn(counter_rate=1.5e-9, **keywords)
+    assert worn(counter_rate=0.5e-9, **keywords).warnings == ()
+
+
+@pytest.mark.filterwarnings("ignore:the contact touches the edge of the grid")
+def test_a_depth_beyond_the_width_of_the_contact_is_warned_of() -> None:
+    """The scar is as wide as the grid b, and κ s W/b deep, but for 1e-2 of that at its rim."""
+    keywords: dict[str, Any] = {"load": 1e5, "grid": GRID, "rate": 1e-15, "scheme": "euler"}
+    distance = GRID.size[1] ** 2 / (1e-15 * 1e5)
+    below = nacre.wear(ROLLER, STEEL, sliding=0.98 * distance, steps=1, **keywords)
+    assert not any("wide" in note for note in below.warnings)
+    with pytest.warns(nacre.NacreWarning, match="are worn off a contact that is 600 µm wide"):
+        nacre.wear(ROLLER, STEEL, sliding=1.02 * distance, steps=1, **keywords)
+
+
 def test_ctrl_c_ends_a_history() -> None:
     setup = """
 import nacre
 steel = nacre.Elastic(young=210e9, poisson=0.3)
 contact = nacre.Contact(steel, nacre.Grid((128, 128), (4e-4, 4e-4)))
 keywords = {"load": 10.0, "rate": 1e-16, "sliding": 1e3, "steps": 10**5}
+"""
+    call = "contact.wear(nacre.Sphere(5e-3), progress=lambda state: begin.set(), **keywords)"
+    assert interrupted(setup, call, at="event") == 0
+
+
+def test_ctrl_c_ends_a_history_within_a_cycle_of_friction() -> None:
+    """After the first state, the slide of a cycle of two thousand steps is solved, twice."""
+    setup = """
+import nacre
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+contact = nacre.Contact(steel, nacre.Grid((64, 64), (2e-4, 2e-4)), steel)
+steps = [{"force": (force, None)} for force in 10**3 * (1.0, -1.0)]
+slide = {"friction": 0.3, "steps": steps}
+keywords = {"load": 10.0, "rate": 1e-16, "cycles": 1e3, "steps": 1, "slide": slide}
 """
     call = "contact.wear(nacre.Sphere(5e-3), progress=lambda state: begin.set(), **keywords)"
     assert interrupted(setup, call, at="event") == 0
@@ -163,6 +225,9 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
         ({"sliding": None}, "one of sliding, cycles and passes must be given, got none"),
         ({"cycles": 2.0}, "got sliding and cycles"),
         ({"sliding": -1.0, "steps": "auto"}, "sliding must be finite and at least 0, got -1"),
+        ({"sliding": -1.0}, "sliding must be finite and at least 0, got -1"),
+        ({"sliding": None, "cycles": -2.0}, "cycles must be finite and at least 0, got -2"),
+        ({"sliding": np.inf}, "sliding must be finite and at least 0, got inf"),
         ({"slip": np.zeros((1, 64))}, "slip must be above 0 somewhere"),
         ({"steps": [50.0, 20.0, 100.0]}, "steps must be finite, above 0 and increasing"),
         ({"steps": [50.0]}, "steps must end at 100"),

@@ -79,6 +79,19 @@ def test_a_case_that_fails_says_why() -> None:
     assert study.worn_volume[1] == pytest.approx(1e-17 * 1e5, rel=1e-12)
 
 
+def test_a_study_whose_cases_all_fail_has_the_columns_of_wear() -> None:
+    failed = nacre.sweep(CASE, {"sliding": [-1.0, -2.0]})
+    good = nacre.sweep(CASE, {"sliding": [1.0, 2.0]})
+    assert (failed.error != "").all()
+    assert list(failed.data_vars) == list(good.data_vars)
+    for name in good.data_vars:
+        assert failed[name].attrs == good[name].attrs, name
+    cycles = nacre.sweep(FRETTING, {"cycles": [-1.0]})
+    assert cycles.error[0] != ""
+    assert "units" not in cycles.life.attrs
+    assert cycles.worn_volume.attrs["units"] == "m³"
+
+
 @pytest.mark.parametrize("name", ["store", "friction"])
 def test_other_arguments_than_those_of_wear_are_refused(name: str) -> None:
     with pytest.raises(TypeError, match=rf"arguments of nacre.wear .* got \['{name}'\]"):
