@@ -928,7 +928,8 @@ def wear_history(
         with lasting("wear", control.progress) as tell:
             for distance, depths, solved, through, error, why_idle, signs, grown in steps:
                 rings, at_event = signs
-                idle |= {why_idle} - {None}
+                if why_idle is not None:
+                    idle.add(why_idle)
                 regrids, settled = grown, settled and at_event
                 if before and distance == 0.0:
                     continue
