@@ -160,14 +160,14 @@ def page(
             if (content := getattr(part, name))
         ]
 
-    warnings = dict.fromkeys(text for part in parts for text in part.warnings)
+    texts = dict.fromkeys(text for part in parts for text in part.warnings)
     chapters = {
         "Given": each("inputs", _pairs),
         "Results": each("numbers", _pairs),
         "Pictures": each("pictures", _figures),
         "Parts": each("tables", lambda members: [_table(one) for one in members]),
         "Model and limits": each("model", _pairs),
-        "Warnings": [markup("note", text=text) for text in warnings or ["no warnings"]],
+        "Warnings": [markup("note", text=text) for text in texts or ["no warnings"]],
         "Case file": case and markup("case", text=case),
     }
     head = [("case", name), ("date", date), ("computed by", tables.SOURCE)]
@@ -237,10 +237,7 @@ def other_numbers(result: tables.HasQuantities) -> Rows:
 
 
 def table(
-    title: str,
-    rows: Iterable[Iterable[object]],
-    quantities: Iterable[Quantity] = (),
-    notes: Sequence[str] = (),
+    title: str, rows: Iterable[Iterable[object]], quantities: Iterable[Quantity] = ()
 ) -> Table:
     """Return a table of rows, the heading first; columns get the units of quantities by name."""
     units = {row.name: symbol(row.unit) for row in quantities}
@@ -258,8 +255,8 @@ def table(
         for name, values in columns.items()
     ]
     texts = [*zip(*(column for _, column in cells), strict=True)]
-    if len(texts) > MOST_ROWS:
-        notes = [*notes, f"and {len(texts) - MOST_ROWS} more rows"]
+    more = len(texts) - MOST_ROWS
+    notes = [f"and {more} more rows"] if more > 0 else []
     return Table(title, [name for name, _ in cells], texts[:MOST_ROWS], notes)
 
 
