@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa torch develop stubs docs links publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa constants torch develop stubs docs links publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
@@ -94,6 +94,9 @@ references: $(BUILD) ## recompute the reference numbers of the tests and compare
 
 kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in three minutes
 	$(BIN)/python benches/kappa.py
+
+constants: $(BUILD) ## halve and double the constants of the solver that were found by trial: docs/constants.csv, in an hour
+	$(BIN)/python benches/constants.py
 
 # PyTorch is large: it is installed into a separate environment under target/torch.
 torch: $(WHEEL) ## tests of nacre.torch, with PyTorch in an environment of its own

@@ -82,7 +82,8 @@ def work(crate: Path) -> tuple[float, int, int]:
 
 def compared(after: tuple[float, int, int], before: tuple[float, int, int]) -> str:
     """Return the work relative to that before, in words."""
-    words = f"{100 * (after[0] / before[0] - 1):+.1f} %"
+    change = after[0] / before[0] - 1
+    words = f"{100 * change:+.1f} %" if abs(change) >= 5e-4 else "–"
     if after[1] != before[1]:
         words += f", cells {100 * (after[1] / before[1] - 1):+.1f} %"
     if after[2]:
