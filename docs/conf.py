@@ -148,8 +148,19 @@ def find_type(app: Any, env: Any, node: Any, text: Any) -> Any:
     return domain.resolve_xref(env, page, app.builder, "obj", name, node, text)
 
 
+def place_notebooks(app: Any, config: Any) -> None:
+    """Put notebooks where buttons look: jupyterlite-sphinx 0.23 keeps the names of folders."""
+    config.jupyterlite_contents = [
+        f"{folder}/*" for folder in config.jupyterlite_contents
+    ]
+
+
 def setup(app: Any) -> None:
     """Connect the functions that Sphinx calls."""
+    if "jupyterlite_sphinx" in extensions:
+        app.connect(
+            "config-inited", place_notebooks, priority=950
+        )  # after the gallery
     app.connect("source-read", link_pages)
     app.connect("source-read", insert_reference)
     app.connect("missing-reference", find_type)
