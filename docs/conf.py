@@ -27,6 +27,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "attributes",
     "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
