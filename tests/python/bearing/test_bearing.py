@@ -134,9 +134,13 @@ def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[An
         # A step is so short that no cell joins the contact: derivatives are those of the cells.
         (CylindricalRoller(**ROLLERS), COARSE, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
         (TaperedRoller(**TAPERED), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (1e-8,) * 2),
-        (TaperedRoller(**TAPERED), COARSE, (2e-11,) * 3 + (1e-9,) * 2),
+        pytest.param(
+            TaperedRoller(**TAPERED), COARSE, (2e-11,) * 3 + (1e-9,) * 2, marks=pytest.mark.slow
+        ),
         (SphericalRoller(**BARRELS), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (0, 0)),
-        (SphericalRoller(**BARRELS), COARSE, (2e-11,) * 3 + (0, 0)),
+        pytest.param(
+            SphericalRoller(**BARRELS), COARSE, (2e-11,) * 3 + (0, 0), marks=pytest.mark.slow
+        ),
         (DeepGrooveBall(**BALLS), STANDARD | {"speed": 500.0}, (1e-9,) * 3 + (1e-8,) * 2),
     ],
     ids=[

@@ -114,6 +114,7 @@ def test_doubled_length_has_more_weak_places() -> None:
     assert found.ratio == pytest.approx(2 ** (-8 / 9), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_layers_of_the_substrate_change_nothing() -> None:
     radius = POINT[2]
     layers = [nacre.Layer(STEEL, 0.3 * radius), nacre.Layer(STEEL, 0.5 * radius)]
@@ -142,6 +143,7 @@ def test_limit_above_the_field_is_an_infinite_life() -> None:
         life_ratio(POINT[0], POINT[0], model)
 
 
+@pytest.mark.slow
 def test_coated_bearing_against_bare(tmp_path: Path) -> None:
     given: dict[str, Any] = {
         "count": 10,

@@ -101,6 +101,7 @@ def test_tilt_about_the_centre_is_followed() -> None:
     assert bar < 1e-3 * both.max()
 
 
+@pytest.mark.slow
 @BOTH
 def test_rotated_and_mirrored_loads(options: dict[str, Any]) -> None:
     bearing = spherical()
@@ -324,6 +325,7 @@ def test_rating_counts_rows() -> None:
     assert "barrels have none of the standard's edge factors" in str(solution.life())
 
 
+@pytest.mark.slow
 def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     bearing = spherical(count=7)
     light, heavy = (

@@ -138,6 +138,7 @@ def test_no_angle_is_a_cylindrical_roller(options: dict[str, Any]) -> None:
     assert cone.life().l10 == pytest.approx(flat.life().l10, rel=1e-9)
 
 
+@pytest.mark.slow
 @BOTH
 def test_rotated_and_mirrored_loads(options: dict[str, Any]) -> None:
     bearing = tapered()
@@ -231,6 +232,7 @@ def test_pressure_falls_towards_the_thick_end() -> None:
     np.testing.assert_allclose(factors[14:26], 1.0, atol=5e-3)
 
 
+@pytest.mark.slow
 def test_lives_films_files_and_pictures(tmp_path: Path) -> None:
     light, heavy = (
         tapered().solve(force=(0.0, 0.0, load), cells=(80, 32)) for load in (5000.0, 10000.0)

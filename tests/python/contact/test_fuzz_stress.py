@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 import nacre
 from bodies import quiet
@@ -109,6 +110,7 @@ def random_case(seed: int) -> Case:
     return Case(ball, body, load, plane, sliding)
 
 
+@pytest.mark.slow
 def test_extremes_are_within_their_errors() -> None:
     """A friction whose edge the cells do not locate is among them."""
     seeds = [random.SystemRandom().getrandbits(32) for _ in range(int(ASKED or 0))] or range(12)

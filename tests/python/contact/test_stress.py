@@ -513,6 +513,7 @@ def test_refined_extremes_agree_with_a_finer_grid() -> None:
     assert abs(shear - expected) <= error + own
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*uncertain", "ignore:a body with layers has a free end")
 def test_the_shear_below_a_thin_coat_of_a_roller_with_free_ends_is_refined() -> None:
     """Cells thrice as wide as the coat is thick leave the shear at its interface unknown.
@@ -537,6 +538,7 @@ def test_the_shear_below_a_thin_coat_of_a_roller_with_free_ends_is_refined() -> 
     assert refined.uncertainty["shear"] < rough.uncertainty["shear"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", ["body", "counterbody"])
 def test_bare_bodies_on_coarse_cells_are_refined(body: Any) -> None:
     """Friction at the surface, on cells that do not resolve it; Hertz' contact of one modulus."""

@@ -170,6 +170,7 @@ def test_equal_layers_are_no_layers(thickness: float, friction: float) -> None:
         assert values[above] == pytest.approx(values[below], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_limit_is_below_both_bounds() -> None:
     for friction in (0.0, 0.1, 0.3):
         summary = fatigue.assess(cylinder(2.0, 0.3), friction=friction)
@@ -303,6 +304,7 @@ def test_the_history_beyond_the_grid_is_that_of_a_wider_grid() -> None:
         assert found[0] == pytest.approx(expected[0], rel=3e-4)
 
 
+@pytest.mark.slow
 def test_map_of_shakedown_is_the_summary_at_each_friction() -> None:
     solution = cylinder(2.0, 0.3)
     found = fatigue.shakedown_map(solution, friction=[0.2, 0.0])

@@ -321,6 +321,7 @@ def test_a_hardness_that_is_not_reached_is_none() -> None:
     assert quiet(fatigue.assess, hard, depths=DEPTHS) == assessed(criteria=[], shear_yield=None)
 
 
+@pytest.mark.slow
 def test_a_map_has_the_bits_of_single_frictions_and_shares_their_stresses(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

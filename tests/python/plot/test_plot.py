@@ -191,6 +191,7 @@ def test_a_line_contact_has_one_section(line: nacre.Solution) -> None:
     drawn(axes["y"].figure)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 def test_no_text_is_cut_off() -> None:
     half = 7e-3
