@@ -17,7 +17,7 @@ import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.normal import NormalContact
 from nacre.contact.solution import NOT_COUNTED, Solution
-from nacre.contact.stresses import DepthOptions, Stressed, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_pictures
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
@@ -132,7 +132,7 @@ class FrictionReport(Result):
 
 
 @dataclass(frozen=True, repr=False)
-class FrictionSolution(NormalContact, Result, Stressed):
+class FrictionSolution(NormalContact, Result):
     """A contact with friction: one step of a history, or rolling.
 
     Fields are at cell centres, and read-only. Tractions act on the body, and their opposites on
@@ -196,10 +196,6 @@ class FrictionSolution(NormalContact, Result, Stressed):
     def normal(self) -> Solution:
         """Normal contact: pressure, gap, approach, tilt."""
         return Solution._of(self._solved.normal())
-
-    @property
-    def _normal_solved(self) -> core.Solved:
-        return self.normal._solved
 
     @property
     def elastic_energy(self) -> float:

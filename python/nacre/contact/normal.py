@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import Field, Pair
+from nacre.contact.stresses import Stressed
 
 
 class Numbers(TypedDict):
@@ -28,32 +29,27 @@ class Numbers(TypedDict):
     plastic_work: float
 
 
-class NormalContact:
+class NormalContact(Stressed):
     """Fields, numbers and motion of the normal contact. Fields are ``(nx, ny)``, and read-only."""
-
-    @property
-    def _normal_solved(self) -> core.Solved:
-        """Normal contact of the compiled module."""
-        raise NotImplementedError
 
     @cached_property
     def _numbers(self) -> Numbers:
-        return self._normal_solved.numbers()
+        return self._normal._solved.numbers()
 
     @cached_property
     def grid(self) -> core.Grid:
         """Grid."""
-        return self._normal_solved.grid()
+        return self._normal._solved.grid()
 
     @cached_property
     def pressure(self) -> Field:
         """Pressure [Pa], at least 0."""
-        return self._normal_solved.field("pressure")
+        return self._normal._solved.field("pressure")
 
     @cached_property
     def gap(self) -> Field:
         """Gap [m]: 0 in contact, within the tolerance, and +inf where the shape cannot touch."""
-        return self._normal_solved.field("gap")
+        return self._normal._solved.field("gap")
 
     @cached_property
     def hardness(self) -> float | Field | None:
@@ -61,7 +57,7 @@ class NormalContact:
 
         `None` where they do not yield.
         """
-        return self._normal_solved.field("hardness")
+        return self._normal._solved.field("hardness")
 
     @cached_property
     def indentation(self) -> Field:
@@ -69,7 +65,7 @@ class NormalContact:
 
         It includes that of the solutions before.
         """
-        field = self._normal_solved.field("indentation")
+        field = self._normal._solved.field("indentation")
         if field is None:
             field = np.zeros(self.grid.shape)
             field.setflags(write=False)
@@ -81,7 +77,7 @@ class NormalContact:
 
         `None` where there are none. The gap contains what they give, the displacement does not.
         """
-        return self._normal_solved.field("compliance")
+        return self._normal._solved.field("compliance")
 
     @property
     def plastic_work(self) -> float:
@@ -94,7 +90,7 @@ class NormalContact:
     @cached_property
     def in_contact(self) -> npt.NDArray[np.bool_]:
         """Whether each cell is in contact: its pressure is above 0."""
-        return self._normal_solved.field("in_contact")
+        return self._normal._solved.field("in_contact")
 
     @property
     def x(self) -> Field:
@@ -174,4 +170,4 @@ class NormalContact:
     @cached_property
     def line_load(self) -> Field:
         """Force per length along x, ``(nx,)`` [N/m]."""
-        return self._normal_solved.field("line_load")
+        return self._normal._solved.field("line_load")

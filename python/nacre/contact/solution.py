@@ -27,7 +27,7 @@ from nacre.contact.gradient import (
     linearisation,
 )
 from nacre.contact.normal import NormalContact
-from nacre.contact.stresses import DepthOptions, Stressed, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_pictures
 from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
 from nacre.results.quantities import CONTACT, Quantity
@@ -239,7 +239,7 @@ def check_unyielded(solution: Solution) -> None:
 
 
 @dataclass(frozen=True, repr=False, init=False)
-class Solution(NormalContact, Result, Stressed):
+class Solution(NormalContact, Result):
     """A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 
     Examples
@@ -268,10 +268,6 @@ class Solution(NormalContact, Result, Stressed):
         solution = object.__new__(cls)
         solution.__dict__.update(_solved=solved, _shape=shape)
         return solution
-
-    @property
-    def _normal_solved(self) -> core.Solved:
-        return self._solved
 
     @cached_property
     def displacement(self) -> Field:

@@ -171,8 +171,8 @@ impl PaddedTransform {
         extremes
     }
 
-    /// Spectrum of the inverse of the kernel of a `spectrum` with so much more at the offset 0, its `diagonal`. Entries below `bound` are raised to
-    /// it, so that the inverse is positive and finite.
+    /// Spectrum of the inverse of a kernel: that of a `spectrum`, with `diagonal` added at the offset 0. Entries below
+    /// `bound` are raised to it, so that the inverse is positive and finite.
     pub(crate) fn inverse_spectrum(
         &self,
         spectrum: &EvenSpectrum,
