@@ -5,69 +5,56 @@ from __future__ import annotations
 import copyreg
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, Self, Unpack, overload
-
-import numpy.typing as npt
+from dataclasses import replace
+from typing import Any, Self, Unpack, overload
 
 import nacre._core as core
+from nacre._tools.groups import grouped
+from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
-from nacre._tools.typing import Algorithm, Along, AnyPath, Body, Field, Layers, Matrix, Planned
+from nacre._tools.typing import Body, Field, Layers, Matrix, Planned
 from nacre.contact.arguments import (
     MOTION,
     STEP,
     FrictionOptions,
     FrictionStep,
     Motion,
+    OptionKeywords,
     PlannedRollKeywords,
     PlannedSlideKeywords,
+    PlannedSolveKeywords,
+    Progress,
     Rolling,
-    RollingDirection,
     RollKeywords,
     Setup,
     SlideKeywords,
+    SolveKeywords,
     SolveOptions,
     StepProgress,
 )
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
 from nacre.contact.wear_solution import (
-    Rate,
-    Scheme,
+    PlannedWearKeywords,
+    Rates,
     Sliding,
-    Thickness,
     WearControl,
     WearHistory,
     Wearing,
-    WearProgress,
+    WearKeywords,
     wear_history,
 )
 
 MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""
-Progress = Callable[[Report], object]
 
 
+@grouped(Setup, Motion, SolveOptions)
 def solve(
     shape: core.Shape,
     body: Body,
     counterbody: Body | None = None,
-    *,
-    grid: core.Grid | None = None,
-    max_cells: int | None = None,
-    threads: int | None = None,
-    load: float | None = None,
-    approach: float | None = None,
-    eccentricity: Along | None = None,
-    moment: Along | None = None,
-    tilt: Along | None = None,
-    hardness: float | Matrix | None = None,
-    compliance: float | Matrix | None = None,
-    tolerance: float = 1e-8,
-    max_iterations: int | None = None,
-    algorithm: Algorithm = "cascade",
-    initial: Solution | FrictionSolution | Matrix | None = None,
-    progress: Progress | None = None,
-    check: bool = True,
+    **keywords: Unpack[PlannedSolveKeywords],
 ) -> Solution:
     """Press a shape into a body, in one call: choose a grid where none is given, plan, solve.
 
@@ -171,15 +158,8 @@ def solve(
     >>> round(solution.eccentricity[0], 8)
     0.00287
     """
-    setup = Setup(body, counterbody, grid, max_cells, threads)
-    setup.check_end(shape, load, initial)
-    motion = Motion(load, approach, eccentricity, moment, tilt)
-    state, callback = _initial_state(initial), _report_callback(progress)
-    options = SolveOptions(
-        hardness, compliance, tolerance, max_iterations, algorithm, state, callback, check
-    )
-    solved = core.solve(shape, motion, options, setup)
-    return _checked_solution(solved, shape, check)
+    setup = Setup.of(keywords, body, counterbody).checked(shape, keywords)
+    return _solve(shape, setup, keywords)
 
 
 @overload
@@ -204,31 +184,14 @@ def slide(
 ) -> History: ...
 
 
+@grouped(Setup, Motion, FrictionStep, FrictionOptions)
 def slide(
     shape: core.Shape,
     body: Layers,
     counterbody: Layers | None = None,
     *,
-    grid: core.Grid | None = None,
-    max_cells: int | None = None,
-    threads: int | None = None,
     steps: Iterable[Mapping[str, object]] | None = None,
-    load: float | None = None,
-    approach: float | None = None,
-    eccentricity: Along | None = None,
-    moment: Along | None = None,
-    tilt: Along | None = None,
-    friction: npt.ArrayLike | None = None,
-    shift: Along | None = None,
-    force: Along | None = None,
-    twist: float | None = None,
-    torque: float | None = None,
-    tolerance: float = 1e-8,
-    max_convolutions: int = 4000,
-    coupling: bool = True,
-    initial: FrictionSolution | History | None = None,
-    progress: StepProgress | None = None,
-    check: bool = True,
+    **keywords: Unpack[PlannedSlideKeywords],
 ) -> FrictionSolution | History:
     """Press a shape into a body and move it tangentially, with friction, in one call.
 
@@ -319,15 +282,8 @@ def slide(
     >>> [round(solution.force[0], 6) for solution in loop], loop[2].dissipated > 0
     ([2.0, -2.0, 2.0], True)
     """
-    setup = Setup(body, counterbody, grid, max_cells, threads)
-    setup.check_end(shape, load, initial)
-    motion = Motion(load, approach, eccentricity, moment, tilt)
-    step = FrictionStep(motion, friction, shift, force, twist, torque)
-    state, callback = _last_state(initial), _step_callback(progress)
-    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
-    history = _history_steps(steps)
-    moves = core.slide(shape, step, history, options, setup)
-    return _solve_steps(moves, shape, len(history or [step]), options)
+    setup = Setup.of(keywords, body, counterbody).checked(shape, keywords)
+    return _slide(shape, steps, setup, keywords)
 
 
 @overload
@@ -352,32 +308,12 @@ def roll(
 ) -> History: ...
 
 
+@grouped(Setup, Motion, Rolling, FrictionOptions)
 def roll(
     shape: core.Shape,
     body: Layers,
     counterbody: Layers | None = None,
-    *,
-    grid: core.Grid | None = None,
-    max_cells: int | None = None,
-    threads: int | None = None,
-    load: float | None = None,
-    approach: float | None = None,
-    eccentricity: Along | None = None,
-    moment: Along | None = None,
-    tilt: Along | None = None,
-    friction: npt.ArrayLike | None = None,
-    creepage: Along | None = None,
-    force: Along | None = None,
-    spin: float = 0.0,
-    direction: RollingDirection | None = None,
-    cells: int | None = None,
-    order: Literal[1, 2] = 2,
-    tolerance: float = 1e-8,
-    max_convolutions: int = 4000,
-    coupling: bool = True,
-    initial: FrictionSolution | History | None = None,
-    progress: StepProgress | None = None,
-    check: bool = True,
+    **keywords: Any,
 ) -> FrictionSolution | History:
     """Press a shape into a body, which rolls, in one call.
 
@@ -453,47 +389,16 @@ def roll(
     >>> round(wheel.force[0], 6), wheel.creepage[0] > 0
     (1.5, True)
     """
-    setup = Setup(body, counterbody, grid, max_cells, threads)
-    setup.check_end(shape, load, initial)
-    motion = Motion(load, approach, eccentricity, moment, tilt)
-    rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
-    state, callback = _last_state(initial), _step_callback(progress)
-    options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
-    moves = core.roll(shape, rolling, options, setup)
-    return _solve_steps(moves, shape, cells or 1, options)
+    setup = Setup.of(keywords, body, counterbody).checked(shape, keywords)
+    return _roll(shape, setup, keywords)
 
 
+@grouped(Setup, Motion, Rates, Sliding, WearControl)
 def wear(
     shape: core.Shape,
     body: Body,
     counterbody: Body | None = None,
-    *,
-    grid: core.Grid | None = None,
-    max_cells: int | None = None,
-    threads: int | None = None,
-    load: float | None = None,
-    approach: float | None = None,
-    eccentricity: Along | None = None,
-    moment: Along | None = None,
-    tilt: Along | None = None,
-    rate: Rate,
-    counter_rate: Rate = 0.0,
-    sliding: float | None = None,
-    cycles: float | None = None,
-    slide: Mapping[str, object] | None = None,
-    passes: float | None = None,
-    roll: Mapping[str, object] | None = None,
-    slip: Matrix | None = None,
-    steps: int | npt.ArrayLike | Literal["auto"] = "auto",
-    step_tolerance: float = 1e-3,
-    scheme: Scheme = "trapezoidal",
-    thickness: Thickness = "frozen",
-    initial: WearHistory | Matrix | None = None,
-    until: Literal["through"] | None = None,
-    store: AnyPath | None = None,
-    tolerance: float = 1e-8,
-    max_iterations: int | None = None,
-    progress: WearProgress | None = None,
+    **keywords: Unpack[PlannedWearKeywords],
 ) -> WearHistory:
     """Slide a shape over a body, and wear both by Archard's law, in one call.
 
@@ -594,24 +499,11 @@ def wear(
     >>> abs(history.life.position[1]) < 1e-5
     True
     """
-    control = WearControl(
-        steps,
-        step_tolerance,
-        scheme,
-        thickness,
-        initial,
-        until,
-        store,
-        tolerance,
-        max_iterations,
-        progress,
-    )
-    setup = Setup(body, counterbody, grid or control.grid, max_cells, threads)
-    setup.check_end(shape, load, None)
-    motion = Motion(load, approach, eccentricity, moment, tilt)
-    extent = Sliding(sliding, cycles, slide, passes, roll, slip)
-    bodies = Wearing(body, counterbody, rate, counter_rate, grows=grid is None)
-    return wear_history(shape, motion, bodies, extent, control, setup)
+    control = WearControl.of(keywords)
+    setup = Setup.of(keywords, body, counterbody)
+    setup = replace(setup, grid=setup.grid or control.grid).checked(shape, keywords)
+    bodies = Wearing(body, counterbody, Rates.of(keywords), grows=keywords.get("grid") is None)
+    return wear_history(shape, Motion.of(keywords), bodies, Sliding.of(keywords), control, setup)
 
 
 class Contact:
@@ -694,24 +586,8 @@ class Contact:
         """Number of threads of the plan."""
         return self._plan.threads()
 
-    def solve(
-        self,
-        shape: core.Shape,
-        *,
-        load: float | None = None,
-        approach: float | None = None,
-        eccentricity: Along | None = None,
-        moment: Along | None = None,
-        tilt: Along | None = None,
-        hardness: float | Matrix | None = None,
-        compliance: float | Matrix | None = None,
-        tolerance: float = 1e-8,
-        max_iterations: int | None = None,
-        algorithm: Algorithm = "cascade",
-        initial: Solution | FrictionSolution | Matrix | None = None,
-        progress: Progress | None = None,
-        check: bool = True,
-    ) -> Solution:
+    @grouped(Motion, SolveOptions)
+    def solve(self, shape: core.Shape, **keywords: Unpack[SolveKeywords]) -> Solution:
         """Press a shape into the body.
 
         Each of the three degrees of freedom of the rigid motion is prescribed or loaded, in any
@@ -748,25 +624,15 @@ class Contact:
         >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
         0.0
         """
-        motion = Motion(load, approach, eccentricity, moment, tilt)
-        state, callback = _initial_state(initial), _report_callback(progress)
-        options = SolveOptions(
-            hardness, compliance, tolerance, max_iterations, algorithm, state, callback, check
-        )
-        solved = core.solve(shape, motion, options, self._plan)
-        return _checked_solution(solved, shape, check)
+        return _solve(shape, self._plan, keywords)
 
+    @grouped(SolveOptions, leave=("initial",))
     def solve_many(
         self,
         cases: Iterable[Mapping[str, object]],
         *,
-        hardness: float | Matrix | None = None,
-        compliance: float | Matrix | None = None,
-        tolerance: float = 1e-8,
-        max_iterations: int | None = None,
-        algorithm: Algorithm = "cascade",
         progress: Callable[[int, int], object] | None = None,
-        check: bool = True,
+        **keywords: Unpack[OptionKeywords],
     ) -> list[Solution]:
         """Solve many load cases side by side, each on a thread of its own.
 
@@ -818,16 +684,14 @@ class Contact:
         words = ("a case", "cases", "solve", "in case")
         mappings = _mappings(words, cases, ("shape", *MOTION))
         shape_motions = [(case["shape"], Motion.of(case)) for case in mappings]
-        options = SolveOptions(
-            hardness, compliance, tolerance, max_iterations, algorithm, None, progress, check
-        )
+        options = SolveOptions.of(keywords).replaced(progress=progress)
         outcomes, failure = self._plan.solve_many(shape_motions, options)
         solutions: list[Solution | None] = []
         for number, ((shape, _), outcome) in enumerate(zip(shape_motions, outcomes, strict=True)):
             solution = None
             if isinstance(outcome, core.Solved):
                 try:
-                    solution = _checked_solution(outcome, shape, check)
+                    solution = _checked_solution(outcome, shape, options.check)
                 except Exception as error:  # of the tolerance, or a warning that is one
                     error.add_note(f"in case {number}")
                     outcome, solution = error, getattr(error, "solution", None)
@@ -851,27 +715,12 @@ class Contact:
         **keywords: Unpack[SlideKeywords],
     ) -> History: ...
 
+    @grouped(Motion, FrictionStep, FrictionOptions)
     def slide(
         self,
         shape: core.Shape,
         steps: Iterable[Mapping[str, object]] | None = None,
-        *,
-        load: float | None = None,
-        approach: float | None = None,
-        eccentricity: Along | None = None,
-        moment: Along | None = None,
-        tilt: Along | None = None,
-        friction: npt.ArrayLike | None = None,
-        shift: Along | None = None,
-        force: Along | None = None,
-        twist: float | None = None,
-        torque: float | None = None,
-        tolerance: float = 1e-8,
-        max_convolutions: int = 4000,
-        coupling: bool = True,
-        initial: FrictionSolution | History | None = None,
-        progress: StepProgress | None = None,
-        check: bool = True,
+        **keywords: Unpack[SlideKeywords],
     ) -> FrictionSolution | History:
         """Press a shape into the body and move it tangentially, with friction.
 
@@ -906,13 +755,7 @@ class Contact:
         >>> round(ball.force[0], 6), ball.report.full_slip
         (1.5, False)
         """
-        motion = Motion(load, approach, eccentricity, moment, tilt)
-        step = FrictionStep(motion, friction, shift, force, twist, torque)
-        state, callback = _last_state(initial), _step_callback(progress)
-        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
-        history = _history_steps(steps)
-        moves = core.slide(shape, step, history, options, self._plan)
-        return _solve_steps(moves, shape, len(history or [step]), options)
+        return _slide(shape, steps, self._plan, keywords)
 
     @overload
     def roll(
@@ -923,29 +766,8 @@ class Contact:
         self, shape: core.Shape, *, cells: int, **keywords: Unpack[RollKeywords]
     ) -> History: ...
 
-    def roll(
-        self,
-        shape: core.Shape,
-        *,
-        load: float | None = None,
-        approach: float | None = None,
-        eccentricity: Along | None = None,
-        moment: Along | None = None,
-        tilt: Along | None = None,
-        friction: npt.ArrayLike | None = None,
-        creepage: Along | None = None,
-        force: Along | None = None,
-        spin: float = 0.0,
-        direction: RollingDirection | None = None,
-        cells: int | None = None,
-        order: Literal[1, 2] = 2,
-        tolerance: float = 1e-8,
-        max_convolutions: int = 4000,
-        coupling: bool = True,
-        initial: FrictionSolution | History | None = None,
-        progress: StepProgress | None = None,
-        check: bool = True,
-    ) -> FrictionSolution | History:
+    @grouped(Motion, Rolling, FrictionOptions)
+    def roll(self, shape: core.Shape, **keywords: Any) -> FrictionSolution | History:
         """Press a shape into the body, which rolls steadily, or cell by cell from a given state.
 
         Parameters
@@ -980,41 +802,10 @@ class Contact:
         >>> wheel.report.full_slip, round(wheel.force[0], 3)
         (True, 3.0)
         """
-        motion = Motion(load, approach, eccentricity, moment, tilt)
-        rolling = Rolling(motion, friction, creepage, force, spin, direction, cells, order)
-        state, callback = _last_state(initial), _step_callback(progress)
-        options = FrictionOptions(tolerance, max_convolutions, coupling, state, callback, check)
-        moves = core.roll(shape, rolling, options, self._plan)
-        return _solve_steps(moves, shape, cells or 1, options)
+        return _roll(shape, self._plan, keywords)
 
-    def wear(
-        self,
-        shape: core.Shape,
-        *,
-        load: float | None = None,
-        approach: float | None = None,
-        eccentricity: Along | None = None,
-        moment: Along | None = None,
-        tilt: Along | None = None,
-        rate: Rate,
-        counter_rate: Rate = 0.0,
-        sliding: float | None = None,
-        cycles: float | None = None,
-        slide: Mapping[str, object] | None = None,
-        passes: float | None = None,
-        roll: Mapping[str, object] | None = None,
-        slip: Matrix | None = None,
-        steps: int | npt.ArrayLike | Literal["auto"] = "auto",
-        step_tolerance: float = 1e-3,
-        scheme: Scheme = "trapezoidal",
-        thickness: Thickness = "frozen",
-        initial: WearHistory | Matrix | None = None,
-        until: Literal["through"] | None = None,
-        store: AnyPath | None = None,
-        tolerance: float = 1e-8,
-        max_iterations: int | None = None,
-        progress: WearProgress | None = None,
-    ) -> WearHistory:
+    @grouped(Motion, Rates, Sliding, WearControl)
+    def wear(self, shape: core.Shape, **keywords: Unpack[WearKeywords]) -> WearHistory:
         """Slide a shape over the body, and wear both by Archard's law, on the grid of the plan.
 
         Parameters
@@ -1052,22 +843,9 @@ class Contact:
         >>> len(history)
         3
         """
-        control = WearControl(
-            steps,
-            step_tolerance,
-            scheme,
-            thickness,
-            initial,
-            until,
-            store,
-            tolerance,
-            max_iterations,
-            progress,
-        )
-        motion = Motion(load, approach, eccentricity, moment, tilt)
-        extent = Sliding(sliding, cycles, slide, passes, roll, slip)
-        bodies = Wearing(self.body, self.counterbody, rate, counter_rate, grows=False)
-        return wear_history(shape, motion, bodies, extent, control, self._plan)
+        motion, extent = Motion.of(keywords), Sliding.of(keywords)
+        bodies = Wearing(self.body, self.counterbody, Rates.of(keywords), grows=False)
+        return wear_history(shape, motion, bodies, extent, WearControl.of(keywords), self._plan)
 
     def __eq__(self, other: object) -> bool:
         """Return whether body, grid, counterbody, given coefficients and threads are the same."""
@@ -1089,6 +867,41 @@ class Contact:
         keywords = {"coefficients": self.coefficients, "threads": self._plan.asked_threads()}
         call = (type(self), (self.body, self.grid, self.counterbody), keywords)
         return copyreg.__newobj_ex__, call  # type: ignore[attr-defined]
+
+
+def _solve(shape: core.Shape, on: Setup | core.Plan, keywords: Mapping[str, Any]) -> Solution:
+    """Return the solution of what a user asked."""
+    options = SolveOptions.of(keywords)
+    state, callback = _initial_state(options.initial), _report_callback(options.progress)
+    options = options.replaced(initial=state, progress=callback)
+    solved = core.solve(shape, Motion.of(keywords), options, on)
+    return _checked_solution(solved, shape, options.check)
+
+
+def _friction_options(keywords: Mapping[str, Any]) -> FrictionOptions:
+    options = FrictionOptions.of(keywords)
+    state, callback = _last_state(options.initial), _step_callback(options.progress)
+    return options.replaced(initial=state, progress=callback)
+
+
+def _slide(
+    shape: core.Shape,
+    steps: Iterable[Mapping[str, object]] | None,
+    on: Setup | core.Plan,
+    keywords: Mapping[str, Any],
+) -> FrictionSolution | History:
+    step, options = FrictionStep.of(keywords), _friction_options(keywords)
+    history = _history_steps(steps)
+    moves = core.slide(shape, step, history, options, on)
+    return _solve_steps(moves, shape, len(history or [step]), options)
+
+
+def _roll(
+    shape: core.Shape, on: Setup | core.Plan, keywords: Mapping[str, Any]
+) -> FrictionSolution | History:
+    rolling, options = Rolling.of(keywords), _friction_options(keywords)
+    moves = core.roll(shape, rolling, options, on)
+    return _solve_steps(moves, shape, rolling.cells or 1, options)
 
 
 def _initial_state(
@@ -1125,7 +938,7 @@ def _step_callback(progress: StepProgress | None) -> Callable[..., object] | Non
 def _checked_solution(solved: core.Solved, shape: core.Shape, check: bool) -> Solution:
     """Issue the warnings of a solution, and return it if its tolerance was met."""
     for message in solved.warnings():
-        warnings.warn(message, core.NacreWarning, stacklevel=3)
+        warn(message)
     solution = Solution._of(solved, shape)
     if check and (missed := solved.not_converged()) is not None:
         error = core.ConvergenceError(missed)
@@ -1185,7 +998,7 @@ def _solve_steps(
                 solution = FrictionSolution._of(solved, shape)
                 termination = solution.report.termination
                 for warning in solution.normal.report.warnings if termination != "stopped" else []:
-                    warnings.warn(warning, core.NacreWarning, stacklevel=3)
+                    warn(warning)
                 if options.check and termination == "iteration limit":
                     error = core.ConvergenceError(solved.not_converged())
                     error.solution = solution

@@ -5,7 +5,6 @@ They may be arrays, whose equality is no truth value: groups are not compared.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,46 +14,44 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import Group, keyword
 from nacre._tools.typing import Algorithm, Along, Body, Matrix
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
+from nacre.contact.solution import Report, Solution
 from nacre.hertz import Line
 
 RollingDirection = Literal["+x", "-x", "+y", "-y"]
 WIDTHS = 3.0
 """Half-widths of Hertz across a grid that holds a line contact, which takes two of them."""
+Progress = Callable[[Report], object]
 StepProgress = Callable[[int, FrictionReport], object]
 """Function that is told the number of a step and its report."""
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Motion(Group):
     """Motion of the shape along z."""
 
-    load: float | None = None
-    approach: float | None = None
-    eccentricity: Along | None = None
-    moment: Along | None = None
-    tilt: Along | None = None
-
-    @classmethod
-    def of(cls, keywords: Mapping[str, Any]) -> Self:
-        """Return the motion of those keywords that are among `MOTION`."""
-        return cls(**{name: keywords[name] for name in MOTION if name in keywords})
+    load: float | None = keyword("N", line="N/m")
+    approach: float | None = keyword("m")
+    eccentricity: Along | None = keyword("m")
+    moment: Along | None = keyword("N m", line="N")
+    tilt: Along | None = keyword("rad")
 
 
-MOTION = tuple(field.name for field in dataclasses.fields(Motion))
+MOTION = tuple(Motion.keywords())
 """Keywords of the motion along z."""
 
 
 @dataclass(frozen=True, eq=False)
-class Setup:
+class Setup(Group):
     """Bodies and grid of a contact that is planned for one call."""
 
     body: Body
     counterbody: Body | None
-    grid: core.Grid | None
-    max_cells: int | None
-    threads: int | None
+    grid: core.Grid | None = keyword()
+    max_cells: int | None = keyword()
+    threads: int | None = keyword()
 
     def __post_init__(self) -> None:
         """Raise a `ValueError` if a grid is given, and how many cells one may have."""
@@ -63,10 +60,11 @@ class Setup:
                 "max_cells must not be given beside grid: it limits a grid that is chosen"
             )
 
-    def check_end(self, shape: object, load: object, initial: object) -> None:
-        """Raise a `ValueError` that names a grid if a cylinder has none."""
+    def checked(self, shape: object, keywords: Mapping[str, Any]) -> Self:
+        """Return the setup, or raise a `ValueError` that names a grid if a cylinder has none."""
+        load, initial = keywords.get("load"), keywords.get("initial")
         if not isinstance(shape, core.Cylinder) or self.grid or initial is not None:
-            return
+            return self
         compliance = _compliance(self.body) + _compliance(self.counterbody)
         if compliance > 0 and isinstance(load, int | float) and 0 < load < math.inf:
             half_width = Line(shape.equivalent_radius, 1 / compliance, load).half_width
@@ -75,6 +73,7 @@ class Setup:
                 f"Grid.line(256, {WIDTHS * half_width:.3g}): {WIDTHS / 2:g} contacts of Hertz "
                 f"under a load of {load:g} per unit length"
             )
+        return self
 
 
 def _compliance(body: Body | None) -> float:
@@ -88,57 +87,61 @@ def _compliance(body: Body | None) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class SolveOptions:
+class SolveOptions(Group):
     """How a solution is found."""
 
-    hardness: float | Matrix | None
-    compliance: float | Matrix | None
-    tolerance: float
-    max_iterations: int | None
-    algorithm: Algorithm
-    initial: core.Solved | Matrix | None
-    progress: Callable[..., object] | None
-    check: bool
+    hardness: float | Matrix | None = keyword("Pa")
+    compliance: float | Matrix | None = keyword("m/Pa")
+    tolerance: float = keyword(default=1e-8)
+    max_iterations: int | None = keyword()
+    algorithm: Algorithm = keyword(default="cascade")
+    initial: Solution | FrictionSolution | Matrix | None = keyword("Pa")
+    progress: Progress | None = keyword()
+    check: bool = keyword(default=True)
 
 
 @dataclass(frozen=True, eq=False)
-class FrictionStep:
+class FrictionStep(Group):
     """A step of sliding."""
 
     motion: Motion
-    friction: npt.ArrayLike | None = None
-    shift: Along | None = None
-    force: Along | None = None
-    twist: float | None = None
-    torque: float | None = None
+    friction: npt.ArrayLike | None = keyword()
+    shift: Along | None = keyword("m")
+    force: Along | None = keyword("N", line="N/m")
+    twist: float | None = keyword("rad")
+    torque: float | None = keyword("N m", line="N")
 
     def __post_init__(self) -> None:
         """Raise a `TypeError` if the friction is a truth value."""
         _check_friction(self.friction)
 
     @classmethod
-    def of(cls, keywords: Mapping[str, Any]) -> Self:
-        """Return the step of these keywords, which are among `STEP`."""
-        rest = {name: value for name, value in keywords.items() if name not in MOTION}
-        return cls(Motion.of(keywords), **rest)
+    def of(cls, keywords: Mapping[str, Any], *carried: Any) -> Self:
+        """Return the step of its own keywords, with its motion along z."""
+        return super().of(keywords, Motion.of(keywords), *carried)
 
 
-STEP = (*MOTION, *(field.name for field in dataclasses.fields(FrictionStep)[1:]))
+STEP = (*MOTION, *FrictionStep.keywords())
 """Keywords of a step of a history."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling:
+class Rolling(Group):
     """Rolling, steady or by so many cells."""
 
     motion: Motion
-    friction: npt.ArrayLike | None
-    creepage: Along | None
-    force: Along | None
-    spin: float
-    direction: RollingDirection | None
-    cells: int | None
-    order: Literal[1, 2]
+    friction: npt.ArrayLike | None = keyword()
+    creepage: Along | None = keyword()
+    force: Along | None = keyword("N", line="N/m")
+    spin: float = keyword("1/m", default=0.0)
+    direction: RollingDirection | None = keyword()
+    cells: int | None = keyword()
+    order: Literal[1, 2] = keyword(default=2)
+
+    @classmethod
+    def of(cls, keywords: Mapping[str, Any], *carried: Any) -> Self:
+        """Return the rolling of its own keywords, with its motion along z."""
+        return super().of(keywords, Motion.of(keywords), *carried)
 
     def __post_init__(self) -> None:
         """Raise a `TypeError` if the friction is a truth value."""
@@ -146,25 +149,48 @@ class Rolling:
 
 
 @dataclass(frozen=True, eq=False)
-class FrictionOptions:
+class FrictionOptions(Group):
     """How tractions are found."""
 
-    tolerance: float
-    max_convolutions: int
-    coupling: bool
-    initial: core.FrictionSolved | None
-    progress: Callable[[int, str], object] | None
-    check: bool
+    tolerance: float = keyword(default=1e-8)
+    max_convolutions: int = keyword(default=4000)
+    coupling: bool = keyword(default=True)
+    initial: FrictionSolution | History | None = keyword()
+    progress: StepProgress | None = keyword()
+    check: bool = keyword(default=True)
 
 
-class FrictionKeywords(TypedDict, total=False):
-    """Keywords that `slide` and `roll` share."""
+class MotionKeywords(TypedDict, total=False):
+    """Keywords of `Motion`, as editors show them."""
 
     load: float | None
     approach: float | None
     eccentricity: Along | None
     moment: Along | None
     tilt: Along | None
+
+
+class OptionKeywords(TypedDict, total=False):
+    """Keywords of `Contact.solve_many`."""
+
+    hardness: float | Matrix | None
+    compliance: float | Matrix | None
+    tolerance: float
+    max_iterations: int | None
+    algorithm: Algorithm
+    check: bool
+
+
+class SolveKeywords(MotionKeywords, OptionKeywords, total=False):
+    """Keywords of `Contact.solve`."""
+
+    initial: Solution | FrictionSolution | Matrix | None
+    progress: Progress | None
+
+
+class FrictionKeywords(MotionKeywords, total=False):
+    """Keywords that `slide` and `roll` share."""
+
     friction: npt.ArrayLike | None
     force: Along | None
     tolerance: float
@@ -198,6 +224,10 @@ class GridKeywords(TypedDict, total=False):
     grid: core.Grid | None
     max_cells: int | None
     threads: int | None
+
+
+class PlannedSolveKeywords(SolveKeywords, GridKeywords):
+    """Keywords of `nacre.solve`."""
 
 
 class PlannedSlideKeywords(SlideKeywords, GridKeywords):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import printable, rounded, written
@@ -1107,7 +1107,7 @@ def _check_limits_of(
 def _warned(result: StressResult) -> StressResult:
     """Issue the warnings of a result, at the line that called its function; return the result."""
     for message in result.warnings:
-        warnings.warn(message, core.NacreWarning, stacklevel=3)
+        warn(message)
     return result
 
 

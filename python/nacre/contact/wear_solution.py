@@ -7,16 +7,18 @@ import json
 import math
 import os
 import time
-import warnings
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Required, Self
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import Group, keyword
+from nacre._tools.notices import warn
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Field, Matrix
 from nacre._tools.units import symbol, travelled, written
@@ -25,7 +27,9 @@ from nacre.contact.arguments import (
     STEP,
     FrictionOptions,
     FrictionStep,
+    GridKeywords,
     Motion,
+    MotionKeywords,
     Rolling,
     Setup,
 )
@@ -60,27 +64,34 @@ THICKNESSES: dict[str, str] = {
 
 
 @dataclass(frozen=True, eq=False)
+class Rates(Group):
+    """Wear rates."""
+
+    rate: Rate = keyword("m²/N", default=MISSING)
+    counter_rate: Rate = keyword("m²/N", default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
 class Wearing:
     """Bodies and their wear rates."""
 
     body: Body
     counterbody: Body | None
-    rate: Rate
-    counter_rate: Rate
+    rates: Rates
     grows: bool
     """Whether the grid grows with the contact."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sliding:
+class Sliding(Group):
     """What slides how far: one of three distances, and where it slips."""
 
-    sliding: float | None
-    cycles: float | None
-    slide: Mapping[str, Any] | None
-    passes: float | None
-    roll: Mapping[str, Any] | None
-    slip: Matrix | None
+    sliding: float | None = keyword("m")
+    cycles: float | None = keyword()
+    slide: Mapping[str, object] | None = keyword()
+    passes: float | None = keyword()
+    roll: Mapping[str, object] | None = keyword()
+    slip: Matrix | None = keyword()
 
     def __post_init__(self) -> None:
         """Raise a `ValueError` unless one distance is given, with what belongs to it."""
@@ -114,11 +125,7 @@ class Sliding:
     def friction(self) -> FrictionOptions | None:
         """How tractions are found."""
         keywords = self.slide if self.roll is None else self.roll
-        if keywords is None:
-            return None
-        options = {"tolerance": 1e-8, "max_convolutions": 4000, "coupling": True}
-        own = {name: keywords.get(name, value) for name, value in options.items()}
-        return FrictionOptions(**own, initial=None, progress=None, check=True)
+        return None if keywords is None else FrictionOptions.of(keywords)
 
     @property
     def cycle(self) -> list[FrictionStep] | None:
@@ -143,9 +150,7 @@ class Sliding:
             return None
         names = ("friction", "creepage", "force", "spin", "direction", "order")
         rest = self._rest(self.roll, names)
-        default = {"creepage": None, "force": None, "spin": 0.0, "direction": None, "order": 2}
-        keywords: dict[str, Any] = {**default, "friction": None, **rest}
-        return Rolling(self.motion or Motion(), cells=None, **keywords)
+        return Rolling(self.motion or Motion(), **rest)
 
     motion: Motion | None = None
     """Motion along z, for rolling."""
@@ -161,19 +166,19 @@ class Sliding:
 
 
 @dataclass(frozen=True, eq=False)
-class WearControl:
+class WearControl(Group):
     """Steps of a history of wear, and where it begins and ends."""
 
-    steps: Any
-    step_tolerance: float
-    scheme: Scheme
-    thickness: Thickness
-    initial: Any
-    until: Literal["through"] | None
-    store: AnyPath | None
-    tolerance: float
-    max_iterations: int | None
-    progress: WearProgress | None
+    steps: int | npt.ArrayLike | Literal["auto"] = keyword(default="auto")
+    step_tolerance: float = keyword(default=1e-3)
+    scheme: Scheme = keyword(default="trapezoidal")
+    thickness: Thickness = keyword(default="frozen")
+    initial: WearHistory | Matrix | None = keyword("m")
+    until: Literal["through"] | None = keyword()
+    store: AnyPath | None = keyword()
+    tolerance: float = keyword(default=1e-8)
+    max_iterations: int | None = keyword()
+    progress: WearProgress | None = keyword()
 
     def __post_init__(self) -> None:
         """Raise a `ValueError` unless it ends in one of the ways that there are."""
@@ -225,6 +230,33 @@ class WearControl:
                 f"steps must end at {distance:g}, the whole distance, got {ends[-1]:g}"
             )
         return [float(end) for end in ends] if distance > 0 else []
+
+
+class WearKeywords(MotionKeywords, total=False):
+    """Keywords of `Contact.wear`."""
+
+    rate: Required[Rate]
+    counter_rate: Rate
+    sliding: float | None
+    cycles: float | None
+    slide: Mapping[str, object] | None
+    passes: float | None
+    roll: Mapping[str, object] | None
+    slip: Matrix | None
+    steps: int | npt.ArrayLike | Literal["auto"]
+    step_tolerance: float
+    scheme: Scheme
+    thickness: Thickness
+    initial: WearHistory | Matrix | None
+    until: Literal["through"] | None
+    store: AnyPath | None
+    tolerance: float
+    max_iterations: int | None
+    progress: WearProgress | None
+
+
+class PlannedWearKeywords(WearKeywords, GridKeywords):
+    """Keywords of `nacre.wear`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -878,8 +910,8 @@ def wear_history(
         distance = max(distance - offset, 0.0)
         ends = None if ends is None else [end - offset for end in ends if end > offset]
     options = WearOptions(
-        rate=rates("rate", bodies.rate, bodies.body),
-        counter_rate=rates("counter_rate", bodies.counter_rate, bodies.counterbody),
+        rate=rates("rate", bodies.rates.rate, bodies.body),
+        counter_rate=rates("counter_rate", bodies.rates.counter_rate, bodies.counterbody),
         distance=distance,
         slip=sliding.slip,
         cycle=sliding.cycle,
@@ -900,7 +932,7 @@ def wear_history(
     members = (bodies.body, bodies.counterbody)
     first_notes = _rate_notes(options)
     for note in first_notes:  # before what may take long
-        warnings.warn(note, core.NacreWarning, stacklevel=3)
+        warn(note)
     idle: set[str] = set()
     if earlier is not None:
         idle = {reason for reason, note in NOTHING_WORN.items() if note in earlier.warnings}
@@ -956,7 +988,7 @@ def wear_history(
     if control.store is not None:
         whole.save(control.store)
     for note in whole.warnings[len(first_notes) :]:
-        warnings.warn(note, core.NacreWarning, stacklevel=3)
+        warn(note)
     return whole
 
 
@@ -985,8 +1017,8 @@ def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) ->
         "body": bodies.body,
         "counterbody": bodies.counterbody or "rigid",
         **{name: value for name in MOTION if (value := getattr(motion, name)) is not None},
-        "rate": bodies.rate,
-        "counter_rate": bodies.counter_rate,
+        "rate": bodies.rates.rate,
+        "counter_rate": bodies.rates.counter_rate,
         "slide": sliding.slide,
         "roll": sliding.roll,
         "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
