@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 import nacre._core as core
-from nacre._tools.units import printable, written
+from nacre._tools.units import SI, Within, printable, written
 
 UNITS = {
     "young": "Pa",
@@ -61,9 +61,10 @@ class Number:
 
     def __str__(self) -> str:
         """Return value, range and source."""
-        text = _text(self.value, self.unit)
-        if self.low is not None and self.high is not None:
-            text += f" ({_text(self.low, self.unit)} to {_text(self.high, self.unit)})"
+        with Within(SI):  # cards are in SI, whatever the units of results
+            text = _text(self.value, self.unit)
+            if self.low is not None and self.high is not None:
+                text += f" ({_text(self.low, self.unit)} to {_text(self.high, self.unit)})"
         return printable(f"{text}; {self.source}")
 
 
@@ -111,20 +112,25 @@ class Card:
         arguments = self.name, self.title, self.kind, self.elastic, dict(self.numbers), self.source
         return Card, arguments
 
+    @property
+    def numbers_in_words(self) -> list[tuple[str, str]]:
+        """What each number is, and its value with range and source."""
+        return [(WORDS[name], str(number)) for name, number in self.numbers.items()]
+
     def __repr__(self) -> str:
         """Return where the card is from."""
         return f"nacre.materials[{self.name!r}]"
 
     def __str__(self) -> str:
         """Return a table of all numbers with their sources."""
-        width = max(len(WORDS[name]) for name in self.numbers)
-        rows = (f"{WORDS[name]:<{width}}  {number}" for name, number in self.numbers.items())
+        width = max(len(words) for words, _ in self.numbers_in_words)
+        rows = (f"{words:<{width}}  {number}" for words, number in self.numbers_in_words)
         return printable("\n".join([f"{self.name}: {self.title}", *rows]))
 
     def _repr_html_(self) -> str:
         cells = (
-            f"<tr><td>{html.escape(WORDS[name])}</td><td>{html.escape(str(number))}</td></tr>"
-            for name, number in self.numbers.items()
+            f"<tr><td>{html.escape(words)}</td><td>{html.escape(number)}</td></tr>"
+            for words, number in self.numbers_in_words
         )
         title = html.escape(f"{self.name}: {self.title}")
         return f"<p>{title}</p><table>{''.join(cells)}</table>"

@@ -49,8 +49,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import nacre
 import nacre._core as core
 from nacre._tools.extras import extra
+from nacre.cards import Card
 from nacre.studies.outputs import CaseKind, outputs_by_name
 
 __all__ = ["Case", "CaseError"]
@@ -65,6 +67,8 @@ with extra("cli"):
 
 MOST_CHARACTERS = 60
 """Largest number of characters of a wrong value that an error shows."""
+MATERIALS = ("substrate", "material")
+"""Keys whose texts name materials."""
 LONGEST = 1000
 """Largest number of characters of an error, whose keys may be long."""
 LARGEST = 10_000_000
@@ -176,6 +180,12 @@ class Case:
     def measured(self) -> list[Path]:
         """Return the files that the case reads: those of measured surfaces."""
         return [self.folder / path for path in _paths(self.data)]
+
+    def cards(self) -> list[Card]:
+        """Return the cards of `nacre.materials` whose numbers the case takes."""
+        own: Any = self.data.get("materials", {})
+        names = {str(own.get(name, name)) for name in _material_names(self.data)}
+        return [card for name, card in nacre.materials.items() if name in names]
 
     def stress(self) -> dict[str, Any] | None:
         """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
@@ -311,6 +321,15 @@ def _paths(data: object) -> Iterator[str]:
         yield from (path for value in data.values() for path in _paths(value))
     elif isinstance(data, list):
         yield from (path for value in data for path in _paths(value))
+
+
+def _material_names(data: object) -> Iterator[str]:
+    """Yield the names of materials in the tables of bodies and layers."""
+    if isinstance(data, Mapping):
+        yield from (name for key in MATERIALS if isinstance(name := data.get(key), str))
+        yield from (name for value in data.values() for name in _material_names(value))
+    elif isinstance(data, list):
+        yield from (name for value in data for name in _material_names(value))
 
 
 def _first(error: ValidationError, data: object) -> str:

@@ -118,7 +118,12 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
     tables = {"stress": case.stress(), "fatigue": case.fatigue()}
     of_stress = {} if case.kind == "wear" else tables["stress"] or {}
     sliding = {k: v for k, v in of_stress.items() if k in DEPTH_OPTIONS}
-    rows = [("units of the case", case.units), *files, *report.input_rows(tables)]
+    cards = [
+        (f"{card.name}, {words}", text)
+        for card in case.cards()
+        for words, text in [("material", card.title), *card.numbers_in_words]
+    ]
+    rows = [("units of the case", case.units), *files, *cards, *report.input_rows(tables)]
     return report.text(name, [*results.values()], text, rows, sliding)
 
 

@@ -32,6 +32,7 @@ from nacre.contact.arguments import (
     MotionKeywords,
     Rolling,
     Setup,
+    SolveOptions,
 )
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
@@ -257,6 +258,10 @@ class WearKeywords(MotionKeywords, total=False):
 
 class PlannedWearKeywords(WearKeywords, GridKeywords):
     """Keywords of `nacre.wear`."""
+
+
+KEYWORDS = (Setup, Motion, SolveOptions, FrictionStep, Rolling, FrictionOptions, Rates, Sliding)
+"""Groups of the keywords of contacts that are numbers of a case."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Units of arguments and parameters: of inputs, studies and fits."""
+"""Units of arguments: as the classes of values and the groups of keywords declare them."""
 
 from __future__ import annotations
 
@@ -7,20 +7,26 @@ import re
 from collections.abc import Mapping
 
 import nacre._core as core
+from nacre.results.values import FIELDS
 
 
-def _units_of_shapes() -> dict[str, str]:
-    """Return the SI units of the arguments of shapes, which their docstrings have in brackets."""
+def _units_of_values() -> dict[str, str]:
+    """Return the SI units of the arguments of materials, bodies, grids, profiles and shapes.
+
+    Their docstrings have the units in brackets; an argument has the same unit in all of them.
+    """
     texts = {
-        name: str(getattr(shape, name).__doc__)
-        for shape in core.Shape.__subclasses__()
-        for name in inspect.signature(shape).parameters
+        name: str(getattr(kind, name).__doc__)
+        for kind in (*FIELDS, core.Grid)
+        for name in inspect.signature(kind).parameters
     }
     units = {name: re.search(r"\[(?:1|(.+?))\]", text) for name, text in texts.items()}
     return {name: unit[1] or "" for name, unit in units.items() if unit}
 
 
-PARAMETERS = _units_of_shapes() | {
+VALUES = _units_of_values()
+"""SI units of the arguments of values, by name."""
+PARAMETERS = VALUES | {
     "load": "N",
     "approach": "m",
     "eccentricity": "m",
@@ -28,8 +34,6 @@ PARAMETERS = _units_of_shapes() | {
     "tilt": "rad",
     "twist": "rad",
     "torque": "N m",
-    "young": "Pa",
-    "thickness": "m",
     "depth": "m",
     "diameter": "m",
     "pitch_diameter": "m",
@@ -55,26 +59,33 @@ PARAMETERS = _units_of_shapes() | {
 BY_LAYER = ("rate", "counter_rate")
 """Parameters that may have a number for each layer, by its name."""
 LENGTHS = (
-    *("amplitude", "corners", "drop", "ends", "radii", "size", "width"),
-    *("groove_radius", "profile_radius", "raceway_crown", "raceway_diameters", "shoulder_height"),
-    *("shift", "smoothing", "x"),
+    *("radii", "groove_radius", "profile_radius", "raceway_crown", "raceway_diameters"),
+    *("shoulder_height", "shift", "width"),
 )
 INPUTS = PARAMETERS | dict.fromkeys(LENGTHS, "m")
-INPUTS |= {"normal": "Pa/m", "tangential": "Pa/m", "bending": "Pa", "torsion": "Pa"}
-INPUTS |= {"capacity": "N", "force": "N", "rotation": "rad", "speed": "rad/s", "density": "kg/m³"}
-INPUTS |= {"yield_stress": "Pa", "residual": "Pa", "poisson": "", "exponent": "", "slope": ""}
-INPUTS |= {"contact_angle": "rad", "shear_yield": "Pa", "peak_pressure": "Pa"}
+INPUTS |= {"bending": "Pa", "torsion": "Pa", "residual": "Pa", "peak_pressure": "Pa"}
+INPUTS |= {"capacity": "N", "rotation": "rad", "speed": "rad/s", "density": "kg/m³"}
+INPUTS |= {"poisson": "", "exponent": "", "slope": "", "contact_angle": "rad"}
 """SI units of all arguments of contacts, indentations and bearings, by their names."""
+
+
+def quantity_of(path: str) -> str:
+    """Return the name of the quantity at a path: a component is of the quantity above it.
+
+    So is the rate of a layer.
+
+    >>> quantity_of("body.layers[0].thickness"), quantity_of("bearing.solve.tilt.y")
+    ('thickness', 'tilt')
+    """
+    *_, outer, name = ["", *path.split(".")]
+    return outer if name in ("x", "y", "z") or outer in BY_LAYER else name
 
 
 def parameter_unit(path: str, units: Mapping[str, str]) -> str:
     """Return the SI unit of the number at a path: that of its name in `units` or `PARAMETERS`.
 
-    A component is of the quantity above it, and so is the rate of a layer.
-
-    >>> parameter_unit("body.layers[0].thickness", {}), parameter_unit("bearing.solve.tilt.y", {})
+    >>> parameter_unit("body.layers[0].thickness", {}), parameter_unit("solve.tilt.y", {})
     ('m', 'rad')
     """
-    *_, outer, name = ["", *path.split(".")]
-    quantity = outer if name in ("x", "y", "z") or outer in BY_LAYER else name
+    quantity = quantity_of(path)
     return units.get(quantity, PARAMETERS[quantity]) if quantity in PARAMETERS else ""

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeGuard
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -39,8 +39,8 @@ MOST_LISTED = 12
 """Largest number of numbers in an input that are written out."""
 DIGITS, EXACT = 4, 9
 """Digits of numbers in tables, and of inputs."""
-DUST = 1e-15
-"""Size below which an input is the rounding of 0, as of the centre of a grid that was chosen."""
+ROUNDING = 1e-12
+"""Part of the size of a grid below which its centre is 0, as of one that was chosen."""
 MOST_COLUMNS = 11
 """Largest number of columns on a page; a wider table is continued below, by its first column."""
 INFINITE = {"inf": "∞", "-inf": "−∞"}
@@ -49,7 +49,8 @@ UNIT = re.compile(r"(.*) \[(.+)\]")
 """A heading with a unit."""
 AXIS = re.compile(r"\b[xyz](?= \[|$)")
 """The axis in the heading of a component."""
-BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", "Grid", "Grid.line"}
+GRIDS = {"Grid", "Grid.line"}
+BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", *GRIDS}
 """Classes that need no row of their own among the inputs."""
 markup = Parts(text_of("nacre.results", "report.html"))
 
@@ -203,7 +204,10 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tupl
         is_call = len(value) == 1 and (kind := next(iter(value)))[:1].isupper()
         if is_call and kind not in BODIES:
             yield path, kind
-        for key, item in (value[kind] if is_call else value).items():
+        arguments = value[kind] if is_call else value
+        if is_call and kind in GRIDS:
+            arguments = {**arguments, "center": _without_rounding(arguments)}
+        for key, item in arguments.items():
             yield from _leaves(f"{path}.{key}", item, units)
     elif isinstance(value, list) and not all(isinstance(one, float | int | None) for one in value):
         for number, item in enumerate(value):
@@ -214,6 +218,12 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tupl
         yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
 
 
+def _without_rounding(grid: Mapping[str, Any]) -> object:
+    """Return the centre of an encoded grid, 0 where it is the rounding of one that was chosen."""
+    center, size = np.array(grid["center"]), np.array(grid.get("size", grid.get("width")))
+    return np.where(abs(center) > ROUNDING * size, center, 0.0).tolist()
+
+
 def _leaf(value: object, unit: str) -> str:
     if isinstance(value, list):
         texts = ["–" if one is None else _leaf(one, unit) for one in value]
@@ -222,7 +232,7 @@ def _leaf(value: object, unit: str) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float | int):
-        return display.number(value if abs(value) > DUST else 0.0, unit, EXACT)
+        return display.number(value, unit, EXACT)
     return str(value)
 
 

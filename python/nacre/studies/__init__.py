@@ -254,7 +254,7 @@ def sweep(
             ):
                 advance()
         records = [journal.records[key] for key in keys]
-        dataset = assemble(coordinates, records, checked_outputs)
+        dataset = assemble(coordinates, records, checked_outputs, isinstance(case, Mapping))
         if path is not None:
             from nacre._tools.disk import STUDY, replacing, write_dataset
 

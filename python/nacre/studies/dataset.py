@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.groups import keyword_units
 from nacre._tools.units import SI, Within, symbol, system
+from nacre.contact.wear_solution import KEYWORDS
 from nacre.results import quantities
-from nacre.results.parameters import parameter_unit
+from nacre.results.parameters import parameter_unit, quantity_of
 from nacre.results.quantities import ERROR
 from nacre.studies.journal import Record
 from nacre.studies.outputs import (
@@ -79,12 +81,18 @@ def layout(parameters: Mapping[str, object]) -> tuple[xarray.Dataset, list[dict[
 
 
 def assemble(
-    coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
+    coordinates: xarray.Dataset,
+    records: Sequence[Record],
+    outputs: Mapping[str, Output],
+    named: bool,
 ) -> xarray.Dataset:
-    """Return the Dataset of all cases; that of bearings is in SI."""
+    """Return the Dataset of all cases, whose parameters are `named` arguments, or a function's.
+
+    The Dataset of bearings is in SI.
+    """
     if any(record.get("bears") for record in records) and system() is not SI:
         with Within(SI):
-            return assemble(coordinates, records, outputs)
+            return assemble(coordinates, records, outputs, named)
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
@@ -135,10 +143,13 @@ def assemble(
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
+    is_contact = not (kinds["indents"] or kinds["bears"])
+    declared = keyword_units(*KEYWORDS, line=kinds["line"]) if is_contact else {}
     for name in map(str, dataset.coords):
         # What the parameters of a function are is not known; those of bearings are in SI.
-        is_known = kinds["bears"] or "." in name
-        if is_known and (unit := parameter_unit(name, units)):
+        is_known = named or kinds["bears"] or "." in name
+        unit = declared.get(quantity_of(name), parameter_unit(name, units))
+        if is_known and unit:
             dataset[name].attrs["units"] = symbol(unit)
     dataset.attrs = {
         "title": "study of bearings" if kinds["bears"] else "study of coated contacts",
