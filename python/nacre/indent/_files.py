@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nacre._tools.units import symbol
+from nacre.indent._model import NUISANCES
 from nacre.results.files import dataset
 from nacre.results.parameters import PARAMETERS
 from nacre.results.quantities import FIT, INDENT
@@ -27,7 +28,7 @@ CONTACTS = [row for row in INDENT if not row.name.startswith("pull_off")]
 
 def unit_of(name: str) -> str:
     """Return the SI unit of a parameter; "" where it has none."""
-    return PARAMETERS.get(name.rpartition(".")[2], "")
+    return (PARAMETERS | NUISANCES).get(name.rpartition(".")[2], "")
 
 
 def indentation(solution: IndentSolution) -> xarray.Dataset:

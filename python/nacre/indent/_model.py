@@ -18,9 +18,15 @@ Array = npt.NDArray[np.float64]
 Noise = Literal["relative", "absolute", "mixed"]
 
 OF_FORCE = ("force_offset", "force_slope")
-"""Nuisances of the force: its zero [N], and the slope of its baseline over the depth [N/m]."""
-NUISANCES = ("contact_point", "drift", "compliance", *OF_FORCE)
-"""Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
+"""Nuisances of the force: its zero, and the slope of its baseline over the depth."""
+NUISANCES = {
+    "contact_point": "m",
+    "drift": "m/s",
+    "compliance": "m/N",
+    "force_offset": "N",
+    "force_slope": "N/m",
+}
+"""Nuisances of a curve, with their SI units: depth of its zero, compliance of the machine."""
 RANGES: dict[str, float | tuple[float, float]] = {
     "young": 100.0,
     "thickness": 30.0,
@@ -314,7 +320,7 @@ def _unknowns(
 ) -> list[Unknown]:
     """Return the parameters of a fit, those of the system first."""
     known = system.values()
-    for names, allowed, what in ((free, known, "free"), (nuisance, NUISANCES, "nuisance")):
+    for names, allowed, what in ((free, known, "free"), (nuisance, tuple(NUISANCES), "nuisance")):
         for name in names:
             if name not in allowed:
                 choices = ", ".join(allowed)

@@ -150,11 +150,11 @@ def sweep(
     -------
     xarray.Dataset
         Outputs with the parameters as coordinates. Where a case failed they are NaN, and ``error``
-        holds the reason; ``warnings`` holds the warnings of each solve. Beside peak pressure,
-        approach and load, of bearings peak and edge pressure, and of friction what
-        `FrictionReport.discretisation` has, stand their errors due to the size of the cells, such
-        as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does not
-        change a bit.
+        holds the reason; ``warnings`` holds the warnings of each solve. Peak pressure, approach and
+        load, peak and edge pressure of bearings, what `FrictionReport.discretisation` has, and
+        stresses and ranges of stress have their errors due to the size of the cells next to them,
+        such as ``peak_pressure_discretisation``, NaN where there is no estimate. The executor does
+        not change a bit.
 
     Warns
     -----

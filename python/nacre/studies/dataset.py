@@ -20,7 +20,7 @@ from nacre.studies.outputs import (
     AXES,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
-    OF_SLIDING,
+    OF_CONTACTS,
     RING_AXES,
     Output,
     errors,
@@ -130,7 +130,7 @@ def assemble(
     if kinds["indents"] or kinds["wears"]:
         estimated = ()
     elif not kinds["bears"]:
-        estimated = (*ESTIMATED, *OF_SLIDING)
+        estimated = OF_CONTACTS
     for name, quantity in errors(outputs, names, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))

@@ -63,25 +63,36 @@ AXES = {row.name for row in (*CONTACT, *FRICTION) if row.dims == AXIS}
 RING_AXES = {row.name for row in BEARING if row.dims == AXIS}
 """The same of a bearing."""
 
-STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
-    "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
-    "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
-    "max_shear": lambda summary: [layer.max_shear[0] for layer in summary.layers],
-    "coating_tension": lambda summary: [
-        layer.tension[0] for layer in summary.layers if np.isfinite(layer.depths[1])
-    ],
-    "interface_shear": lambda summary: [face.shear[0] for face in summary.interfaces],
-    "interface_tension": lambda summary: [face.tension[0] for face in summary.interfaces],
+Estimated = tuple[float, float]
+"""A number, and its error due to the size of the cells, estimated; NaN where it is not known."""
+
+
+def _extremes(parts: Iterable[Any], name: str) -> list[Estimated]:
+    """Return an extreme of each layer or interface, with its error."""
+    return [(getattr(part, name)[0], part.uncertainty.get(name, np.nan)) for part in parts]
+
+
+STRESSES: dict[str, Callable[[StressSummary], list[Estimated]]] = {
+    "von_mises": lambda summary: _extremes(summary.layers, "von_mises"),
+    "tension": lambda summary: _extremes(summary.layers, "tension"),
+    "max_shear": lambda summary: _extremes(summary.layers, "max_shear"),
+    "coating_tension": lambda summary: _extremes(
+        (layer for layer in summary.layers if np.isfinite(layer.depths[1])), "tension"
+    ),
+    "interface_shear": lambda summary: _extremes(summary.interfaces, "shear"),
+    "interface_tension": lambda summary: _extremes(summary.interfaces, "tension"),
 }
 """Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
 
-FATIGUES: dict[str, Callable[[FatigueSummary], list[float]]] = {
-    "shakedown": lambda summary: [layer.shakedown[0] for layer in summary.layers],
-    "substrate_shakedown": lambda summary: [
-        layer.shakedown[0] for layer in summary.layers if layer.is_substrate
+FATIGUES: dict[str, Callable[[FatigueSummary], list[Estimated]]] = {
+    "shakedown": lambda summary: _extremes(summary.layers, "shakedown"),
+    "substrate_shakedown": lambda summary: _extremes(
+        (layer for layer in summary.layers if layer.is_substrate), "shakedown"
+    ),
+    "orthogonal_shear": lambda summary: _extremes(summary.layers, "orthogonal_shear"),
+    "interface_shear_range": lambda summary: [
+        (face.shear_range, np.nan) for face in summary.interfaces
     ],
-    "orthogonal_shear": lambda summary: [layer.orthogonal_shear[0] for layer in summary.layers],
-    "interface_shear_range": lambda summary: [face.shear_range for face in summary.interfaces],
 }
 """Outputs from `nacre.fatigue.assess`: each is the largest of these values, or NaN."""
 MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
@@ -99,6 +110,10 @@ ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
 OF_SLIDING = ("force", "torque", "shift", "twist", "creepage", "dissipated", "stick_share")
 """The same of sliding and of steady rolling; those of pairs are of their lengths."""
+OF_CONTACTS = (*ESTIMATED, *OF_SLIDING, *STRESSES, *FATIGUES)
+"""The same of contacts."""
+NO_PART: Estimated = (np.nan, np.nan)
+"""Extreme of a body that has no such part."""
 
 
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
@@ -211,6 +226,7 @@ def output_values(
     """
     summary = fatigue = None
     numbers: dict[str, object] = {}
+    extreme_errors: dict[str, float | None] = {}
     for name, output in outputs.items():
         if not isinstance(output, str):
             value = output(solution)
@@ -218,13 +234,13 @@ def output_values(
             if summary is None:
                 summary = solution.stress_summary(**stress)
                 unresolved += summary.warnings
-            value = max(STRESSES[output](summary), default=np.nan)
+            value, extreme_errors[output] = max(STRESSES[output](summary), default=NO_PART)
         elif output in FATIGUES or output in MARGINS:
             if fatigue is None:
                 fatigue = assess()
                 unresolved += fatigue.warnings
             if output in FATIGUES:
-                value = max(FATIGUES[output](fatigue), default=np.nan)
+                value, extreme_errors[output] = max(FATIGUES[output](fatigue), default=NO_PART)
             else:
                 value = min(MARGINS[output](fatigue), default=np.nan)
         else:
@@ -232,8 +248,9 @@ def output_values(
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     estimates = solution._normal.report.discretisation or {}
     tangential = (solution is not solution._normal and solution.report.discretisation) or {}
-    for name, quantity in errors(outputs, outputs, (*ESTIMATED, *OF_SLIDING)).items():
-        estimate = estimates.get(quantity, tangential.get(quantity))
+    estimates = tangential | estimates | extreme_errors
+    for name, quantity in errors(outputs, outputs, OF_CONTACTS).items():
+        estimate = estimates.get(quantity)
         numbers[name] = np.nan if estimate is None else float(estimate)
     return numbers
 
