@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nacre._tools.units import symbol
-from nacre.indent._model import NUISANCES
 from nacre.results.files import dataset
-from nacre.results.parameters import PARAMETERS
 from nacre.results.quantities import FIT, INDENT
 from nacre.results.values import encode
 
@@ -24,11 +22,6 @@ if TYPE_CHECKING:
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
 CONTACTS = [row for row in INDENT if not row.name.startswith("pull_off")]
 """Numbers of each contact."""
-
-
-def unit_of(name: str) -> str:
-    """Return the SI unit of a parameter; "" where it has none."""
-    return (PARAMETERS | NUISANCES).get(name.rpartition(".")[2], "")
 
 
 def indentation(solution: IndentSolution) -> xarray.Dataset:
@@ -95,7 +88,7 @@ def _arguments(source: IndentSolution | Fit) -> dict[str, str]:
 
 
 def _units(fit: Fit) -> list[str]:
-    return [symbol(unit_of(name)) for name in fit.estimates]
+    return [symbol(unit) for unit in fit._parameter_units]
 
 
 def contact_rows(solution: IndentSolution) -> Iterator[list[object]]:

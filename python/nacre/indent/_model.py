@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from nacre.indent._addressed import System
 from nacre.indent.curves import Curve
+from nacre.results.parameters import PARAMETERS
 
 Array = npt.NDArray[np.float64]
 Noise = Literal["relative", "absolute", "mixed"]
@@ -27,6 +28,13 @@ NUISANCES = {
     "force_slope": "N/m",
 }
 """Nuisances of a curve, with their SI units: depth of its zero, compliance of the machine."""
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of a parameter; "" where it has none."""
+    return (PARAMETERS | NUISANCES).get(name.rpartition(".")[2], "")
+
+
 RANGES: dict[str, float | tuple[float, float]] = {
     "young": 100.0,
     "thickness": 30.0,

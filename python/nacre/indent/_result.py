@@ -15,8 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import printable, written
-from nacre.indent._files import unit_of
-from nacre.indent._model import NUISANCES, OF_FORCE
+from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
 from nacre.indent._residuals import ROUNDING
 from nacre.indent._verdict import fit_verdict
 from nacre.indent.classical import Classical, classical
@@ -161,6 +160,11 @@ class Fit(Tabular):
         from nacre.plot import indent
 
         indent.fit_report(self, path)
+
+    @property
+    def _parameter_units(self) -> list[str]:
+        """SI units of the estimates."""
+        return [unit_of(name) for name in self.estimates]
 
     def _sections(self) -> Sections:
         inputs = {name: getattr(self, name) for name in ("body", "tip", "counterbody", "adhesion")}

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import nacre._core as core
-from nacre.indent._files import unit_of
+from nacre.indent._model import unit_of
 from nacre.results import display
 from nacre.results.verdict import DIGITS, Level, Verdict, number
 
