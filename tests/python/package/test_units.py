@@ -1,0 +1,161 @@
+"""Every keyword of a contact comes back with the number and the unit that went in, in each system of units.
+
+The units are those of the groups of keywords (`nacre.contact.arguments`), once for areas and once for line contact.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from support import assert_close
+
+import nacre
+from nacre._tools.groups import keyword_units
+from nacre._tools.units import System, size_of
+from nacre.contact.wear_solution import KEYWORDS
+
+SYSTEMS = ("SI", "N-mm-MPa")
+STEEL, BALL, CYLINDER = (210e9, 0.3), 5e-3, 10e-3
+"""Young's modulus [Pa], Poisson's ratio, and radii [m]."""
+VALUES: dict[str, Any] = {
+    "load": 5.0,
+    "approach": 1e-6,
+    "eccentricity": (1e-5, None),
+    "moment": (5e-5, None),
+    "tilt": (1e-5, None),
+    "hardness": 5e9,
+    "compliance": 1e-15,
+    "shift": (1e-8, None),
+    "force": (0.5, None),
+    "twist": 1e-5,
+    "torque": 1e-5,
+    "spin": 0.1,
+    "rate": 1e-15,
+    "counter_rate": 2e-16,
+    "sliding": 10.0,
+}
+"""Numbers in SI of the keywords with units."""
+LINE: dict[str, Any] = {
+    "load": 1e5,
+    "approach": 1e-6,
+    "eccentricity": (None, 1e-6),
+    "moment": (None, 0.1),
+    "tilt": (None, 1e-5),
+    "hardness": 5e9,
+    "compliance": 1e-15,
+    "shift": (None, 1e-8),
+    "force": (None, 1e4),
+    "rate": 1e-15,
+    "counter_rate": 2e-16,
+    "sliding": 10.0,
+}
+"""The same in line contact."""
+GIVEN_TO: dict[str, str] = {
+    **dict.fromkeys(("shift", "force", "twist", "torque"), "slide"),
+    "spin": "roll",
+    **dict.fromkeys(("rate", "counter_rate", "sliding"), "wear"),
+}
+"""Functions that have the keyword; `solve` where none is named."""
+
+
+def scaled(value: Any, size: float) -> Any:
+    """Return a number in a unit of this size, or both of a pair."""
+    if isinstance(value, tuple):
+        return tuple(None if part is None else part / size for part in value)
+    return value / size
+
+
+def case(name: str, units: str, line: bool) -> tuple[str, dict[str, Any]]:
+    """Return the function that has a keyword, and its arguments in these units."""
+    system, values = System(units), LINE if line else VALUES
+    metre, pascal = system.unit("m")[0], system.unit("Pa")[0]
+    function = GIVEN_TO.get(name, "solve")
+    names = {"solve": ["load"], "slide": ["load"], "roll": ["load"], "wear": ["load", "rate", "sliding"]}
+    given = [*names[function], name]
+    if name == "approach":
+        given.remove("load")
+    declared = keyword_units(*KEYWORDS, line=line)
+    numbers = {key: scaled(values[key], system.unit(declared[key])[0]) for key in given}
+    steel = nacre.Elastic(STEEL[0] / pascal, STEEL[1])
+    if line:
+        shape: nacre.Shape = nacre.Cylinder(CYLINDER / metre)
+        grid = nacre.Grid.line(32, 6e-4 / metre)
+    else:
+        shape, grid = nacre.Sphere(BALL / metre), nacre.Grid((16, 16), (4e-4 / metre, 4e-4 / metre))
+    arguments = {"shape": shape, "body": steel, "counterbody": steel, "grid": grid, **numbers}
+    if function in ("slide", "roll"):
+        arguments["friction"] = 0.3
+    if name in ("twist", "torque"):
+        arguments["shift"] = (0.0, 0.0)
+    if function == "roll":
+        arguments |= {"direction": "+x", "creepage": (1e-4, 0.0)}
+    if function == "wear":
+        arguments["steps"] = 1
+    return function, arguments
+
+
+CASES = [
+    pytest.param(name, units, line, id=f"{name}-{units}-{'line' if line else 'area'}")
+    for line, values in ((False, VALUES), (True, LINE))
+    for name in values
+    for units in SYSTEMS
+]
+
+
+def test_every_keyword_with_a_unit_is_tried() -> None:
+    declared = {name for name, unit in keyword_units(*KEYWORDS).items() if unit}
+    assert declared - {"initial"} == set(VALUES)
+    # An endless cylinder neither twists nor spins about its normal in line contact.
+    assert set(VALUES) - set(LINE) == {"twist", "torque", "spin"}
+
+
+def quantity(text: str) -> float:
+    """Return the number in SI that a text with a unit has; the first of a pair that is none of 0."""
+    numbers = re.findall(r"(−?-?\d[\d .]*(?:e[+-]?\d+)?|None|–) ?([^\d\s,()–][^,()]*)?", text)
+    for number, unit in numbers:
+        if number in ("None", "–"):
+            continue
+        dimension_size = size_of(unit.strip()) if unit else ("", 1.0)
+        size = 1.0 if dimension_size is None else dimension_size[1]
+        if value := float(number.replace(" ", "").replace("−", "-")) * size:
+            return value
+    return math.nan
+
+
+@pytest.mark.parametrize(("name", "units", "line"), CASES)
+def test_reports_give_back_what_went_in(name: str, units: str, line: bool) -> None:
+    function, arguments = case(name, units, line)
+    expected = next(v for v in _parts((LINE if line else VALUES)[name]) if v)
+    with warnings.catch_warnings(), nacre.display_units(units):
+        warnings.simplefilter("ignore")
+        result = getattr(nacre, function)(**arguments)
+        rows: Mapping[str, str] = dict(result._sections().inputs)
+    if name in ("shift", "force", "twist", "torque", "spin"):
+        rows = {label: text for label, text in result._sections().numbers}
+    shown = next(text for label, text in rows.items() if label.split(".")[0] == name)
+    assert_close(quantity(shown), expected, rtol=1e-3)
+
+
+def _parts(value: Any) -> tuple[float | None, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+@pytest.mark.parametrize(
+    ("name", "units", "line"), [c for c in CASES if not isinstance(VALUES[c.values[0]], tuple)]
+)
+def test_axes_of_studies_have_the_unit_of_the_keyword(name: str, units: str, line: bool) -> None:
+    _, arguments = case(name, units, line)
+    value = arguments.pop(name)
+    with warnings.catch_warnings(), nacre.display_units(units):
+        warnings.simplefilter("ignore")
+        study = nacre.sweep(arguments, {name: [value]}, progress=False)
+    unit = study[name].attrs["units"]
+    dimension_size = size_of(unit)
+    assert dimension_size is not None
+    assert dimension_size[0] == keyword_units(*KEYWORDS, line=line)[name]
+    assert_close(value * dimension_size[1], (LINE if line else VALUES)[name], rtol=1e-9)
