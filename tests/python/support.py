@@ -1,4 +1,4 @@
-"""What many tests do: commands and scripts, interrupts, tables of errors, random numbers."""
+"""What many tests do: comparisons, commands, interrupts, tables of errors, random numbers."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
@@ -62,6 +63,33 @@ def command(*arguments: object) -> int:
         nacre.cli.main([str(argument) for argument in arguments])
     assert isinstance(error.value.code, int)
     return error.value.code
+
+
+ROUNDING = 1e-12
+"""Bound of what symmetry makes zero over the largest number: rounding of thousands of terms."""
+
+
+def assert_close(
+    actual: Any,
+    expected: Any,
+    rtol: float = 1e-7,
+    atol: float | None = None,
+    *,
+    each: bool = False,
+) -> None:
+    """
+    Assert that numbers differ by no more than a part of the largest that is expected.
+
+    A number that symmetry makes zero is the rounding of the others, and differs from one processor
+    to the next. With `each`, every number is known to this part of itself, but for rounding of the
+    largest: where small numbers matter. With `atol`, to this part and `atol`, as in NumPy.
+    """
+    if atol is None:
+        sizes = np.abs(expected)
+        scale = float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
+        assert scale > 0, "zeros have no scale: atol= says what is as good as zero"
+        rtol, atol = (rtol, ROUNDING * scale) if each else (0.0, rtol * scale)
+    np.testing.assert_allclose(actual, expected, rtol=rtol, atol=atol)
 
 
 HANG = 900.0

@@ -24,7 +24,7 @@ from nacre.case import Case, CaseError
 from nacre.case.bearing import TABLES, UNITS, sizes_of
 from nacre.case.schema import Material
 from nacre.case.tables import Directions
-from support import Capture, command, written
+from support import Capture, assert_close, command, written
 
 CASE = """
 [materials]
@@ -188,8 +188,8 @@ def test_other_units_are_converted_once() -> None:
     assert bearing.inner.layers[0].thickness == pytest.approx(3e-6, rel=1e-15)
     assert bearing.inner.layers[0].material.young == pytest.approx(300e9, rel=1e-15)
     assert bearing.inner.substrate == bearing.outer == steel
-    np.testing.assert_allclose(bearing.profile.drop, (10e-6, 0.0, 10e-6), rtol=1e-15)
-    np.testing.assert_allclose(bearing.profile.x, (-4.8e-3, 0.0, 4.8e-3), rtol=1e-15)
+    assert_close(bearing.profile.drop, (10e-6, 0.0, 10e-6), rtol=1e-15)
+    assert_close(bearing.profile.x, (-4.8e-3, 0.0, 4.8e-3), rtol=1e-15)
     assert found["force"] == (4450.0, 0.0, None)
     assert (found["tilt"], found["speed"], found["cells"]) == ((None, 5e-4), 3.0, (40, 24))
     film = case.film() or {}
@@ -267,13 +267,11 @@ def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:
         ("approaches", 1e3),
         ("contact_angles", 1.0),
     ):
-        np.testing.assert_allclose(other[name], np.multiply(one[name], factor), rtol=1e-8)
+        assert_close(other[name], np.multiply(one[name], factor), rtol=1e-8)
     # N/m and N; N and N m: with mm, 1e-3 and 1; 1 and 1e3.
     blocks = np.array([[1e-3] * 3 + [1.0] * 2] * 3 + [[1.0] * 3 + [1e3] * 2] * 2)
     largest = np.abs(other["tangent"]).max()
-    np.testing.assert_allclose(
-        other["tangent"], blocks * one["tangent"], rtol=1e-8, atol=1e-9 * largest
-    )
+    assert_close(other["tangent"], blocks * one["tangent"], rtol=1e-8, atol=1e-9 * largest)
     for name in ("l10", "revolutions", "equivalent_load", "capacity"):
         assert other["life"][name] == pytest.approx(one["life"][name], rel=1e-8)
     assert other["bearing"]["DeepGrooveBall"]["diameter"] == pytest.approx(11.5, rel=1e-15)
@@ -283,7 +281,7 @@ def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:
     assert f"peak pressure  {pressure / 1e3:.4g} GPa" in told["SI in words"]
     # Files are in SI.
     loaded = nacre.load(tmp_path / "N-mm-MPa.nc")
-    np.testing.assert_allclose(loaded.peak_pressures, one["peak_pressures"], rtol=1e-8)
+    assert_close(loaded.peak_pressures, one["peak_pressures"], rtol=1e-8)
 
 
 def test_a_study_in_other_units_names_them(tmp_path: Path) -> None:
@@ -313,7 +311,7 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
     assert (tmp_path / "bearing.png").stat().st_size > 10_000
     assert command("solve", path, "--json") == 0
     told = json.loads(capsys.readouterr().out)
-    np.testing.assert_allclose(told["loads"], solution.loads, rtol=1e-12)
+    assert_close(told["loads"], solution.loads, rtol=1e-12)
     assert told["life"]["l10"] == pytest.approx(solution.life("pressure").l10)
     contact = solution.contact(int(solution.loads[:, 0].argmax()), "inner")
     assert contact is not None

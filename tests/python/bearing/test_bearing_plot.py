@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pytest
 
 from nacre import plot
 from nacre.bearing import AngularContactBall, CylindricalRoller, DeepGrooveBall, Pair
+from support import assert_close
 
 ROLLERS = CylindricalRoller(
     count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3, clearance=41e-6
@@ -22,7 +22,7 @@ def test_bars_are_the_loads() -> None:
     axes = plot.load_distribution(STANDARD)
     bars: list[Any] = list(axes.patches)
     heights = [bar.get_height() for bar in bars]
-    np.testing.assert_allclose(heights, STANDARD.loads[:, 0] / 1e3)  # kN
+    assert_close(heights, STANDARD.loads[:, 0] / 1e3)  # kN
     fast = ROLLERS.solve(force=(4450.0, 0.0, None), speed=600.0, model="iso16281")
     both = plot.load_distribution(fast)
     assert len(both.patches) == 28
@@ -40,13 +40,13 @@ def test_curves_are_the_pressures_and_alike_elements_share_one() -> None:
         "elements 2, 12",
     ]
     drawn: Any = axes.lines[0].get_ydata()
-    np.testing.assert_allclose(drawn, STANDARD.lamina_pressures[0, 0] / 1e9)
+    assert_close(drawn, STANDARD.lamina_pressures[0, 0] / 1e9)
     solved = ROLLERS.solve(force=(4450.0, 0.0, None), cells=(40, 24))
     contact = solved.contact(0, "outer")
     assert contact is not None
     axes = plot.elements_pressure(solved, [0], ring="outer")
     drawn = axes.lines[0].get_ydata()
-    np.testing.assert_allclose(drawn, contact.pressure.max(1) / 1e9)
+    assert_close(drawn, contact.pressure.max(1) / 1e9)
 
 
 def test_parts_can_be_drawn_into_given_axes() -> None:
@@ -80,7 +80,7 @@ def test_both_bearings_of_a_pair_are_drawn(tmp_path: Path) -> None:
     panels = solution.plot()
     for name, one in zip(("first", "second"), solution.bearings, strict=True):
         bars: list[Any] = list(panels[f"{name} loads"].patches)
-        np.testing.assert_allclose([bar.get_height() for bar in bars], one.loads[:, 0])  # at rest
+        assert_close([bar.get_height() for bar in bars], one.loads[:, 0])  # at rest
         title = panels[f"{name} pressure"].get_title(loc="left")
         assert title == f"{name} bearing, peak pressures, Hertz"
     assert solution.save(tmp_path / "pair.png").stat().st_size > 10_000

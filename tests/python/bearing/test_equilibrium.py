@@ -21,6 +21,7 @@ from nacre.bearing import (
     equilibrium,
 )
 from nacre.bearing.contact_laws import Solved
+from support import assert_close
 
 SIZE: dict[str, Any] = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
 STANDARD: dict[str, Any] = {"model": "iso16281"}
@@ -59,7 +60,7 @@ def test_shapes_drop_as_laminae_do(ring: Any, crown: float) -> None:
     gaps = (crowned.shape(ring).gaps(grid) - straight.shape(ring).gaps(grid))[:, 0]
     # The gap of a cell, which is a lamina here, is its mean: dx²/24R more than that in its middle.
     mean = (9.6e-3 / 40) ** 2 / (24 * crown)
-    np.testing.assert_allclose(gaps - mean, crowned.drop(ring) - straight.drop(ring), atol=1e-14)
+    assert_close(gaps - mean, crowned.drop(ring) - straight.drop(ring), atol=1e-14)
     assert -1e-15 < crowned.drop(ring).min() < 0.03e-6  # the lowest place may be between laminae
 
 
@@ -127,7 +128,7 @@ def test_equal_elements_beside_the_load_are_solved_once(monkeypatch: pytest.Monk
     count = len(contacts)
     turned = bearing.solve(**load, **COARSE, rotation=1e-9)  # no two are equal
     assert len(contacts) - count > 1.5 * count
-    np.testing.assert_allclose(mirrored.loads, turned.loads, atol=1e-5)
+    assert_close(mirrored.loads, turned.loads, atol=1e-5)
     np.testing.assert_array_equal(mirrored.loads[1:], mirrored.loads[:0:-1])
 
 
@@ -179,9 +180,7 @@ def test_tilted_rollers_between_held_rings_are_in_equilibrium() -> None:
     assert (solution.approaches < 0).all()
     assert solution.largest_load > 10.0
     assert solution.report.balance <= 1e-9
-    np.testing.assert_allclose(
-        solution.loads[:, 0], solution.loads[:, 1], atol=1e-9 * solution.loads.sum()
-    )
+    assert_close(solution.loads[:, 0], solution.loads[:, 1], atol=1e-9 * solution.loads.sum())
 
 
 def test_a_missing_thrust_or_moment_is_named() -> None:
@@ -264,7 +263,7 @@ def test_the_cage_follows_the_ring(bearing: Any, gamma: float, ring: Any) -> Non
     free = turning.loads[:, 0] < 1e-3 * pull
     if isinstance(bearing, CylindricalRoller | DeepGrooveBall):
         assert free.all()
-        np.testing.assert_allclose(turning.loads[:, 1], pull, rtol=1e-6)
+        assert_close(turning.loads[:, 1], pull, rtol=1e-6)
     assert "cage speed" in str(turning)
     assert "cage speed" not in str(bearing.solve(displacement=held, **STANDARD))
 

@@ -33,6 +33,7 @@ from nacre.bearing import (
     rating,
 )
 from nacre.hertz import Ellipse
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -184,10 +185,8 @@ def check_rollers(geometry: Geometry, solution: BearingSolution) -> None:
     psi = geometry.turned(solution.tilt)
     moved = cos * (x * geometry.cos + y * geometry.sin) + sin * z - geometry.lever * psi
     small = ROUNDING * bearing.pitch
-    np.testing.assert_allclose(
-        solution.approaches.sum(1), moved - bearing.play * cos / 2, atol=small
-    )
-    np.testing.assert_allclose(solution.tilts.sum(1), psi, atol=1e-12)
+    assert_close(solution.approaches.sum(1), moved - bearing.play * cos / 2, atol=small)
+    assert_close(solution.tilts.sum(1), psi, atol=1e-12)
     inner, moments = solution.loads[:, 0], solution.moments[:, 0]
     about = moments - geometry.lever * inner
     pull = geometry.normal * geometry.pull
@@ -201,23 +200,21 @@ def check_rollers(geometry: Geometry, solution: BearingSolution) -> None:
     scale = solution.loads.sum()
     check_loads(solution, total, scale, bearing.length)
     turn = pull * bearing.diameter / 2 * math.sin(geometry.beta)
-    np.testing.assert_allclose(solution.loads[:, 1] - inner, pull, atol=BALANCE * scale)
-    np.testing.assert_allclose(
-        solution.moments[:, 1] - moments, turn, atol=BALANCE * scale * bearing.length
-    )
+    assert_close(solution.loads[:, 1] - inner, pull, atol=BALANCE * scale)
+    assert_close(solution.moments[:, 1] - moments, turn, atol=BALANCE * scale * bearing.length)
     if solution.model == "iso16281":
         lamina = np.stack([bearing.drop(ring) for ring in ("inner", "outer")])
         along = ((np.arange(40) + 0.5) / 40 - 0.5) * bearing.length
         deep = solution.approaches[..., None] + solution.tilts[..., None] * along - lamina
         spring = 35948 * (bearing.length * 1e3) ** (8 / 9) / 40
         loads = spring * (2e3 * np.maximum(deep, 0.0)) ** (10 / 9)
-        np.testing.assert_allclose(loads.sum(-1), solution.loads, rtol=1e-9, atol=1e-12 * scale)
+        assert_close(loads.sum(-1), solution.loads, rtol=1e-9, atol=1e-12 * scale)
 
 
 def check_loads(solution: BearingSolution, total: Any, scale: float, arm: float) -> None:
     """Compare the loads of the ring with the sums over its elements."""
     arms = np.array([1, 1, 1, arm, arm])
-    np.testing.assert_allclose(
+    assert_close(
         np.array([*solution.force, *solution.moment]) / arms, total / arms, atol=BALANCE * scale
     )
 
@@ -231,7 +228,7 @@ def check_balls(geometry: Geometry, solution: BearingSolution) -> None:
     moved = np.stack([x * geometry.cos + y * geometry.sin, axial], axis=1)
     normals = np.stack([np.cos(solution.contact_angles), np.sin(solution.contact_angles)], axis=2)
     arms = (geometry.grooves + solution.approaches)[..., None] * normals
-    np.testing.assert_allclose(arms.sum(1), geometry.start + moved, atol=ROUNDING * bearing.pitch)
+    assert_close(arms.sum(1), geometry.start + moved, atol=ROUNDING * bearing.pitch)
     forces = solution.loads[..., None] * normals
     scale = solution.loads.sum()
     pull = np.array([geometry.pull, 0.0])
@@ -240,9 +237,7 @@ def check_balls(geometry: Geometry, solution: BearingSolution) -> None:
         pull = geometry.pull * np.stack(
             [np.full_like(geometry.side, cos**2), cos * sin * geometry.side], axis=1
         )
-    np.testing.assert_allclose(
-        forces[:, 1] - forces[:, 0], pull + 0 * forces[:, 0], atol=2 * BALANCE * scale
-    )
+    assert_close(forces[:, 1] - forces[:, 0], pull + 0 * forces[:, 0], atol=2 * BALANCE * scale)
     across, along = forces[:, 0].T
     total = [
         across @ geometry.cos,
@@ -315,7 +310,7 @@ def check(seed: int, kind: type[Any], **how: Any) -> str:
     arm = np.array([1, 1, 1, bearing.pitch, bearing.pitch])
     given = np.array([*solution.force, *solution.moment])
     if scale > 0 or loads.any():
-        np.testing.assert_allclose((given / arm)[free], (loads / arm)[free], atol=2e-9 * scale)
+        assert_close((given / arm)[free], (loads / arm)[free], atol=2e-9 * scale)
     (check_rollers if bearing.carries_moments else check_balls)(geometry, solution)
     return ended
 

@@ -27,7 +27,7 @@ from nacre.bearing import (
     TaperedRoller,
 )
 from nacre.case import Case, CaseError
-from support import Capture, command, written
+from support import Capture, assert_close, command, written
 
 Array = np.ndarray[Any, Any]
 STANDARD: dict[str, Any] = {"model": "iso16281"}
@@ -195,14 +195,14 @@ def test_a_program_of_the_equations_finds_the_same(
     arm = np.array([1.0, 1.0, 1.0, 0.02, 0.02])
     moved = np.array([*solution.displacement, *solution.tilt]) * arm
     # Both balance to 1e-11 of the loads, and contacts are some 10 µm deep.
-    np.testing.assert_allclose(moved, q * arm, rtol=1e-8, atol=1e-8 * np.abs(q * arm).max())
+    assert_close(moved, q * arm, rtol=1e-8, atol=1e-8 * np.abs(q * arm).max())
     bar = 1e-8 * np.abs(forces).max()
     parts = zip((solution.first, solution.second), SIGNS[arrangement], forces, strict=True)
     for one, sign, expected in parts:
         own = np.array([*one.force[:2], sign * one.force[2]])
-        np.testing.assert_allclose(own, expected[:3], rtol=1e-8, atol=bar)
-    np.testing.assert_allclose(solution.force, force[:3], atol=bar)
-    np.testing.assert_allclose(solution.moment, force[3:], atol=bar)
+        assert_close(own, expected[:3], rtol=1e-8, atol=bar)
+    assert_close(solution.force, force[:3], atol=bar)
+    assert_close(solution.moment, force[3:], atol=bar)
 
 
 KINDS = pytest.mark.parametrize("bearing", [BALL, TAPERED], ids=["balls", "tapered"])
@@ -226,9 +226,9 @@ def test_without_load_both_carry_the_preload(
     # The tolerance of the balance, of the loads of the elements.
     bar = 1e-9 * float(solution.first.loads.sum())
     for one in (solution.first, solution.second):
-        np.testing.assert_allclose(one.force, (0.0, 0.0, 300.0), atol=bar)
-    np.testing.assert_allclose(solution.force, 0.0, atol=bar)
-    np.testing.assert_allclose(solution.displacement, 0.0, atol=1e-9 * 5e-6)
+        assert_close(one.force, (0.0, 0.0, 300.0), atol=bar)
+    assert_close(solution.force, 0.0, atol=bar)
+    assert_close(solution.displacement, 0.0, atol=1e-9 * 5e-6)
 
 
 @KINDS
@@ -241,15 +241,15 @@ def test_each_bearing_alone_has_the_same_loads(bearing: Any) -> None:
             displacement=one.displacement, tilt=one.tilt, rotation=0.1, speed=0.0, **EXACT
         )
         bar = 1e-10 * alone.largest_load
-        np.testing.assert_allclose(alone.loads, one.loads, atol=bar)
-        np.testing.assert_allclose(alone.force, one.force, atol=bar)
-        np.testing.assert_allclose(alone.stiffness(), one.stiffness(), rtol=1e-6, atol=1e-3)
+        assert_close(alone.loads, one.loads, atol=bar)
+        assert_close(alone.force, one.force, atol=bar)
+        assert_close(alone.stiffness(), one.stiffness(), rtol=1e-6, atol=1e-3)
         sign = -np.sign(side)  # "O": the first one carries the thrust along z
         force = np.array([*one.force[:2], sign * one.force[2]])
         about = sign * np.array([*one.moment, 0.0]) + np.cross([0.0, 0.0, side], force)
         total += [*force, *about[:2]]
     expected = [*together.force, *together.moment]
-    np.testing.assert_allclose(total, expected, rtol=1e-9, atol=1e-9 * 500.0)
+    assert_close(total, expected, rtol=1e-9, atol=1e-9 * 500.0)
 
 
 @KINDS
@@ -262,17 +262,17 @@ def test_an_x_pair_is_an_o_pair_whose_levers_are_the_other_way(bearing: Any) -> 
     a = one.solve(force=(400.0, 50.0, 150.0), moment=(2.0, -5.0), **EXACT)
     b = mirrored.solve(force=(400.0, 50.0, -150.0), moment=(-2.0, 5.0), **EXACT)
     bar = 1e-9 * a.largest_load
-    np.testing.assert_allclose(a.first.loads, b.second.loads, atol=bar)
-    np.testing.assert_allclose(a.second.loads, b.first.loads, atol=bar)
+    assert_close(a.first.loads, b.second.loads, atol=bar)
+    assert_close(a.second.loads, b.first.loads, atol=bar)
     mirror = np.diag([1, 1, -1, -1, -1])
     unit = np.sqrt(np.diag(a.stiffness()))
     difference = (a.stiffness() - mirror @ b.stiffness() @ mirror) / np.outer(unit, unit)
-    np.testing.assert_allclose(difference, 0.0, atol=1e-7)
+    assert_close(difference, 0.0, atol=1e-7)
     # Face to face, without a moment about the middle, a radial load divides alike.
     faces = dataclasses.replace(one, arrangement="X")
     o, x = (p.solve(force=(300.0, 0.0, 0.0), tilt=(0.0, 0.0), **EXACT) for p in (one, faces))
-    np.testing.assert_allclose(x.first.loads, o.first.loads, atol=bar)
-    np.testing.assert_allclose(x.second.loads, o.second.loads, atol=bar)
+    assert_close(x.first.loads, o.first.loads, atol=bar)
+    assert_close(x.second.loads, o.second.loads, atol=bar)
 
 
 @KINDS
@@ -360,8 +360,8 @@ def test_in_tandem_both_carry_half(bearing: Any) -> None:
     pair = Pair(bearing, bearing, arrangement="tandem", distance=20e-3)
     solution = pair.solve(force=(0.0, 0.0, 1000.0), **EXACT)
     alone = bearing.solve(force=(None, None, 500.0), **EXACT)
-    np.testing.assert_allclose(solution.first.loads, alone.loads, rtol=1e-9)
-    np.testing.assert_allclose(solution.second.loads, alone.loads, rtol=1e-9)
+    assert_close(solution.first.loads, alone.loads, rtol=1e-9)
+    assert_close(solution.second.loads, alone.loads, rtol=1e-9)
 
 
 @KINDS
@@ -373,8 +373,8 @@ def test_at_speed_centrifugal_forces_balance(bearing: Any) -> None:
         alone = one.bearing.solve(  # type: ignore[attr-defined]
             displacement=one.displacement, tilt=one.tilt, speed=1500.0, **EXACT
         )
-        np.testing.assert_allclose(alone.loads, one.loads, atol=1e-9 * one.largest_load)
-        np.testing.assert_allclose(alone.force, one.force, atol=1e-9 * one.largest_load)
+        assert_close(alone.loads, one.loads, atol=1e-9 * one.largest_load)
+        assert_close(alone.force, one.force, atol=1e-9 * one.largest_load)
     # On the shaft: also what elements at speed push the rings along the axis.
     thrusts = spinning.first.force[2], spinning.second.force[2]
     assert thrusts[0] == pytest.approx(thrusts[1], rel=1e-9)
@@ -538,9 +538,9 @@ def test_a_case_file_describes_a_pair(tmp_path: Path, capsys: Capture) -> None:
     lengths = {"displacement": 1e-3, "force": 1.0, "moment": 1e-3}
     for name, unit in lengths.items():
         expected = np.array(getattr(solution, name)) / unit
-        np.testing.assert_allclose(numbers[name], expected, rtol=1e-9, atol=1e-9)
+        assert_close(numbers[name], expected, rtol=1e-9, atol=1e-9)
     peak = solution.second.peak_pressures / 1e6
-    np.testing.assert_allclose(numbers["second"]["peak_pressures"], peak, rtol=1e-9)
+    assert_close(numbers["second"]["peak_pressures"], peak, rtol=1e-9)
     stiffness = solution.stiffness()
     assert numbers["tangent"][2][2] == pytest.approx(stiffness[2, 2] / 1e3, rel=1e-9)
     assert numbers["tangent"][4][4] == pytest.approx(stiffness[4, 4] * 1e3, rel=1e-9)

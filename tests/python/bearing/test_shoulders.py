@@ -12,6 +12,7 @@ import pytest
 import nacre
 from bodies import quiet
 from nacre.bearing import AngularContactBall, DeepGrooveBall, SphericalRoller, rating
+from support import assert_close
 
 SIZE: dict[str, Any] = {"count": 15, "diameter": 12.7e-3, "pitch_diameter": 70e-3}
 BALLS = AngularContactBall(**SIZE, contact_angle=math.radians(40))
@@ -69,7 +70,7 @@ def test_the_other_flank_of_a_groove_is_no_shoulder() -> None:
     # Deep grooves have both shoulders.
     deep = DeepGrooveBall(**SIZE)
     both = [deep.solve(force=(0.0, 0.0, load), **STANDARD) for load in (1000.0, -1000.0)]
-    np.testing.assert_allclose(both[0].loads, both[1].loads, rtol=1e-8)
+    assert_close(both[0].loads, both[1].loads, rtol=1e-8)
 
 
 def test_steep_bearings_have_the_life_of_thrust_bearings() -> None:

@@ -24,6 +24,7 @@ from nacre.bearing import (
 from nacre.bearing.contact_laws import Solved, binned
 from nacre.bearing.equilibrium import Barrels
 from nacre.bearing.iso import reference_life
+from support import assert_close
 
 SIZE: dict[str, Any] = {
     "count": 19,
@@ -51,7 +52,7 @@ def test_forces_balance_and_pass_through_the_centre(options: dict[str, Any]) -> 
     assert solution.report.balance <= 1e-9
     scale = float(solution.loads.sum()) / 2
     normals, angles = solution.contact_angles, solution.angles
-    np.testing.assert_allclose(normals[:, 0], normals[:, 1], atol=1e-6)
+    assert_close(normals[:, 0], normals[:, 1], atol=1e-6)
     for ring in range(2):
         load, normal = solution.loads[:, ring], normals[:, ring]
         total = [
@@ -59,7 +60,7 @@ def test_forces_balance_and_pass_through_the_centre(options: dict[str, Any]) -> 
             load @ (np.cos(normal) * np.sin(angles)),
             load @ np.sin(normal),
         ]
-        np.testing.assert_allclose(total, FORCE, atol=2e-9 * scale)
+        assert_close(total, FORCE, atol=2e-9 * scale)
     assert solution.moment == (0.0, 0.0)
     assert not solution.moments.any()
     assert not solution.tilts.any()
@@ -97,7 +98,7 @@ def test_tilt_about_the_centre_is_followed() -> None:
     # What is along the track counts in space, and not in the plane of the axis: δ²/2 over the sum.
     bar = float(np.sum(np.square(tilted.displacement))) / (2 * between)
     loaded = tilted.loads[:, 0] > 0
-    np.testing.assert_allclose(tilted.approaches.sum(1)[loaded], both[loaded], atol=bar)
+    assert_close(tilted.approaches.sum(1)[loaded], both[loaded], atol=bar)
     assert bar < 1e-3 * both.max()
 
 
@@ -109,23 +110,23 @@ def test_rotated_and_mirrored_loads(options: dict[str, Any]) -> None:
     bar = 1e-9 * one.largest_load
     turned = quiet(bearing.solve, force=FORCE, rotation=2 * math.pi / 19, **options)
     rolled = np.roll(turned.loads.reshape(2, 19, 2), 1, axis=1).reshape(-1, 2)
-    np.testing.assert_allclose(rolled, one.loads, atol=bar)
+    assert_close(rolled, one.loads, atol=bar)
     other = quiet(bearing.solve, force=(20e3, 1e3, -2e3), **options)
-    np.testing.assert_allclose(np.roll(other.loads, 19, axis=0), one.loads, atol=bar)
+    assert_close(np.roll(other.loads, 19, axis=0), one.loads, atol=bar)
     across = quiet(bearing.solve, force=(20e3, -1e3, 2e3), **options)
     back = np.r_[-np.arange(19) % 19, 19 + -np.arange(19) % 19]
-    np.testing.assert_allclose(across.loads[back], one.loads, atol=bar)
+    assert_close(across.loads[back], one.loads, atol=bar)
 
 
 def test_radial_load_is_shared_by_both_rows() -> None:
     solution = spherical().solve(force=(20e3, 0.0, 0.0), **STANDARD)
-    np.testing.assert_allclose(solution.loads[:19], solution.loads[19:], rtol=1e-9)
+    assert_close(solution.loads[:19], solution.loads[19:], rtol=1e-9)
     assert abs(solution.displacement[2]) < 1e-12
     assert solution.stiffness()[2, 2] > 0
     axial = spherical().solve(force=(0.0, 0.0, 5e3), **STANDARD)
     assert not axial.loads[19:].any()
     share = 5e3 / 19 / np.sin(axial.contact_angles[:19])
-    np.testing.assert_allclose(axial.loads[:19], share, rtol=1e-9)
+    assert_close(axial.loads[:19], share, rtol=1e-9)
 
 
 def test_clearance_is_that_of_the_radius() -> None:
@@ -144,7 +145,7 @@ def test_half_of_the_diametral_clearance_brings_a_barrel_to_both_rings() -> None
     bearing = spherical(contact_angle=0.3, clearance=1e-6)
     barrels = Barrels(bearing, np.zeros(38))
     apart = np.linalg.norm(barrels.start + np.array([0.5e-6, 0.0]), axis=1) - barrels.groove.sum()
-    np.testing.assert_allclose(apart, 0.0, atol=1e-11)
+    assert_close(apart, 0.0, atol=1e-11)
 
 
 def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
@@ -159,12 +160,12 @@ def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
     )
     # Displacements are those of a circle about the groove's centre: δ²/2 over 82 mm.
     bar = expected.largest_load
-    np.testing.assert_allclose(found.loads, expected.loads, atol=2e-4 * bar)
+    assert_close(found.loads, expected.loads, atol=2e-4 * bar)
     solved, other = (
         quiet(bearing.solve, force=(10e3, 500.0, None), **COARSE) for bearing in (row, flat)
     )
     # Solved barrels are thinner at their ends, by 0.33 mm of 6, too.
-    np.testing.assert_allclose(solved.loads, other.loads, atol=0.01 * bar)
+    assert_close(solved.loads, other.loads, atol=0.01 * bar)
     with pytest.raises(
         ValueError, match="force along z must be None or 0: rollers without a contact"
     ):
@@ -182,13 +183,13 @@ def test_gap_is_that_of_barrel_and_sphere() -> None:
     sphere = np.sqrt(radius**2 - x**2 - y**2) - (radius - 6e-3)
     exact = sphere - np.sqrt(own**2 - y**2)
     # The sphere's sections at x have the radius √(R² − x²), not R: 0.6 % of a seventh.
-    np.testing.assert_allclose(bearing.shape("outer").gaps(grid), exact, rtol=1e-3, atol=2e-9)
+    assert_close(bearing.shape("outer").gaps(grid), exact, rtol=1e-3, atol=2e-9)
     # On the way to the middle of the cells: drop and curvature are those of the shape.
     fine = nacre.Grid((40, 2), (11e-3, 2e-5))
     across = bearing.curvature("inner", fine.x)[:, None] * fine.y**2 / 2
     parabola = bearing.drop("inner")[:, None] + across
     # Means over cells of 0.28 mm: (dx²/24)(1/R_p − 1/R) = 2e-9 m.
-    np.testing.assert_allclose(bearing.shape("inner").gaps(fine), parabola, atol=3e-9)
+    assert_close(bearing.shape("inner").gaps(fine), parabola, atol=3e-9)
     tight = spherical(groove_radius=47e-3)
     assert tight.drop("inner")[0] < bearing.drop("inner")[0]
     np.testing.assert_array_equal(tight.drop("outer"), bearing.drop("outer"))
@@ -204,7 +205,7 @@ def test_centrifugal_force_is_shared_with_the_ribs() -> None:
     pull = bearing.mass * 41e-3 * (400.0 / 2 * (1 - 12 / 82 * math.cos(ANGLE))) ** 2
     rise = np.diff(solution.loads, axis=1)
     # Across the line of both centres; its angle moves by the displacement over 83 mm.
-    np.testing.assert_allclose(rise, pull * math.cos(ANGLE), rtol=1e-3)
+    assert_close(rise, pull * math.cos(ANGLE), rtol=1e-3, each=True)
     # The rib of the inner ring takes the rest; the outer ring has what the inner one carries.
     outer = solution.loads[:, 1] @ np.sin(solution.contact_angles[:, 1])
     assert outer == pytest.approx(2e3, rel=1e-4)
@@ -240,7 +241,7 @@ def test_light_barrels_are_hertz_ellipses() -> None:
         part = np.clip(bounds / a, -1.0, 1.0)
         expected = np.diff(0.75 * load * (part - part**3 / 3))
         found = solution.lamina_loads[0, ring]
-        np.testing.assert_allclose(found, expected, atol=2e-3 * expected.max())
+        assert_close(found, expected, atol=2e-3 * expected.max())
         assert found.sum() == pytest.approx(load, rel=1e-12)
         # The largest pressure of a lamina is that nearest to the middle, or of a cell across there.
         nearer = np.minimum(np.abs(bounds[1:]), np.abs(bounds[:-1]))
@@ -278,11 +279,11 @@ def test_ends_beyond_the_grid_are_free() -> None:
     laminae, pressures = binned(bearing, wide)
     # Six cells a lamina, as those of heavy barrels are.
     cells = wide.line_load.reshape(40, 6) * wide.grid.spacing[0]
-    np.testing.assert_allclose(laminae, cells.sum(1), rtol=1e-12, atol=1e-15 * wide.load)
+    assert_close(laminae, cells.sum(1), rtol=1e-12, atol=1e-15 * wide.load)
     np.testing.assert_array_equal(pressures, wide.pressure.reshape(40, -1).max(1))
     assert solution.lamina_loads is not None
     short = solution.lamina_loads[0, 1]
-    np.testing.assert_allclose(short, laminae, atol=3e-3 * laminae.max())
+    assert_close(short, laminae, atol=3e-3 * laminae.max())
 
 
 def test_barrels_that_outgrow_their_grids_are_solved_on_longer_ones() -> None:
@@ -318,7 +319,7 @@ def test_rating_counts_rows() -> None:
     loads = np.random.default_rng(5).uniform(0.0, 50.0, (19, 2, 40))
     one = reference_life(single, loads, 1.0)
     both = reference_life(bearing, np.concatenate([loads, loads]), 1.0)
-    np.testing.assert_allclose(both.capacities, one.capacities, rtol=1e-12)
+    assert_close(both.capacities, one.capacities, rtol=1e-12)
     assert both.l10 / one.l10 == pytest.approx(2 ** (-8 / 9), rel=1e-12)
     solution = bearing.solve(force=FORCE, **STANDARD)
     assert solution.life().l10 == solution.life(edge=None).l10
@@ -359,7 +360,7 @@ def test_pictures_show_both_rows() -> None:
     solution = spherical().solve(force=FORCE, **STANDARD)
     axes = plot.load_distribution(solution)
     heights = [bar.get_height() for bar in list[Any](axes.patches)]
-    np.testing.assert_allclose(heights, solution.loads[:, 0] / 1e3)
+    assert_close(heights, solution.loads[:, 0] / 1e3)
     legend: Any = axes.get_legend()
     assert [text.get_text() for text in legend.get_texts()] == ["row 1", "row 2"]
     fast = spherical().solve(force=FORCE, speed=400.0, **STANDARD)

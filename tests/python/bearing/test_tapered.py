@@ -21,6 +21,7 @@ from nacre.bearing import (
     load_integrals,
     rating,
 )
+from support import assert_close
 
 SIZE: dict[str, Any] = {
     "count": 17,
@@ -51,7 +52,7 @@ def test_cones_of_rollers_and_raceways_share_one_apex() -> None:
     for sign, angle in zip((-1, 1), bearing.contact_angles, strict=True):
         place = middle + sign * 4e-3 * across
         line = np.array([-math.sin(angle), math.cos(angle)])
-        np.testing.assert_allclose(place + bearing.apex * line, apex, atol=1e-15)
+        assert_close(place + bearing.apex * line, apex, atol=1e-15)
         # Radii normal to the line: half of the diameter of the cone over the cosine of its angle.
         radius = bearing.raceways[(sign + 1) // 2]
         assert radius == pytest.approx(place[0] / math.cos(angle), rel=1e-12)
@@ -62,12 +63,12 @@ def test_cones_of_rollers_and_raceways_share_one_apex() -> None:
         x = np.array([-5e-3, 0.0, 5e-3])
         share = 1 - x / bearing.apex
         expected = (1 / bearing.radius + sign / race) / share
-        np.testing.assert_allclose(bearing.curvature(ring, x), expected, rtol=1e-12)  # type: ignore[arg-type]
+        assert_close(bearing.curvature(ring, x), expected, rtol=1e-12)  # type: ignore[arg-type]
         grid = nacre.Grid((11, 2), (11e-3, 2e-5))
         across_it = shape.gaps(grid) - shape.gaps(nacre.Grid((11, 2), (11e-3, 4e-9)))
         parabola = (5e-6) ** 2 / 2 * bearing.curvature(ring, grid.x)  # type: ignore[arg-type]
         # The drop of the profile, 50 µm at the very ends, changes the roller's own radius by 1 %.
-        np.testing.assert_allclose(across_it[1:-1, 0], parabola[1:-1], rtol=3e-3)
+        assert_close(across_it[1:-1, 0], parabola[1:-1], rtol=3e-3, each=True)
     # A frustum: its volume by the prismoidal rule, exact for squares of a linear radius.
     radii = 4e-3 * (1 - np.array([-5.5e-3, 0.0, 5.5e-3]) / bearing.apex)
     volume = math.pi * (radii**2 @ [1, 4, 1]) / 6 * 11e-3 * math.cos(beta)
@@ -113,9 +114,9 @@ def test_forces_of_contacts_and_rib_balance(options: dict[str, Any], speed: floa
         around = turn(places[0] + [24e-3, 0.0], forces[0]) + turn(np.array([24e-3, 0.0]), rib)
         total += [on_ring[0] * math.cos(angle), on_ring[0] * math.sin(angle), on_ring[1]]
         moments += [-around * math.sin(angle), around * math.cos(angle)]
-    np.testing.assert_allclose(total, solution.force, atol=2e-9 * scale)
-    np.testing.assert_allclose(moments, solution.moment, atol=2e-9 * scale * 24e-3)
-    np.testing.assert_allclose(solution.force, (3000.0, 500.0, 4000.0), atol=1e-9 * scale)
+    assert_close(total, solution.force, atol=2e-9 * scale)
+    assert_close(moments, solution.moment, atol=2e-9 * scale * 24e-3)
+    assert_close(solution.force, (3000.0, 500.0, 4000.0), atol=1e-9 * scale)
 
 
 @BOTH
@@ -126,13 +127,13 @@ def test_no_angle_is_a_cylindrical_roller(options: dict[str, Any]) -> None:
     same: Any = "iso16281_cylindrical"
     cone = TaperedRoller(**size, contact_angle=1e-12, profile=same).solve(**asked)
     bar = 1e-9 * flat.largest_load
-    np.testing.assert_allclose(cone.loads, flat.loads, atol=bar)
-    np.testing.assert_allclose(cone.displacement, flat.displacement, rtol=1e-9, atol=1e-15)
+    assert_close(cone.loads, flat.loads, atol=bar)
+    assert_close(cone.displacement, flat.displacement, rtol=1e-9, atol=1e-15)
     assert cone.peak_pressure == pytest.approx(flat.peak_pressure, rel=1e-9)
     stiffness = flat.stiffness()
     unit = np.sqrt(np.diag(stiffness))
     unit[2] = unit[0]
-    np.testing.assert_allclose(
+    assert_close(
         cone.stiffness() / np.outer(unit, unit), stiffness / np.outer(unit, unit), atol=1e-9
     )
     assert cone.life().l10 == pytest.approx(flat.life().l10, rel=1e-9)
@@ -146,18 +147,18 @@ def test_rotated_and_mirrored_loads(options: dict[str, Any]) -> None:
     one = bearing.solve(force=force, tilt=tilt, rotation=0.0, **options)
     bar = 1e-9 * one.largest_load
     turned = bearing.solve(force=force, tilt=tilt, rotation=2 * math.pi / 17, **options)
-    np.testing.assert_allclose(np.roll(turned.loads, 1, axis=0), one.loads, atol=bar)
+    assert_close(np.roll(turned.loads, 1, axis=0), one.loads, atol=bar)
     mirrored = bearing.solve(force=(3000.0, -500.0, 4000.0), tilt=(-1e-4, 3e-4), **options)
-    np.testing.assert_allclose(mirrored.loads[-np.arange(17) % 17], one.loads, atol=bar)
+    assert_close(mirrored.loads[-np.arange(17) % 17], one.loads, atol=bar)
 
 
 def test_axial_load_is_shared_and_the_play_is_taken_up() -> None:
     loads = tapered().solve(force=(0.0, 0.0, 5000.0), **STANDARD)
-    np.testing.assert_allclose(loads.loads, 5000.0 / 17 / math.sin(ANGLE), rtol=1e-9)
+    assert_close(loads.loads, 5000.0 / 17 / math.sin(ANGLE), rtol=1e-9)
     loose = tapered(clearance=40e-6).solve(force=(0.0, 0.0, 5000.0), **STANDARD)
     moved = loose.displacement[2] - loads.displacement[2]
     assert moved == pytest.approx(20e-6 / math.tan(ANGLE), rel=1e-9)
-    np.testing.assert_allclose(loose.contact_angles[0], tapered().contact_angles, rtol=1e-15)
+    assert_close(loose.contact_angles[0], tapered().contact_angles, rtol=1e-15)
 
 
 @pytest.mark.parametrize("axial", [1e-6, 10e-6, 60e-6])
@@ -194,7 +195,7 @@ def test_rating_is_that_of_iso_281() -> None:
     share = (1.038 * ratio ** (143 / 108)) ** 4.5
     inner = expected / (0.83 * 0.378 * 17 * math.cos(ANGLE)) * (1 + share) ** (2 / 9)
     outer = expected / (0.83 * 0.364 * 17 * math.cos(ANGLE)) * (1 + 1 / share) ** (2 / 9)
-    np.testing.assert_allclose(life.ring_capacities, (inner, outer), rtol=1e-12)
+    assert_close(life.ring_capacities, (inner, outer), rtol=1e-12)
 
 
 def test_profile_of_the_standard_is_that_of_tapered_rollers() -> None:
@@ -218,18 +219,18 @@ def test_pressure_falls_towards_the_thick_end() -> None:
     assert solution.lamina_loads is not None
     assert solution.lamina_pressures is not None
     line = 5000.0 / 17 / math.sin(ANGLE) / 11e-3
-    np.testing.assert_allclose(solution.lamina_loads, line * 11e-3 / 40, rtol=1e-9)
+    assert_close(solution.lamina_loads, line * 11e-3 / 40, rtol=1e-9)
     x = (np.arange(40) + 0.5) / 40 * 11e-3 - 5.5e-3
     moduli = 210e9 / (2 * 0.91)
     radius = (1 - x / bearing.apex) / (1 / bearing.radius + 1 / bearing.raceways[0])
     hertz = np.sqrt(line * moduli / (math.pi * radius))
-    np.testing.assert_allclose(solution.lamina_pressures[0, 0], hertz, rtol=1e-9)
+    assert_close(solution.lamina_pressures[0, 0], hertz, rtol=1e-9)
     solved = tapered().solve(force=(0.0, 0.0, 5000.0), cells=(120, 48))
     assert solved.lamina_pressures is not None
     factors = solved.edge_factors()[0, 0]
     # In the middle of the standard's profile laminae have Hertz's pressure; cells of b/16: 1e-3.
     # Between these laminae 1/√R changes by 1.3 %.
-    np.testing.assert_allclose(factors[14:26], 1.0, atol=5e-3)
+    assert_close(factors[14:26], 1.0, atol=5e-3)
 
 
 @pytest.mark.slow

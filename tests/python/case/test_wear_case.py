@@ -17,7 +17,7 @@ from nacre.app.answer import answer
 from nacre.app.cards import own_card
 from nacre.case import Case, CaseError, templates
 from nacre.case.reference import schema
-from support import Capture, command, written
+from support import Capture, assert_close, command, written
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(300e9, 0.2)
 BODY = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-6)])
@@ -266,7 +266,7 @@ def test_a_study_has_the_lives_of_its_cases_and_is_resumed(tmp_path: Path, capsy
     assert lives[1, 0, 1] == one.life.distance
     # A contact sees the product of rate and distance alone. Coats are through to 1e-6 of their
     # thickness, twice, to whose power of 3/2 the distance grows.
-    np.testing.assert_allclose(lives[..., 0], 2 * lives[..., 1], rtol=3e-6)
+    assert_close(lives[..., 0], 2 * lives[..., 1], rtol=3e-6, each=True)
     assert (np.diff(lives, axis=0) > 0).all()
     assert (np.diff(lives, axis=1) < 0).all()
     journal = (tmp_path / "study.journal").read_bytes()

@@ -8,6 +8,7 @@ import pytest
 
 import nacre
 from bodies import BALL, STEEL
+from support import assert_close
 
 CONTACT = nacre.Contact(STEEL, nacre.Grid(shape=(64, 48), size=(3e-4, 3e-4)), threads=2)
 CASES = [{"shape": BALL, "load": load} for load in (10.0, 3.0, 5.0, 2.5, 8.0, 4.0)]
@@ -104,7 +105,7 @@ def test_stiffness_of_a_copy_without_its_plan_is_the_same_to_rounding() -> None:
     stiffness = solution.stiffness()
     # Entries over the geometric mean of their diagonals; some hundred roundings of solves.
     scale = np.sqrt(np.outer(stiffness.diagonal(), stiffness.diagonal()))
-    np.testing.assert_allclose(copy.stiffness() / scale, stiffness / scale, atol=1e-13)
+    assert_close(copy.stiffness() / scale, stiffness / scale, atol=1e-13)
 
 
 def test_stiffness_is_a_symmetric_array() -> None:
@@ -113,4 +114,4 @@ def test_stiffness_is_a_symmetric_array() -> None:
     assert stiffness.shape == (3, 3)
     # Entries over the geometric mean of their diagonals.
     scale = np.sqrt(np.outer(stiffness.diagonal(), stiffness.diagonal()))
-    np.testing.assert_allclose(stiffness / scale, stiffness.T / scale, atol=1e-10)
+    assert_close(stiffness / scale, stiffness.T / scale, atol=1e-10)

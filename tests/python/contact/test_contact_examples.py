@@ -15,6 +15,7 @@ import pytest
 
 import nacre
 from bodies import quiet
+from support import assert_close
 
 PRINTED: dict[str, Any] = json.loads(
     (Path(__file__).parents[2] / "data" / "friction" / "contact_examples.json").read_text()
@@ -41,9 +42,9 @@ def test_carter_and_fromm_on_a_line() -> None:
     first, pressure = printed["first_pressed"], np.zeros(55)
     pressure[first : first + 50] = printed["pressure"]
     # CONTACT's cells are 200 mm long, not endless.
-    np.testing.assert_allclose(solution.pressure[0], pressure, atol=1e-4 * printed["peak"])
+    assert_close(solution.pressure[0], pressure, atol=1e-4 * printed["peak"])
     traction = solution.traction[1, 0][printed["first_sticking"] : first + 50]
-    np.testing.assert_allclose(np.abs(traction), printed["traction"], rtol=6e-3)
+    assert_close(np.abs(traction), printed["traction"], rtol=6e-3, each=True)
     assert solution.stick.sum() == printed["stick"]
     assert np.abs(solution.force[1]) == pytest.approx(printed["force"] / length, rel=DIGITS)
     assert solution.dissipated == pytest.approx(printed["power"] / length, rel=DIGITS)
@@ -106,7 +107,7 @@ def test_the_creep_curve_of_a_eurosprinter() -> None:
     load, friction, radii = 106700.0, 0.33, (1 / (2 * 0.8e-3), 1 / (2 * 0.2814e-3))
     modulus = nacre.hertz.contact_modulus(STEEL, STEEL)
     semi_axes = nacre.hertz.Ellipse(*radii, modulus, load).semi_axes
-    np.testing.assert_allclose(semi_axes, printed["semi_axes"], rtol=DIGITS)
+    assert_close(semi_axes, printed["semi_axes"], rtol=DIGITS, each=True)
     sides = (2.2 * semi_axes[0], 2.2 * semi_axes[1])
     contact = nacre.Contact(STEEL, nacre.Grid((48, 44), sides), STEEL)
     for point in printed["curve"]:

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import aslinearoperator, cg
 
 import nacre
 from bodies import BALL, STEEL
-from support import python
+from support import assert_close, python
 
 Array = npt.NDArray[np.float64]
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.2), 2e-6)])
@@ -68,7 +68,7 @@ def test_conjugate_gradients_of_scipy_invert_it() -> None:
     displacement = convolution.apply(expected).ravel()
     found, failed = cg(convolution.as_linear_operator(), displacement, rtol=1e-12)
     assert failed == 0
-    np.testing.assert_allclose(found.reshape(GRID.shape), expected, rtol=1e-8)
+    assert_close(found.reshape(GRID.shape), expected, rtol=1e-8)
 
 
 def test_without_scipy_all_but_the_operator_works() -> None:
@@ -98,7 +98,7 @@ def test_compliance_of_a_half_space_is_the_closed_form(poisson: float) -> None:
         (ct, 1.0),
     ):
         assert found.shape == alpha.shape
-        np.testing.assert_allclose(found * alpha * material.shear, expected, rtol=1e-14)
+        assert_close(found * alpha * material.shear, expected, rtol=1e-14)
 
 
 def test_the_normal_compliance_is_the_frequency_response_and_a_number_gives_numbers() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import nacre
 from bodies import BALL, HELD, STEEL
-from support import interrupted
+from support import assert_close, interrupted
 
 SOFT = nacre.Elastic(70e9, 0.2)
 GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4))
@@ -116,7 +116,7 @@ def test_fields_say_the_same_as_the_numbers() -> None:
     size = np.hypot(qx, qy)
     assert (size <= pull.bound * (1 + 1e-12)).all()
     slips = (pull.bound > 0) & ~pull.stick
-    np.testing.assert_allclose(size[slips], pull.bound[slips], rtol=1e-9)
+    assert_close(size[slips], pull.bound[slips], rtol=1e-9)
     largest = np.abs(pull.displacement).max()
     assert np.abs(pull.slip[:, pull.stick]).max() <= 1.01e-8 * largest
     moved = np.stack([pull.shift[0] - 1e-4 * y, pull.shift[1] + 1e-4 * x])
@@ -155,8 +155,8 @@ def test_stress_below_carries_the_tractions() -> None:
     rounding = 1e-9 * pull.bound.max()
     for body, sign in (("body", -1), ("counterbody", 1)):
         surface = pull.stress(0.0, body=body)
-        np.testing.assert_allclose(surface.xz, sign * pull.traction[0], rtol=0, atol=rounding)
-        np.testing.assert_allclose(surface.yz, sign * pull.traction[1], rtol=0, atol=rounding)
+        assert_close(surface.xz, sign * pull.traction[0], rtol=0, atol=rounding)
+        assert_close(surface.yz, sign * pull.traction[1], rtol=0, atol=rounding)
     plan = pull.stress_plan()
     assert plan.stress(1e-5) == pull.stress(1e-5)
     assert plan.summary() == pull.stress_summary()
@@ -167,7 +167,7 @@ def test_stress_below_carries_the_tractions() -> None:
         mean = 0.5 * (getattr(here, name) + getattr(there, name))
         # The tractions are found to 1e-8, and stress is not larger.
         atol = 1e-7 * pull.bound.max()
-        np.testing.assert_allclose(mean, getattr(pressed, name), rtol=0, atol=atol)
+        assert_close(mean, getattr(pressed, name), rtol=0, atol=atol)
         assert np.abs(getattr(here, name) - mean).max() > 0.1 * pull.bound.max()
 
 
@@ -183,7 +183,7 @@ def test_a_history_keeps_what_a_step_does_not_give() -> None:
     first = loop[0].shift
     # What is neither moved nor loaded stays.
     assert [s.shift for s in loop] == [first, first, first, (0.0, 1e-8)]
-    np.testing.assert_allclose(loop[1].force, loop[0].force, atol=1e-7)
+    assert_close(loop[1].force, loop[0].force, atol=1e-7)
     assert loop[1].dissipated == pytest.approx(0, abs=1e-9 * loop[0].dissipated + 1e-20)
 
 

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import nacre
 import support
 from bodies import BALL, STEEL, quiet
-from support import Capture, command, written
+from support import Capture, assert_close, command, written
 
 fuzz = support.fuzz(15)
 
@@ -46,7 +46,7 @@ plans = st.tuples(bodies, st.one_of(st.none(), bodies))
 def agree(one: Any, other: Any, tolerance: float = CLOSE) -> None:
     peak = max(float(other.pressure.max()), 1e-300)
     assert one.report.converged
-    np.testing.assert_allclose(one.pressure, other.pressure, atol=tolerance * peak)
+    assert_close(one.pressure, other.pressure, atol=tolerance * peak)
 
 
 @fuzz
@@ -96,7 +96,7 @@ def test_no_start_changes_a_contact_with_friction(
         agree(one, other)
         assert one.normal.report.residual <= 1e-9
         assert one.pressure.tobytes() == other.pressure.tobytes()
-        np.testing.assert_allclose(one.traction, other.traction, atol=CLOSE * other.bound.max())
+        assert_close(one.traction, other.traction, atol=CLOSE * other.bound.max())
 
 
 def test_different_bodies_start_from_a_history_alone() -> None:
@@ -189,10 +189,10 @@ def test_a_stopped_step_can_be_gone_on_with() -> None:
                 assert one.shift == other.shift
             # What goes on from a stopped first step does not start from half the cells, as it did.
             largest, error = np.abs(other.traction).max(), one.report.tolerance
-            np.testing.assert_allclose(one.traction, other.traction, atol=error * largest)
+            assert_close(one.traction, other.traction, atol=error * largest)
             assert one.shift is not None
             assert other.shift is not None
-            np.testing.assert_allclose(one.shift, other.shift, rtol=error)
+            assert_close(one.shift, other.shift, rtol=error)
 
 
 # Numbers of any size.

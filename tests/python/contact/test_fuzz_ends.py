@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import nacre
 import support
 from bodies import quiet
-from support import powers
+from support import assert_close, powers
 
 fuzz = support.fuzz(6)
 
@@ -91,9 +91,7 @@ def test_a_period_is_half_of_two(
         return
     scale = first.peak_pressure
     # Tolerance of the solutions, and the condition of the softest coats.
-    np.testing.assert_allclose(
-        second.pressure, np.tile(first.pressure, (1, 2)), rtol=0, atol=1e-5 * scale
-    )
+    assert_close(second.pressure, np.tile(first.pressure, (1, 2)), rtol=0, atol=1e-5 * scale)
     assert abs(second.approach / first.approach - 1) < 1e-6
 
 
@@ -115,7 +113,7 @@ def test_mirrored_bodies_have_the_same_contact(
     turned = nacre.Grid(grid.shape, grid.size, center=(-x, y), periodic=(False, repeats))
     second = solved((mirrored(pair[0]), mirrored(pair[1])), turned, heights[::-1], load=first.load)
     scale = first.peak_pressure
-    np.testing.assert_allclose(second.pressure[::-1], first.pressure, rtol=0, atol=1e-5 * scale)
+    assert_close(second.pressure[::-1], first.pressure, rtol=0, atol=1e-5 * scale)
     assert abs(second.approach / first.approach - 1) < 1e-6
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 import nacre
-from support import DATA
+from support import DATA, assert_close
 
 Array = npt.NDArray[np.float64]
 PRINTED = json.loads((DATA / "outside.json").read_text(encoding="utf-8"))
@@ -107,7 +107,7 @@ def test_strains_of_a_road_are_those_of_three_programs() -> None:
             one, others = (xx, yy + zz) if across else (zz, xx + yy)
             strains.append(-1e6 * (one - poisson * others) / young)
         # The programs differ by one in the fourth digit.
-        np.testing.assert_allclose(strains, printed, atol=0.15)
+        assert_close(strains, printed, atol=0.15)
 
 
 # The coated roller of the paper, by a program that shares nothing with nacre.

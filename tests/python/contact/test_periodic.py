@@ -17,7 +17,7 @@ import nacre
 from bodies import BALL, STEEL
 from nacre import plot
 from nacre.case import Case, CaseError
-from support import DATA
+from support import DATA, assert_close
 
 BODY = nacre.Elastic(1.0, 0.0)
 GRID = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, True))
@@ -54,7 +54,7 @@ def test_the_map_says_once_that_it_repeats() -> None:
     # The mean of the displacement is the datum.
     assert abs(solution.displacement.mean()) < 1e-9 * abs(solution.displacement).max()
     farther = nacre.Grid((32, 24), (1.0, 0.75), (1.0, -0.75))
-    np.testing.assert_allclose(MAP.gaps(farther), MAP.gaps(GRID), atol=1e-15)
+    assert_close(MAP.gaps(farther), MAP.gaps(GRID), atol=1e-15)
     assert solution.report.warnings == []
 
 
@@ -98,7 +98,7 @@ def test_maps_that_repeat_on_grids_that_fit() -> None:
     two = nacre.solve(MAP, BODY, grid=wide, load=2e-3)
     peak = one.pressure.max()
     # Both are to 1e-8; samples of the wave lie at the same places of a period.
-    np.testing.assert_allclose(two.pressure[16:48], one.pressure, atol=1e-6 * peak)
+    assert_close(two.pressure[16:48], one.pressure, atol=1e-6 * peak)
     ball = nacre.Sphere(5.0) + MAP
     open_ = nacre.solve(ball, BODY, grid=nacre.Grid((80, 80), (2.5, 2.5)), load=1e-2)
     assert open_.report.converged
@@ -187,10 +187,8 @@ def test_stresses_repeat_and_bear_the_load() -> None:
         cosine = amplitude * np.cos(q * X)
         decay = np.exp(-q * z)
         due = -0.004 - cosine * (1 + q * z) * decay
-        np.testing.assert_allclose(stress.zz[k], due, atol=4e-3 * amplitude)
-        np.testing.assert_allclose(
-            stress.xx[k], -cosine * (1 - q * z) * decay, atol=4e-3 * amplitude
-        )
+        assert_close(stress.zz[k], due, atol=4e-3 * amplitude)
+        assert_close(stress.xx[k], -cosine * (1 - q * z) * decay, atol=4e-3 * amplitude)
         assert stress.zz[k].mean() == pytest.approx(-0.004, rel=1e-9)
     summary = solution.stress_summary(friction=0.2, direction=(0, 1))
     largest = solution.stress(np.linspace(0, 0.6, 31), friction=0.2, direction=(0, 1)).von_mises
@@ -203,7 +201,7 @@ def test_plans_sections_and_files_know_that_stresses_repeat(tmp_path: Path) -> N
     plan = solution.stress_plan()
     whole = plan.stress([0.02, 0.2])
     section = plan.stress([0.02, 0.2], y=float(GRID.y[5]))
-    np.testing.assert_allclose(section.zz, whole.zz[..., 5], atol=1e-12)
+    assert_close(section.zz, whole.zz[..., 5], atol=1e-12)
     solution.save(tmp_path / "below.vtr", depths=[0.0, 0.1])
     assert (tmp_path / "below.vtr").stat().st_size > 1000
     axes = plot.stress_section(solution)

@@ -15,6 +15,7 @@ from scipy.special import k0, k1
 import nacre
 from bodies import BALL, COATED, STEEL, quiet
 from nacre import indent
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -41,7 +42,7 @@ def test_a_winkler_bed_is_its_springs() -> None:
     body = nacre.Response(bed)
     solution = nacre.solve(BOWL, body, grid=GRID, approach=2e-6)
     expected = STIFFNESS * np.maximum(2e-6 - BOWL.gaps(GRID), 0.0)
-    np.testing.assert_allclose(solution.pressure, expected, atol=1e-8 * expected.max())
+    assert_close(solution.pressure, expected, atol=1e-8 * expected.max())
     loaded = nacre.solve(BOWL, body, grid=GRID, load=solution.load)
     assert abs(loaded.approach / 2e-6 - 1) < 1e-8
     # W = π k R δ², up to the cells on the edge.
@@ -67,11 +68,11 @@ def test_a_bed_with_a_shear_layer_has_its_closed_form() -> None:
 
 def test_the_function_of_a_half_space_gives_its_numbers() -> None:
     body = nacre.Response(lambda alpha: 2 / (STEEL.plane_strain_modulus * alpha))
-    np.testing.assert_allclose(body.limits, 2 / STEEL.plane_strain_modulus, rtol=1e-15)
+    assert_close(body.limits, 2 / STEEL.plane_strain_modulus, rtol=1e-15)
     found, expected = (nacre.influence_coefficients(one, GRID) for one in (body, STEEL))
-    np.testing.assert_allclose(found, expected, rtol=1e-15)
+    assert_close(found, expected, rtol=1e-15)
     one, other = (quiet(nacre.solve, BALL, body, grid=GRID, load=10.0) for body in (body, STEEL))
-    np.testing.assert_allclose(one.pressure, other.pressure, atol=ROUNDING * other.peak_pressure)
+    assert_close(one.pressure, other.pressure, atol=ROUNDING * other.peak_pressure)
     assert abs(one.approach / other.approach - 1) < ROUNDING
 
 
@@ -97,20 +98,20 @@ def test_the_function_of_a_coated_body_gives_its_numbers(
     body: nacre.HalfSpace, grid: nacre.Grid
 ) -> None:
     found, expected = (nacre.influence_coefficients(one, grid) for one in (of(body), body))
-    np.testing.assert_allclose(found, expected, atol=TABLES * expected.max())
+    assert_close(found, expected, atol=TABLES * expected.max())
 
 
 def test_a_coated_contact_is_that_of_its_function() -> None:
     body = of(COATED)
     one, other = (nacre.solve(BALL, one, STEEL, grid=GRID, load=20.0) for one in (body, COATED))
-    np.testing.assert_allclose(one.pressure, other.pressure, atol=1e-8 * other.peak_pressure)
+    assert_close(one.pressure, other.pressure, atol=1e-8 * other.peak_pressure)
     carried = nacre.solve(BALL, STEEL, body, grid=GRID, load=20.0)
     assert abs(carried.approach / one.approach - 1) < 1e-12
     # The grid that nacre chooses depends on the lengths of the body, to a factor of ten.
     chosen = nacre.solve(BALL, body, STEEL, load=20.0)
     assert abs(chosen.peak_pressure / other.peak_pressure - 1) < 0.01
     alpha = np.geomspace(1e-3, 1e9, 50)
-    np.testing.assert_allclose(
+    assert_close(
         nacre.frequency_response(body, alpha), nacre.frequency_response(COATED, alpha), rtol=1e-12
     )
 
@@ -122,9 +123,7 @@ def test_springs_add_to_a_half_space() -> None:
     rise = nacre.influence_coefficients(body, GRID) - nacre.influence_coefficients(of(COATED), GRID)
     expected = np.zeros(GRID.shape)
     expected[0, 0] = springs
-    np.testing.assert_allclose(
-        rise, expected, atol=1e-15 * nacre.influence_coefficients(body, GRID).max()
-    )
+    assert_close(rise, expected, atol=1e-15 * nacre.influence_coefficients(body, GRID).max())
     with pytest.raises(ValueError, match="give the constant as local"):
         nacre.Response(lambda alpha: nacre.frequency_response(COATED, alpha) + springs)
 
@@ -150,9 +149,9 @@ def test_the_function_is_called_once_for_all_plans() -> None:
     body = nacre.Response(function)
     contact = nacre.Contact(body, GRID)
     cases: list[dict[str, Any]] = [{"shape": BOWL, "load": load} for load in (5.0, 10.0)]
-    loads = [round(solution.load, 9) for solution in contact.solve_many(cases)]
+    loads = [solution.load for solution in contact.solve_many(cases)]
     nacre.solve(BOWL, body, grid=GRID, load=1.0)
-    assert loads == [5.0, 10.0]
+    assert_close(loads, [5.0, 10.0], rtol=1e-10)
     assert calls == [body.wavenumbers.shape]
     assert np.array_equal(body.values, bed(body.wavenumbers))
 

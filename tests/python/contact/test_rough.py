@@ -12,7 +12,7 @@ import pytest
 import nacre
 from nacre import plot, rough
 from nacre.case import Case, CaseError
-from support import python
+from support import assert_close, python
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # spots of few cells
 
@@ -204,7 +204,7 @@ def test_distributions_integrate_to_their_shares_and_hertz_has_its_own() -> None
     expected = 2 * density["pressure"] / peak**2 * np.pi / 2.6**2
     # Some 3000 cells in a bin, whose edges cut 100 of them: 3 %. Cells at the edge
     # miss in the first two bins; the last reaches the peak.
-    np.testing.assert_allclose(density[2:-1], expected[2:-1], rtol=0.05)
+    assert_close(density[2:-1], expected[2:-1], rtol=0.05, each=True)
     with pytest.raises(ValueError, match="bins must be"):
         rough.pressure_distribution(contact, 0)
 
@@ -297,7 +297,7 @@ def test_pictures_have_labels_with_units() -> None:
     axes = plot.load_curve(curve)
     assert axes.get_xlabel() == "mean pressure [mPa]"
     (line,) = axes.get_lines()
-    np.testing.assert_allclose(np.asarray(line.get_ydata()), curve["corrected_share"])
+    assert_close(np.asarray(line.get_ydata()), curve["corrected_share"])
     assert plot.load_curve(curve, "mean_gap").get_ylabel() == "mean gap [µm]"
     with pytest.raises(ValueError, match="quantity must be one of"):
         plot.load_curve(curve, "nothing")
@@ -385,10 +385,10 @@ def test_a_measured_map_has_the_slope_of_the_surface_that_it_is_cut_from() -> No
     smooth = rough.windowed(part, 0.2)
     assert smooth.periodic == (True, True)
     inner = (slice(50, 140), slice(50, 150))
-    np.testing.assert_allclose(smooth.heights[inner], part.heights[inner], rtol=0, atol=1e-21)
+    assert_close(smooth.heights[inner], part.heights[inner], rtol=0, atol=1e-21)
     rim = np.abs(smooth.heights[0] - part.heights.mean()).max()
     assert rim < 1e-2 * np.abs(part.heights).max()
-    np.testing.assert_allclose(rough.windowed(whole).heights, whole.heights, rtol=0, atol=1e-21)
+    assert_close(rough.windowed(whole).heights, whole.heights, rtol=0, atol=1e-21)
     with pytest.raises(ValueError, match=r"taper must be above 0 and at most 0\.5, got 0\.6"):
         rough.windowed(part, 0.6)
     for function in (rough.roughness, rough.spectral_slope, rough.windowed):

@@ -13,7 +13,7 @@ import nacre
 from bodies import BALL, STEEL, quiet
 from nacre.case import Case
 from nacre.results import values
-from support import DATA
+from support import DATA, assert_close
 
 COAT = nacre.Elastic(420e9, 0.25)
 BOND = nacre.Spring(normal=2e16, tangential=5e15)
@@ -59,7 +59,7 @@ def test_responses_equal_the_dense_system() -> None:
 def test_stiff_springs_are_a_bond_and_loose_ones_slip() -> None:
     """Springs change the response by α/k times the modulus, 1e-15 at 4e11 Pa and α = 1e6."""
     bonded, stiff = solved(on("bonded")), solved(on(nacre.Spring(1e33, 1e33)))
-    np.testing.assert_allclose(stiff.pressure, bonded.pressure, rtol=1e-9, atol=1e-9 * 1e9)
+    assert_close(stiff.pressure, bonded.pressure, rtol=1e-9, atol=1e-9 * 1e9)
     assert stiff.approach == pytest.approx(bonded.approach, rel=1e-11)
     slips, loose = solved(on("frictionless")), solved(on(nacre.Spring(1e33, 0.0)))
     assert loose.approach == pytest.approx(slips.approach, rel=1e-11)

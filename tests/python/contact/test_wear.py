@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nacre
-from support import interrupted
+from support import assert_close, interrupted
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Elastic(young=300e9, poisson=0.25)
@@ -28,7 +28,7 @@ def test_worn_volume_is_that_of_the_law() -> None:
     history = worn(counter_rate=3e-18)
     due = np.outer(history.distance, [1e-17, 3e-18]) * 1e5
     # Sums of 64 cells.
-    np.testing.assert_allclose(history.volume, due, rtol=1e-12)
+    assert_close(history.volume, due, rtol=1e-12)
     assert history.life is None
     assert history.verdict.words.startswith("No layer is through")
 
@@ -53,9 +53,9 @@ def test_a_history_goes_on_and_comes_back_from_files(tmp_path: Path) -> None:
     whole = worn(steps=4, scheme="euler")
     half = worn(sliding=50.0, scheme="euler")
     rest = worn(sliding=50.0, scheme="euler", initial=half)
-    np.testing.assert_allclose(rest.distance, whole.distance, rtol=1e-14)
+    assert_close(rest.distance, whole.distance, rtol=1e-14)
     # Solves to 1e-8, in whose energy the pressure counts squared.
-    np.testing.assert_allclose(rest.peak_pressure, whole.peak_pressure, rtol=1e-4)
+    assert_close(rest.peak_pressure, whole.peak_pressure, rtol=1e-4, each=True)
     assert nacre.load(whole.save(tmp_path / "wear.nc")) == whole
     assert nacre.types.WearHistory.from_dict(whole.to_dict()) == whole
     for ending in (".csv", ".html", ".png"):
@@ -69,7 +69,7 @@ def test_a_store_is_gone_on_from(tmp_path: Path) -> None:
     assert not stopped.report.converged
     assert len(stopped) == 3
     went_on = worn(steps=4, store=store)
-    np.testing.assert_allclose(went_on.distance, [0, 25, 50, 75, 100], rtol=1e-14)
+    assert_close(went_on.distance, [0, 25, 50, 75, 100], rtol=1e-14)
     assert nacre.load(store) == went_on
 
 
@@ -202,7 +202,7 @@ def test_cells_that_come_into_contact_wear_by_what_passes_them() -> None:
     assert joined.sum() >= 4
     # Pressures of cells are the springs' to 1e-6 of the peak, and there a twentieth of it.
     due = 1e-16 * 2e7 * (slip * pressure)[joined]
-    np.testing.assert_allclose(worn_out.depth[0, joined], due, rtol=1e-4)
+    assert_close(worn_out.depth[0, joined], due, rtol=1e-4, each=True)
 
 
 def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
@@ -213,7 +213,7 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     history = contact.wear(ball, load=10.0, rate=1e-15, passes=1.0, roll=roll, steps=1)
     wheel = contact.roll(ball, load=10.0, **roll)
     track = (np.hypot(*wheel.slip) * wheel.pressure).sum(axis=0) * grid.spacing[0] * 1e-15
-    np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
+    assert_close(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -292,7 +292,7 @@ def test_first_order_thins_the_coat_and_says_how_far_it_holds() -> None:
     first = contact.wear(ROLLER, sliding=100.0, thickness="first order", **keywords)
     # A thinner soft coat gives less: the contact is smaller, and the pressure higher.
     assert first.peak_pressure[-1] > frozen.peak_pressure[-1]
-    np.testing.assert_allclose(first.volume, frozen.volume, rtol=1e-12)
+    assert_close(first.volume, frozen.volume, rtol=1e-12)
     assert first.report.thickness_error is not None
     assert frozen.report.thickness_error is not None
     # A part of 0.15 is worn: what is left is of second order.

@@ -17,6 +17,7 @@ import pytest
 
 import nacre
 from bodies import BALL, COATED, ROD, STEEL
+from support import assert_close
 
 # PyTorch scripts its own decompositions where forward derivatives are first asked for.
 pytestmark = pytest.mark.filterwarnings("ignore:.*torch.jit:FutureWarning")
@@ -136,7 +137,7 @@ def test_transforms_agree(tools: Any) -> None:
     value, here, at = objective(tools, solver(tools)), zero(tools), tools.at
     gradient = at.grad(value)(here)
     assert (at.jacrev(value)(here) == gradient).all()
-    np.testing.assert_allclose(at.jacfwd(value)(here), gradient, rtol=1e-7, atol=1e-7)
+    assert_close(at.jacfwd(value)(here), gradient, rtol=1e-7, atol=1e-7)
     _, rate = at.jvp(value, (here,), (tools.np.ones_like(here),))
     assert float(rate) == pytest.approx(float(gradient.sum()), rel=1e-7)
     many = tools.np.stack([here, here + 0.01, here - 0.02])
@@ -148,7 +149,7 @@ def test_transforms_agree(tools: Any) -> None:
         if tools.name == "torch" or call is calls[1]:
             assert (found == alone).all()
         else:  # compiled, JAX may add the terms of a sum in another order
-            np.testing.assert_allclose(found, alone, rtol=1e-13, atol=1e-13)
+            assert_close(found, alone, rtol=1e-13, atol=1e-13)
 
 
 def test_the_pressure_field_and_all_of_both_modes_agree(tools: Any) -> None:
@@ -212,7 +213,7 @@ def test_all_of_a_gap_moves_the_origin_of_the_approach(tools: Any) -> None:
     gap, none = tools.array(BALL.gaps(GRID)), tools.array(np.zeros(GRID.shape))
     expected = added({})
     for found in (alone({}, gap + 3e-8), added({}, none + 3e-8)):
-        np.testing.assert_allclose(
+        assert_close(
             found.pressure, expected.pressure, rtol=1e-9, atol=1e-9 * float(expected.pressure.max())
         )
         for name, shift in (("approach", 3e-8), ("norm", 0.0), ("shear", 0.0)):
@@ -220,7 +221,7 @@ def test_all_of_a_gap_moves_the_origin_of_the_approach(tools: Any) -> None:
             assert float(found.outputs[name]) == pytest.approx(moved, rel=1e-9)
     pushed = solver(tools, load=None, approach=6e-7)
     here, there = pushed({}, none), pushed({"approach": 7e-7}, none + 1e-7)
-    np.testing.assert_allclose(there.pressure, here.pressure, rtol=1e-6)
+    assert_close(there.pressure, here.pressure, rtol=1e-6)
     weights = tools.array(WEIGHTS)
     fields = [
         tools.at.grad(lambda x, solve=solve: total(solve({}, x), weights))(at)

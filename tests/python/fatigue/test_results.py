@@ -16,7 +16,7 @@ from nacre import fatigue, plot
 from nacre.case import Case, CaseError
 from nacre.fatigue.history import Rolling
 from nacre.fatigue.summary import ROUNDS
-from support import Capture, command, written
+from support import Capture, assert_close, command, written
 
 GRID = nacre.Grid.line(64, 1.5e-4)
 COAT = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 15e-6, name="DLC")])
@@ -74,7 +74,7 @@ def test_doubled_stresses_halve_the_factors() -> None:
         depths=DEPTHS,
     )
     for name, values in assessed(criteria=()).profiles.items():
-        np.testing.assert_allclose(twice.profiles[name], 2 * values, rtol=1e-9)
+        assert_close(twice.profiles[name], 2 * values, rtol=1e-9)
 
 
 def test_tables(tmp_path: Path) -> None:
@@ -140,8 +140,8 @@ def test_pictures_show_the_numbers() -> None:
     summary = assessed(depths=None)
     axes = plot.fatigue_depth(summary)
     x, y = np.asarray(axes.lines[0].get_xydata()).T
-    np.testing.assert_allclose(x, summary.depths * 1e6)
-    np.testing.assert_allclose(y, summary.shear_yield / 1e6)
+    assert_close(x, summary.depths * 1e6)
+    assert_close(y, summary.shear_yield / 1e6)
     found = quiet(fatigue.shakedown_map, SOLUTION, friction=[0.2, 0.0], depths=DEPTHS)
     drawn = plot.shakedown_map(found, label="coated")
     x, y = np.asarray(drawn.lines[0].get_xydata()).T

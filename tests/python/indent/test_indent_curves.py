@@ -18,6 +18,7 @@ import nacre
 import nacre.indent
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve, read
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -48,8 +49,8 @@ def rows(*columns: Array, mark: str = "\t", comma: bool = False, form: str = "%.
 
 
 def is_whole(curve: Curve, timed: bool = True) -> None:
-    np.testing.assert_allclose(curve.depth, 1e-9 * DEPTH, rtol=ROUNDING, atol=0)
-    np.testing.assert_allclose(curve.force, 1e-3 * FORCE, rtol=ROUNDING, atol=0)
+    assert_close(curve.depth, 1e-9 * DEPTH, rtol=ROUNDING, atol=0)
+    assert_close(curve.force, 1e-3 * FORCE, rtol=ROUNDING, atol=0)
     if timed:
         assert curve.time is not None
         np.testing.assert_array_equal(curve.time, TIME)
@@ -198,8 +199,8 @@ def test_tables_are_chosen_by_number(tmp_path: Path) -> None:
     assert (loading.name, unloading.name) == ("a 0", "a 1")
     assert read(path, segment=0) == loading
     assert read(path, segment=1) == unloading
-    np.testing.assert_allclose(loading.depth, 1e-9 * DEPTH[up], rtol=ROUNDING)
-    np.testing.assert_allclose(unloading.force, 1e-3 * FORCE[down], rtol=ROUNDING)
+    assert_close(loading.depth, 1e-9 * DEPTH[up], rtol=ROUNDING)
+    assert_close(unloading.force, 1e-3 * FORCE[down], rtol=ROUNDING)
 
 
 @pytest.mark.parametrize(("unit", "size"), [("ms", 1e-3), ("sec", 1.0), ("min", 60.0)])
@@ -208,7 +209,7 @@ def test_times_have_units_too(unit: str, size: float, tmp_path: Path) -> None:
     path.write_text(f"h (nm)\tF (mN)\tt ({unit})\n" + rows(DEPTH, FORCE, TIME))
     found = read(path).time
     assert found is not None
-    np.testing.assert_allclose(found, size * TIME, rtol=ROUNDING)
+    assert_close(found, size * TIME, rtol=ROUNDING)
 
 
 def test_a_time_that_falls_is_left_out(tmp_path: Path) -> None:
@@ -227,10 +228,10 @@ def test_columns_are_chosen_by_name_or_number(tmp_path: Path) -> None:
     for depth in (0, "X (nm)", "X", "x"):
         is_whole(read(path, depth=depth, force="Y", time=2))
     flipped = read(path, depth="-X", force=1)
-    np.testing.assert_allclose(flipped.depth, -1e-9 * DEPTH, rtol=ROUNDING)
+    assert_close(flipped.depth, -1e-9 * DEPTH, rtol=ROUNDING)
     given = read(path, depth=0, force=1, units={"depth": "µm", "force": "N"})
-    np.testing.assert_allclose(given.depth, 1e-6 * DEPTH, rtol=ROUNDING)
-    np.testing.assert_allclose(given.force, FORCE, rtol=ROUNDING)
+    assert_close(given.depth, 1e-6 * DEPTH, rtol=ROUNDING)
+    assert_close(given.force, FORCE, rtol=ROUNDING)
     path.write_text(rows(TIME, DEPTH, FORCE))
     is_whole(read(path, depth=1, force=2, time=0, units={"depth": "nm", "force": "mN"}))
 
@@ -367,7 +368,7 @@ def test_its_parts_meet_at_the_largest_force() -> None:
     assert up.time[-1] == TIME[POINTS - 1]
     assert up.loading() == up
     near = one.between(50e-9, 100e-9)
-    np.testing.assert_allclose([near.depth.min(), near.depth.max()], [50e-9, 100e-9])
+    assert_close([near.depth.min(), near.depth.max()], [50e-9, 100e-9])
     assert len(near) == 11 + 11  # steps of 5 nm there and back; bounds count, whatever the rounding
     assert len(one.between(high=0.1e-3, by="force")) < len(one)
     assert one.shifted(depth=1e-8, force=1e-4).shifted(depth=-1e-8, force=-1e-4).time is not None

@@ -17,6 +17,7 @@ import nacre
 from nacre.indent import Curve, Fit, Indentation, Tip, fit
 from nacre.indent._profile import Estimate
 from nacre.indent._residuals import LEVEL, FixedParameters, durbin_watson, examine
+from support import assert_close
 
 FILM = {"thickness": 1e-6, "poisson": 0.4, "radius": 5e-6}
 YOUNG = "body.layers[0].material.young"
@@ -144,16 +145,16 @@ def test_the_chance_of_durbins_and_watsons_ratio() -> None:
     variance = 2 * (np.trace(both @ both) - dof * mean**2) / (dof * (dof + 2))
     a = mean / 4
     total = a * (1 - a) / (variance / 16) - 1
-    np.testing.assert_allclose(dues, mean, rtol=1e-12)
+    assert_close(dues, mean, rtol=1e-12)
     due = betainc(a * total, (1 - a) * total, ratios / 4)
-    np.testing.assert_allclose(chances, due, rtol=1e-9)
+    assert_close(chances, due, rtol=1e-9)
     # The standard error of counts of chances: the beta variable is nearly exact.
     for level in (10 * LEVEL, 0.5, 0.9):
         count = 4000 * level
         assert abs((chances < level).sum() - count) < 4 * math.sqrt(count * (1 - level))
     neighbours = [np.diff(r[part]) @ np.diff(r[part]) for r in rest[:3] for part in parts]
     direct = np.add.reduceat(neighbours, [0, 2, 4]) / (rest[:3] ** 2).sum(axis=1)
-    np.testing.assert_allclose(ratios[:3], direct, rtol=1e-12)
+    assert_close(ratios[:3], direct, rtol=1e-12)
 
 
 def test_the_kind_of_noise_is_found() -> None:

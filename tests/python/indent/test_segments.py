@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from nacre.indent import Curve
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -147,7 +148,7 @@ def test_the_hold_of_the_unloading_is_cut_and_tells_the_drift(noise: float) -> N
     spread = noise / np.sqrt(241 * 60**2 / 12)
     assert abs(drift.rate - 0.05e-9) <= 4 * spread + 1e-12 * 0.05e-9
     assert drift.error == pytest.approx(spread, rel=0.2, abs=1e-20)
-    np.testing.assert_allclose(one.drift_hold().force, 1e-3, rtol=1e-12)
+    assert_close(one.drift_hold().force, 1e-3, rtol=1e-12)
     back = one.unloading()
     assert back.force.min() == pytest.approx(1e-3, rel=0.12)
     assert back.note.startswith("hold of 80 points at 100 % of the largest force, depth +")

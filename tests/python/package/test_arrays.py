@@ -10,6 +10,7 @@ import pytest
 
 import nacre
 from bodies import BALL, STEEL
+from support import assert_close
 
 GRID = nacre.Grid(shape=(20, 24), size=(3e-4, 3.3e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
@@ -103,7 +104,7 @@ def test_a_response_has_the_shape_of_its_wavenumbers(shape: tuple[int, ...]) -> 
     alpha = np.linspace(1e2, 1e3, int(np.prod(shape))).reshape(shape)
     found = nacre.frequency_response(STEEL, alpha)
     assert np.shape(found) == shape
-    np.testing.assert_allclose(found, 2 / (STEEL.plane_strain_modulus * alpha), rtol=1e-14)
+    assert_close(found, 2 / (STEEL.plane_strain_modulus * alpha), rtol=1e-14)
     assert type(nacre.frequency_response(STEEL, 1e3)) is float
 
 
@@ -167,7 +168,7 @@ def test_the_first_index_is_x() -> None:
     dx, dy = GRID.spacing
     assert abs(solution.x[i] - 4e-5) <= dx
     assert abs(solution.y[j] + 5e-5) <= dy
-    np.testing.assert_allclose(solution.line_load, solution.pressure.sum(axis=1) * dy, rtol=1e-12)
+    assert_close(solution.line_load, solution.pressure.sum(axis=1) * dy, rtol=1e-12)
 
 
 def test_returned_coefficients_belong_to_the_caller() -> None:

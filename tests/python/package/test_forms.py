@@ -17,6 +17,7 @@ import nacre
 from bodies import BALL, COATED, STEEL, quiet
 from nacre import bearing, design, fatigue, hertz, indent, rough
 from nacre.indent import charts
+from support import assert_close
 
 Array = npt.NDArray[Any]
 
@@ -556,12 +557,12 @@ def test_units_of_text_are_converted_or_refused() -> None:
 
     right = mapped(friction=[0.0, 0.25])
     for units, values in (("%", [0.0, 25.0]), ("percent", [0, 25]), ("‰", [0.0, 250.0])):
-        np.testing.assert_allclose(friction(units, values), right, rtol=1e-14)
+        assert_close(friction(units, values), right, rtol=1e-14)
     np.testing.assert_array_equal(friction("1", [0.0, 0.25]), right)
     with pytest.raises(TypeError, match=r"(?s)friction must be .* with a unit"):
         friction("mm", [0.0, 0.25])
     tilt = xarray.DataArray([0.1, 0.2], dims="x", attrs={"units": "mrad"})
-    np.testing.assert_allclose(pressed(tilt=tilt), pressed(tilt=(1e-4, 2e-4)), rtol=1e-6)
+    assert_close(pressed(tilt=tilt), pressed(tilt=(1e-4, 2e-4)), rtol=1e-6)
     degrees = xarray.DataArray(45.0, attrs={"units": "degree"})
     radii, angle = hertz.relative_radii((1.0, 2.0), (1.0, 3.0), degrees)  # type: ignore[arg-type]
     same_radii, same_angle = hertz.relative_radii((1.0, 2.0), (1.0, 3.0), np.pi / 4)

@@ -12,14 +12,13 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import nacre
 from bodies import quiet
 from nacre.cards import ASSUMED, UNITS, WORDS
 from nacre.case import Case
-from support import Capture, command
+from support import Capture, assert_close, command
 
 CARDS = list(nacre.materials.values())
 STRESSES = {"young", "hardness", "yield_stress", "flexural_strength"}
@@ -256,7 +255,7 @@ spectrum = [
         assert bearing.inner.substrate.young == pytest.approx(203.4e9, rel=1e-12)
         lives.append(bearing.solve(**arguments).life(**read.life()))
     for name in ("hours", "viscosity_ratio", "fatigue_load_limit"):
-        np.testing.assert_allclose(getattr(lives[0], name), getattr(lives[1], name), rtol=1e-9)
+        assert_close(getattr(lives[0], name), getattr(lives[1], name), rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from bodies import BALL, HELD, STEEL
 from nacre import plot
 from nacre._tools.units import Scale, written
 from results import CELLS, CONTACT, solved
+from support import assert_close
 
 SOLVED = {name: solved(name) for name in results.FRICTION if "not" not in name}
 every = pytest.mark.parametrize("kind", SOLVED)
@@ -59,7 +60,7 @@ def test_a_creep_curve_counts_along_and_across_rolling(direction: str, lateral: 
     assert curve[f"{first}_force"].values[1] == pytest.approx(3.0, rel=1e-5)
     assert 0.1 < curve[f"{first}_force"].values[0] < 0.2
     # 1e-3 of the force: slip turns aside where nu is not 0.
-    np.testing.assert_allclose(curve[f"{other}_force"], 0, atol=3e-3)
+    assert_close(curve[f"{other}_force"], 0, atol=3e-3)
     assert curve.traction_ratio.values[1] == pytest.approx(1.0, rel=1e-5)
     assert curve.stick_share.values[1] == 0
     assert curve.power_over_speed.values[1] == pytest.approx(1e-1 * 3.0, rel=4e-3)
@@ -87,9 +88,7 @@ def test_the_picture_has_units_on_its_axes(kind: str) -> None:
         assert axes.get_ylabel() == "traction [MPa]"
         solution, scale = SOLVED[kind], Scale.of(float(SOLVED[kind].bound.max()), "Pa")
         drawn = {line.get_label(): line for line in axes.lines}["traction along y"]
-        np.testing.assert_allclose(
-            np.asarray(drawn.get_ydata()), scale.factor * solution.traction[1, 0]
-        )
+        assert_close(np.asarray(drawn.get_ydata()), scale.factor * solution.traction[1, 0])
     else:
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [µm]", "y [µm]")
         (mesh,) = (c for c in axes.collections if hasattr(c, "get_coordinates"))
@@ -116,7 +115,7 @@ def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
     axes.figure.canvas.draw()
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("shift along x [nm]", "force along x [N]")
     shown = np.asarray(axes.lines[-1].get_xydata())
-    np.testing.assert_allclose(shown, [(1e9 * s.shift[0], s.force[0]) for s in loop])
+    assert_close(shown, [(1e9 * s.shift[0], s.force[0]) for s in loop])
     for along in ("z", 0, None):
         with pytest.raises(ValueError, match="along must be 'x' or 'y', got"):
             plot.loop(loop, along)  # type: ignore[arg-type]
@@ -129,11 +128,11 @@ def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
     assert axes.get_xlabel() == "longitudinal creepage [10⁻³]"
     assert axes.get_ylabel() == "force over friction times load"
     shown = np.asarray(axes.lines[-1].get_xydata())
-    np.testing.assert_allclose(shown[:, 0], [0.1, 1.0])
-    np.testing.assert_allclose(shown[:, 1], curve.traction_ratio)
+    assert_close(shown[:, 0], [0.1, 1.0])
+    assert_close(shown[:, 1], curve.traction_ratio)
     axes = plot.creep_curve(curve, quantity="longitudinal_force")
     assert axes.get_ylabel() == "longitudinal force [N]"
-    np.testing.assert_allclose(axes.lines[-1].get_ydata(), curve.longitudinal_force)  # type: ignore[arg-type]
+    assert_close(axes.lines[-1].get_ydata(), curve.longitudinal_force)
     with pytest.raises(ValueError, match=r"quantity must be one of longitudinal_force, .* got 'x'"):
         plot.creep_curve(curve, quantity="x")
 
@@ -146,7 +145,7 @@ def test_an_arrow_shows_where_it_rolls_and_another_the_scale(
     axes = solution.plot()
     (arrow,) = (text for text in axes.texts if getattr(text, "arrow_patch", None))
     way = np.subtract(arrow.xy, arrow.get_position())
-    np.testing.assert_allclose(way / np.abs(way).max(), drawn, rtol=0, atol=1e-12)
+    assert_close(way / np.abs(way).max(), drawn, rtol=0, atol=1e-12)
     (key,) = (child for child in axes.get_children() if isinstance(child, QuiverKey))
     (arrows,) = (child for child in axes.get_children() if isinstance(child, Quiver))
     largest = np.nanmax(np.hypot(np.ma.filled(arrows.U, np.nan), np.ma.filled(arrows.V, np.nan)))

@@ -22,7 +22,7 @@ import support
 from bodies import BALL, STEEL
 from nacre.results import values
 from results import DLC, GRID, solved
-from support import Patch, python, resealed
+from support import Patch, assert_close, python, resealed
 
 SAVED: dict[str, Any] = {
     **{**results.NORMAL, **results.FRICTION, **results.WEAR},
@@ -97,7 +97,7 @@ def test_the_attributes_repeat_the_run() -> None:
     tilted = said["approach"] + said["tilt"][0] * x + said["tilt"][1] * y
     gaps = solution.gap - solution.displacement + tilted
     rounding = 8 * np.finfo(float).eps * np.abs(solution.gap).max()
-    np.testing.assert_allclose(gaps, BALL.gaps(grid), rtol=0, atol=rounding)
+    assert_close(gaps, BALL.gaps(grid), rtol=0, atol=rounding)
 
 
 def test_units_and_coordinates_are_there() -> None:
@@ -131,7 +131,7 @@ def test_pyvista_reads_the_vtk_file_back(kind: str, tmp_path: Path) -> None:
         assert not vectors[..., 2].any()
     for edges, centres in ((mesh.x, solution.x), (mesh.y, solution.y)):
         middles = 0.5 * (np.asarray(edges)[1:] + np.asarray(edges)[:-1])
-        np.testing.assert_allclose(middles, centres, rtol=0, atol=1e-12)
+        assert_close(middles, centres, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", ["both coated, tilted", "line"])

@@ -26,7 +26,7 @@ from nacre.contact import stresses
 from nacre.results import report, svg
 from nacre.results.report import Sections, input_rows, page, table, write
 from nacre.studies.report import save_report
-from support import Capture, Patch, command, written
+from support import Capture, Patch, assert_close, command, written
 
 LARGEST = 300_000
 """Bytes of a page that mail and archives take."""
@@ -431,7 +431,7 @@ def test_curves_are_where_their_numbers_are() -> None:
     points = [tuple(map(float, pair.split(","))) for pair in curve.get("points", "").split()]
     width, height = svg.WIDTH - svg.LEFT - svg.RIGHT, svg.HEIGHT - svg.TOP - svg.BOTTOM
     due = [(svg.LEFT + width / 4, svg.TOP + 0.75 * height), (svg.LEFT + 0.75 * width, svg.TOP)]
-    np.testing.assert_allclose(points, due, atol=PIXEL)
+    assert_close(points, due, atol=PIXEL)
     (mark,) = [one for one in picture.iter("path") if one.get("class") == "mark"]
     assert mark.get("d", "").startswith(f"M{svg.LEFT + width / 2:.1f} ")
     labels = [one for one in picture.iter("text") if one.get("class") == "middle"]
@@ -485,7 +485,7 @@ def test_the_stress_over_depth_is_that_of_the_solution(monkeypatch: Patch) -> No
     assert np.count_nonzero(z == 2e-6) == 2  # the coat first, then the steel below it
     for part, side in ((slice(0, count - 1), "above"), (slice(count - 1, None), "below")):
         due = quiet(ball().stress, z[part], x=x, y=y, side=side).von_mises
-        np.testing.assert_allclose(np.asarray(curve.y)[part], due, rtol=1e-12)
+        assert_close(np.asarray(curve.y)[part], due, rtol=1e-12)
     width = np.diff(ball().contact_extent[1])[0]
     assert z[-1] == pytest.approx(1.25 * width)
 
@@ -547,7 +547,7 @@ def test_bars_point_where_the_elements_are() -> None:
     x, y = svg.WIDTH / 2, svg.TOP + svg.LINE + svg.OUTER
     half = (svg.INNER + svg.OUTER) / 2
     due = [(x + svg.INNER, y, x + svg.OUTER, y), (x, y - svg.INNER, x, y - half)]
-    np.testing.assert_allclose(ends, due, atol=PIXEL)
+    assert_close(ends, due, atol=PIXEL)
 
 
 def test_maps_are_images_of_their_cells(tmp_path: Path) -> None:
@@ -558,7 +558,7 @@ def test_maps_are_images_of_their_cells(tmp_path: Path) -> None:
     due = colormaps["viridis"](np.nan_to_num(shares.T[::-1]))[..., :3]
     due[0, 0] = 1.0
     # Ten colours stand for 256: their interpolation is off by 0.02 at most.
-    np.testing.assert_allclose(pixels, due, atol=0.02)
+    assert_close(pixels, due, atol=0.02)
     ends = svg.Axis("x", "m", (0.0, 2e-3)), svg.Axis("y", "m", (0.0, 3e-3)), svg.Axis("p", "Pa")
     (cells, _) = drawn(svg.image(1e9 * shares, ends)).iter("image")
     size = [float(cells.get(name, "")) for name in ("width", "height")]

@@ -13,6 +13,7 @@ import pytest
 import nacre
 from nacre._tools.text import unit_of
 from nacre.indent import read as read_curve
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 MARK = pytest.mark.parametrize
@@ -79,8 +80,8 @@ def test_places_beside_times_are_the_places(
     text: str, options: dict[str, Any], step: float, tmp_path: Path
 ) -> None:
     profile = nacre.SampledProfile.read(written(tmp_path / "a.csv", text), **options)
-    np.testing.assert_allclose(np.diff(profile.x), step, rtol=1e-9)
-    np.testing.assert_allclose(profile.drop, 1e-6 * (ROUGH.max() - ROUGH), atol=1e-18)
+    assert_close(np.diff(profile.x), step, rtol=1e-9)
+    assert_close(profile.drop, 1e-6 * (ROUGH.max() - ROUGH), atol=1e-18)
 
 
 def test_two_columns_in_order_are_asked_about(tmp_path: Path) -> None:
@@ -175,8 +176,8 @@ def test_headings_name_units_and_ends_of_lines_no_columns(
     text = table(X, ROUGH).replace("\n", f"{end}\n")
     path = written(tmp_path / "a.csv", f"Scan Data\n{head}{end[:1]}\n{text}")
     profile = nacre.SampledProfile.read(path, x=0, height=1)
-    np.testing.assert_allclose(profile.x, 1e-6 * X, atol=1e-18)
-    np.testing.assert_allclose(profile.drop, 1e-9 * (ROUGH.max() - ROUGH), atol=1e-18)
+    assert_close(profile.x, 1e-6 * X, atol=1e-18)
+    assert_close(profile.drop, 1e-9 * (ROUGH.max() - ROUGH), atol=1e-18)
 
 
 def test_heights_without_a_unit_have_that_of_the_places(tmp_path: Path) -> None:
@@ -193,10 +194,10 @@ def test_a_curve_has_names_and_units_in_other_languages(tmp_path: Path) -> None:
     text = "Zeit (Sekunden);Eindringtiefe (Nanometer);Prüfkraft (Millinewton)\n"
     text += "0,0;0,0;0,0\n0,5;10,5;0,25\n1,0;20,0;0,75\n"
     curve = read_curve(written(tmp_path / "a.txt", text))
-    np.testing.assert_allclose(curve.depth, [0, 10.5e-9, 20e-9], rtol=1e-12)
-    np.testing.assert_allclose(curve.force, [0, 0.25e-3, 0.75e-3], rtol=1e-12)
+    assert_close(curve.depth, [0, 10.5e-9, 20e-9], rtol=1e-12)
+    assert_close(curve.force, [0, 0.25e-3, 0.75e-3], rtol=1e-12)
     assert curve.time is not None
-    np.testing.assert_allclose(curve.time, [0, 0.5, 1])
+    assert_close(curve.time, [0, 0.5, 1])
 
 
 @MARK("mark", ['" ', '"', "* ", "> "])
@@ -211,8 +212,8 @@ def test_a_miniprof_marks_points(mark: str, ending: str, tmp_path: Path) -> None
     path = written(tmp_path / f"a.{ending}", head + "\n".join(lines) + "\n")
     for options in ({}, {"unit": "mm"}):
         profile = nacre.SampledProfile.read(path, drop="Y", **options)  # type: ignore[arg-type]
-        np.testing.assert_allclose(profile.x, 1e-3 * y, atol=1e-15)
-        np.testing.assert_allclose(profile.drop, 2e-6 * y**2, atol=1e-12)
+        assert_close(profile.x, 1e-3 * y, atol=1e-15)
+        assert_close(profile.drop, 2e-6 * y**2, atol=1e-12)
     with pytest.raises(ValueError, match=r"drop= or height= must name a column .* 0 'X', 1 'Y'"):
         nacre.SampledProfile.read(path)
 
@@ -231,7 +232,7 @@ def test_traces_in_columns_are_all_read(
     head = f"Number of Points {points}\nNumber of Traces {traces}\n\n"
     path = written(tmp_path / f"a.{ending}", head + "\n".join(lines) + "\n")
     read = nacre.HeightMap.read(path, unit="nm", spacing=(1e-6, 5e-5), detrend="none")
-    np.testing.assert_allclose(read.heights, 1e-9 * z, rtol=1e-12)
+    assert_close(read.heights, 1e-9 * z, rtol=1e-12)
     assert read.spacing == (1e-6, 5e-5)
 
 
@@ -260,7 +261,7 @@ def test_a_nanoscope_image_is_one_whatever_its_ending(ending: str, tmp_path: Pat
     for name in ("a.001", f"a.{ending}" if ending else "a"):
         (tmp_path / name).write_bytes(nanoscope(48))
     right = nacre.HeightMap.read(tmp_path / "a.001")
-    np.testing.assert_allclose(right.spacing, 2e-6 / 48, rtol=1e-9)
+    assert_close(right.spacing, 2e-6 / 48, rtol=1e-9)
     assert nacre.HeightMap.read(tmp_path / (f"a.{ending}" if ending else "a")) == right
 
 
@@ -296,8 +297,8 @@ def test_a_line_scan_of_an_instrument_is_a_profile(tmp_path: Path) -> None:
     z = 0.3e-6 * np.sin(0.5 * np.arange(1, 61) / 4)
     for options in ({}, {"height": 0}, {"height": "Default"}, {"unit": "um"}):
         profile = nacre.SampledProfile.read(path, **options)
-        np.testing.assert_allclose(profile.x, 0.5e-3 * np.arange(60), atol=1e-15)
-        np.testing.assert_allclose(profile.drop, z.max() - z, atol=1e-15)
+        assert_close(profile.x, 0.5e-3 * np.arange(60), atol=1e-15)
+        assert_close(profile.drop, z.max() - z, atol=1e-15)
     with pytest.raises(ValueError, match=r"channel must be one of 0 .Default., got 3"):
         nacre.SampledProfile.read(path, height=3)
     with pytest.raises(ValueError, match="drop must be left out for the line scan"):

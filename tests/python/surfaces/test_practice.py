@@ -25,6 +25,7 @@ import nacre
 from nacre._core import plain
 from nacre.indent import Adhesion, Curve, Indentation, Tip, fit, read
 from nacre.surfaces import read_profile
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -97,7 +98,7 @@ def test_a_map_of_an_instrument_is_read(kind: str) -> None:
     name, options, shape, spacing, rms = MAPS[kind]
     read = nacre.HeightMap.read(CASES / name, **options)
     assert read.heights.shape == shape
-    np.testing.assert_allclose(read.spacing, spacing, rtol=DIGITS)
+    assert_close(read.spacing, spacing, rtol=DIGITS, each=True)
     assert read.heights.std() == pytest.approx(rms, rel=DIGITS)
 
 
@@ -182,9 +183,9 @@ def test_points_are_recognised_however_they_are_written(kind: str, tmp_path: Pat
     path = written(tmp_path / f"a.{ending}", text, encoding)
     options: dict[str, Any] = {"detrend": "none"} | ({} if "µm" in text else {"unit": "um"})
     read = nacre.HeightMap.read(path, **options)
-    np.testing.assert_allclose(read.heights, 1e-6 * heights((7, 5)), rtol=1e-12)
+    assert_close(read.heights, 1e-6 * heights((7, 5)), rtol=1e-12)
     # Sides of millimetres beside heights of micrometres, by the headings.
-    np.testing.assert_allclose(read.spacing, 2.5e-3 if "mm" in text else 2.5e-6, rtol=1e-12)
+    assert_close(read.spacing, 2.5e-3 if "mm" in text else 2.5e-6, rtol=1e-12)
 
 
 M = heights((6, 10))
@@ -201,7 +202,7 @@ def test_numbers_of_lines_are_left_out_where_the_head_counts_them(
     for body in (f"Trace\tData\n{text}", f"Trace\tData\n{text}Raw\tData\n{text}"):
         path = written(tmp_path / "a.txt", HEAD + body)
         read = nacre.HeightMap.read(path, unit="um", spacing=1e-6, detrend="none")
-        np.testing.assert_allclose(read.heights, 1e-6 * M.T, rtol=1e-12)
+        assert_close(read.heights, 1e-6 * M.T, rtol=1e-12)
 
 
 @MARK("mark", [",", ";", "\t"])
@@ -210,7 +211,7 @@ def test_the_index_of_a_table_is_left_out(mark: str, tmp_path: Path) -> None:
     lines = [mark.join([str(i), *(f"{h:.4f}" for h in M[i])]) for i in range(6)]
     path = written(tmp_path / "a.csv", "\n".join([head, *lines]))
     read = nacre.HeightMap.read(path, unit="um", spacing=1e-6, detrend="none")
-    np.testing.assert_allclose(read.heights, 1e-6 * M, rtol=1e-12)
+    assert_close(read.heights, 1e-6 * M, rtol=1e-12)
 
 
 X = 24.892 * np.arange(40)
@@ -265,7 +266,7 @@ def test_matrices_of_few_columns_stay_readable(tmp_path: Path) -> None:
         z = random.standard_normal(shape).round(4)
         path = written(tmp_path / "a.csv", rows(*z.T))
         read = nacre.HeightMap.read(path, unit="um", spacing=1e-6, detrend="none")
-        np.testing.assert_allclose(read.heights, 1e-6 * z, rtol=1e-12)
+        assert_close(read.heights, 1e-6 * z, rtol=1e-12)
 
 
 @MARK("scale", [1e-3, 1.0, 1e3])
@@ -289,8 +290,8 @@ def test_heads_of_microscopes_come_in_other_separators_and_units(tmp_path: Path)
         (source.replace('"um"', '"µm"'), "cp1252"),
     ):
         read = nacre.HeightMap.read(written(tmp_path / "a.csv", text, encoding))
-        np.testing.assert_allclose(read.heights, right.heights, rtol=1e-9, atol=1e-20)
-        np.testing.assert_allclose(read.spacing, right.spacing, rtol=1e-12)
+        assert_close(read.heights, right.heights, rtol=1e-9, atol=1e-20)
+        assert_close(read.spacing, right.spacing, rtol=1e-12)
     lines = [line for line in source.splitlines() if "um" not in line]
     path = written(tmp_path / "a.csv", "\n".join(lines))
     with pytest.raises(ValueError, match=r"spacing must be given: .* table begins at line 9"):
@@ -409,8 +410,8 @@ def test_a_curve_of_an_instrument_is_read(kind: str) -> None:
     name, options, points, depth, force = CURVES[kind]
     curve = read(CASES / name, **options)
     assert len(curve) == points
-    np.testing.assert_allclose([curve.depth.min(), curve.depth.max()], depth, rtol=DIGITS)
-    np.testing.assert_allclose([curve.force.min(), curve.force.max()], force, rtol=DIGITS)
+    assert_close([curve.depth.min(), curve.depth.max()], depth, rtol=DIGITS, each=True)
+    assert_close([curve.force.min(), curve.force.max()], force, rtol=DIGITS, each=True)
 
 
 def test_all_tables_with_a_curve_are_read_and_the_others_named() -> None:
@@ -470,7 +471,7 @@ def test_a_number_of_a_column_has_a_sign_and_many_columns_are_not_all_listed(
 ) -> None:
     path = written(tmp_path / "a.txt", "a\tb\n1\t2\n2\t3\n3\t5\n")
     curve = read(path, depth="-0", force="1", units={"depth": "nm", "force": "nN"})
-    np.testing.assert_allclose(curve.depth, [-1e-9, -2e-9, -3e-9])
+    assert_close(curve.depth, [-1e-9, -2e-9, -3e-9])
     head = "\t".join([*(f"Channel {k} (V)" for k in range(100)), "Pd (nm)", "Fn (mN)"])
     path = written(tmp_path / "b.txt", head + "\n" + ("\t".join(["1.5"] * 102) + "\n") * 3)
     with pytest.raises(ValueError, match=r"102 columns, likely among them 100 'Pd .nm.'; give"):
@@ -516,8 +517,8 @@ def test_a_profile_is_read(kind: str, tmp_path: Path) -> None:
     ]
     path = written(tmp_path / name, text.format(*bodies))
     for found in (read_profile(path, **options), nacre.SampledProfile.read(path, **options)):
-        np.testing.assert_allclose(found.x, 1e-3 * x, atol=1e-12)
-        np.testing.assert_allclose(found.drop, 1e-3 * drop, atol=0.6e-7)  # four decimals
+        assert_close(found.x, 1e-3 * x, atol=1e-12)
+        assert_close(found.drop, 1e-3 * drop, atol=0.6e-7)  # four decimals
 
 
 @MARK(
@@ -883,7 +884,7 @@ def test_rolling_with_little_friction_is_that_of_its_creepage(
         direction=direction,
     )
     # Displacements within the tolerance of 1e-8 tell a force to 1e-8 of the load, or less.
-    np.testing.assert_allclose(again.force, found.force, atol=1e-8 * found.normal.load)
+    assert_close(again.force, found.force, atol=1e-8 * found.normal.load)
 
 
 def test_a_load_at_the_limit_of_the_hardness_is_refused() -> None:

@@ -15,6 +15,7 @@ import pytest
 
 import nacre
 from nacre.results.values import decode, encode
+from support import assert_close
 
 Array = npt.NDArray[np.float64]
 
@@ -188,10 +189,10 @@ def test_a_profile_has_edges_where_they_are_said_to_be() -> None:
     edged = nacre.SampledProfile(x, drop, corners=[-3.02e-3, 2.97e-3])
     fine = np.linspace(-5e-3, 5e-3, 1001)
     right = 0.01 * np.maximum(np.abs(fine) - 3e-3, 0) + crown(fine, 20)
-    np.testing.assert_allclose(edged.drop_at(fine), right, atol=1e-13)
+    assert_close(edged.drop_at(fine), right, atol=1e-13)
     assert np.abs(nacre.SampledProfile(x, drop).drop_at(fine) - right).max() > 1e-8
     straight = nacre.SampledProfile(x, drop, smooth=False)
-    np.testing.assert_allclose(straight.drop_at(fine), np.interp(fine, x, drop), atol=1e-16)
+    assert_close(straight.drop_at(fine), np.interp(fine, x, drop), atol=1e-16)
     # Steps do not make the curve swing.
     steps = np.where(np.abs(x) < 2e-3, 0.0, 1e-4)
     curve = nacre.SampledProfile(x, steps).drop_at(fine)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 import nacre
+from support import assert_close
 
 ROUNDING = 1e-12  # of sums over some hundred points
 
@@ -51,8 +52,8 @@ def test_xyz_points_may_come_in_any_order(tmp_path: Path) -> None:
     np.random.default_rng(3).shuffle(points)
     np.savetxt(tmp_path / "a.xyz", points, fmt="%.17g", header="unit: nm")
     read = nacre.HeightMap.read(tmp_path / "a.xyz", detrend="none")
-    np.testing.assert_allclose(read.heights, 1e-9 * heights, rtol=ROUNDING)
-    np.testing.assert_allclose(read.spacing, (0.5e-9, 0.25e-9), rtol=ROUNDING)
+    assert_close(read.heights, 1e-9 * heights, rtol=ROUNDING)
+    assert_close(read.spacing, (0.5e-9, 0.25e-9), rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("detrend", ["mean", "plane", "quadratic"])
@@ -71,8 +72,8 @@ def test_a_trend_is_subtracted_whole(detrend: str, tmp_path: Path) -> None:
         nacre.HeightMap.read(tmp_path / f"{name}.npy", spacing=1.0, detrend=detrend).heights  # type: ignore[arg-type]
         for name in ("with", "without", "trend")
     )
-    np.testing.assert_allclose(with_trend, without, atol=ROUNDING * 10)
-    np.testing.assert_allclose(alone, 0, atol=ROUNDING * 10)
+    assert_close(with_trend, without, atol=ROUNDING * 10)
+    assert_close(alone, 0, atol=ROUNDING * 10)
     assert np.ptp(without) > 1  # it is the trend alone that goes
 
 
@@ -86,7 +87,7 @@ def test_missing_points_are_filled_and_counted(tmp_path: Path) -> None:
     with pytest.warns(nacre.NacreWarning, match="17 of 280 heights are missing and were filled"):
         read = nacre.HeightMap.read(path, spacing=1.0, detrend="none")
     # Conjugate gradients stop at 1e-12 of the first residual; the system is well conditioned.
-    np.testing.assert_allclose(read.heights, heights, rtol=1e-10)
+    assert_close(read.heights, heights, rtol=1e-10)
 
 
 def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -> None:
@@ -104,7 +105,7 @@ def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -
     # Each filled point is the mean of its neighbours inside.
     inside = (i > 0) & (i < 19) & (j > 0) & (j < 13) & ~measured
     around = sum(np.roll(read, step, axis) for step in (-1, 1) for axis in (0, 1)) / 4
-    np.testing.assert_allclose(read[inside], np.asarray(around)[inside], atol=1e-9)
+    assert_close(read[inside], np.asarray(around)[inside], atol=1e-9)
 
 
 @pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
@@ -115,8 +116,8 @@ def test_an_instruments_file_is_read_by_surfacetopography(tmp_path: Path) -> Non
     topography = Topography(heights, physical_sizes=(10.0, 3.5), unit="µm")
     topography.to_netcdf(str(tmp_path / "a.nc"))
     read = nacre.HeightMap.read(tmp_path / "a.nc", detrend="none")
-    np.testing.assert_allclose(read.heights, 1e-6 * heights, rtol=ROUNDING)
-    np.testing.assert_allclose(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
+    assert_close(read.heights, 1e-6 * heights, rtol=ROUNDING)
+    assert_close(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
 
 
 @pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
@@ -127,7 +128,7 @@ def test_a_topography_of_surfacetopography_is_a_surface() -> None:
     topography = Topography(heights, physical_sizes=(10.0, 3.5), unit="µm")
     read = nacre.HeightMap.read(topography, detrend="none")
     np.testing.assert_array_equal(read.heights, 1e-6 * heights)
-    np.testing.assert_allclose(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
+    assert_close(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
     without = Topography(heights, physical_sizes=(10.0, 3.5))
     with pytest.raises(ValueError, match="unit must be given: the topography names none; its hei"):
         nacre.HeightMap.read(without)
@@ -170,7 +171,7 @@ def test_an_export_of_an_instrument_is_transposed_on_request(tmp_path: Path) -> 
     path = csv(tmp_path / "a.csv", heights.T, "# spacing: 2e-1 5e-1\n")  # a line for each y
     read = nacre.HeightMap.read(path, transpose=True, unit="um", detrend="none")
     np.testing.assert_array_equal(read.heights, heights * 1e-6)
-    np.testing.assert_allclose(read.spacing, (0.5e-6, 0.2e-6), rtol=ROUNDING)
+    assert_close(read.spacing, (0.5e-6, 0.2e-6), rtol=ROUNDING)
     read = nacre.HeightMap.read(path, transpose=True, spacing=(1.0, 3.0), detrend="none")
     assert read == nacre.HeightMap(heights, (1.0, 3.0))
 
