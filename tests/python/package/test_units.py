@@ -1,23 +1,22 @@
-"""Every keyword of a contact comes back with the number and the unit that went in, in each system of units.
+"""Every keyword of a contact comes back with the number and the unit that went in.
 
-The units are those of the groups of keywords (`nacre.contact.arguments`), once for areas and once for line contact.
+Tried are two systems of units, areas and lines; the units are those of the groups of keywords.
 """
 
 from __future__ import annotations
 
-import math
 import re
 import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import pytest
-from support import assert_close
 
 import nacre
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import System, size_of
 from nacre.contact.wear_solution import KEYWORDS
+from support import assert_close
 
 SYSTEMS = ("SI", "N-mm-MPa")
 STEEL, BALL, CYLINDER = (210e9, 0.3), 5e-3, 10e-3
@@ -75,7 +74,12 @@ def case(name: str, units: str, line: bool) -> tuple[str, dict[str, Any]]:
     system, values = System(units), LINE if line else VALUES
     metre, pascal = system.unit("m")[0], system.unit("Pa")[0]
     function = GIVEN_TO.get(name, "solve")
-    names = {"solve": ["load"], "slide": ["load"], "roll": ["load"], "wear": ["load", "rate", "sliding"]}
+    names = {
+        "solve": ["load"],
+        "slide": ["load"],
+        "roll": ["load"],
+        "wear": ["load", "rate", "sliding"],
+    }
     given = [*names[function], name]
     if name == "approach":
         given.remove("load")
@@ -114,17 +118,18 @@ def test_every_keyword_with_a_unit_is_tried() -> None:
     assert set(VALUES) - set(LINE) == {"twist", "torque", "spin"}
 
 
+def in_si(number: float, unit: str) -> tuple[float, str]:
+    """Return a number with a unit in SI, and its SI unit."""
+    inverse = unit.removeprefix("1").removeprefix("/")
+    dimension, size = size_of(inverse) or ("", 1.0)
+    return (number * size, dimension) if inverse == unit else (number / size, f"1/{dimension}")
+
+
 def quantity(text: str) -> float:
-    """Return the number in SI that a text with a unit has; the first of a pair that is none of 0."""
-    numbers = re.findall(r"(−?-?\d[\d .]*(?:e[+-]?\d+)?|None|–) ?([^\d\s,()–][^,()]*)?", text)
-    for number, unit in numbers:
-        if number in ("None", "–"):
-            continue
-        dimension_size = size_of(unit.strip()) if unit else ("", 1.0)
-        size = 1.0 if dimension_size is None else dimension_size[1]
-        if value := float(number.replace(" ", "").replace("−", "-")) * size:
-            return value
-    return math.nan
+    """Return the number in SI that a text says; of a pair the one that is not 0."""
+    pattern = r"(-?\d[\d.]*(?:e[+-]?\d+)?) ?([^\d\s,()–][^,()–]*)?"
+    numbers = [(float(number), unit.strip()) for number, unit in re.findall(pattern, text)]
+    return next(in_si(number, unit)[0] for number, unit in numbers if number)
 
 
 @pytest.mark.parametrize(("name", "units", "line"), CASES)
@@ -134,9 +139,10 @@ def test_reports_give_back_what_went_in(name: str, units: str, line: bool) -> No
     with warnings.catch_warnings(), nacre.display_units(units):
         warnings.simplefilter("ignore")
         result = getattr(nacre, function)(**arguments)
-        rows: Mapping[str, str] = dict(result._sections().inputs)
-    if name in ("shift", "force", "twist", "torque", "spin"):
-        rows = {label: text for label, text in result._sections().numbers}
+        sections = result._sections()
+    # What moves tangentially is found or given: its row is among the results.
+    moves = name in ("shift", "force", "twist", "torque", "spin")
+    rows: Mapping[str, str] = dict(sections.numbers if moves else sections.inputs)
     shown = next(text for label, text in rows.items() if label.split(".")[0] == name)
     assert_close(quantity(shown), expected, rtol=1e-3)
 
@@ -154,8 +160,6 @@ def test_axes_of_studies_have_the_unit_of_the_keyword(name: str, units: str, lin
     with warnings.catch_warnings(), nacre.display_units(units):
         warnings.simplefilter("ignore")
         study = nacre.sweep(arguments, {name: [value]}, progress=False)
-    unit = study[name].attrs["units"]
-    dimension_size = size_of(unit)
-    assert dimension_size is not None
-    assert dimension_size[0] == keyword_units(*KEYWORDS, line=line)[name]
-    assert_close(value * dimension_size[1], (LINE if line else VALUES)[name], rtol=1e-9)
+    number, dimension = in_si(value, study[name].attrs["units"])
+    assert dimension == keyword_units(*KEYWORDS, line=line)[name]
+    assert_close(number, (LINE if line else VALUES)[name], rtol=1e-9)
