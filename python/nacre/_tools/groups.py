@@ -90,6 +90,7 @@ def grouped(*groups: type[Group], leave: tuple[str, ...] = ()) -> Callable[[F], 
             return function(*values, **keywords)
 
         call.__signature__ = signature  # type: ignore[attr-defined]
+        call.groups = groups  # type: ignore[attr-defined]
         call.__annotations__ = hints
         return call  # type: ignore[return-value]
 

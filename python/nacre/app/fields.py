@@ -135,11 +135,13 @@ def field_of(
     quantity = outer if name in ("x", "y", "z") or outer in BY_LAYER else name
     node = place(data, keys).node
     text = " ".join(str(node.get("description", "")).split())
+    owner = place(data, keys[:-1]).node if quantity == outer else node
+    declared = owner.get("unit_of_lines" if "width" in data.get("grid", {}) else "unit")
     by_name = UNITS.get(f"{outer}.{name}") or (INPUTS | UNITS).get(quantity, "")
     one = Field(
         path,
         label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
-        unit=System(units).unit((DIMENSION.findall(text) or [by_name])[0])[1],
+        unit=System(units).unit(declared or (DIMENSION.findall(text) or [by_name])[0])[1],
         help=DIMENSION.sub("", text) if helps is None else helps.get(quantity, ""),
         may_be_empty=name in LIMITS,
         is_count="integer" in (node.get("type"), node.get("items", {}).get("type")),

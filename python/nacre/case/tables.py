@@ -19,6 +19,8 @@ from pydantic import (
     create_model,
 )
 
+from nacre._tools.groups import keyword_units
+
 T = TypeVar("T", bound="Table")
 
 TWO = Field(min_length=2, max_length=2)
@@ -126,6 +128,9 @@ def signature_fields(
     left out. Descriptions of `texts` go before those of the docstring.
     """
     descriptions, hints = {**parameter_texts(maker), **(texts or {})}, get_type_hints(maker)
+    units, line = (
+        keyword_units(*getattr(maker, "groups", ()), line=line) for line in (False, True)
+    )
     fields = {}
     for one in inspect.signature(maker).parameters.values():
         hint = own.get(one.name, case_type(hints.get(one.name)) if hints else Number)
@@ -135,7 +140,10 @@ def signature_fields(
         if default is one.empty:
             default = None if types.NoneType in get_args(hint) else ...
         hint = hint | None if default is None else hint
-        fields[one.name] = (hint, Field(default, description=descriptions.get(one.name)))
+        unit = units.get(one.name)
+        extra: Any = {"unit": unit, "unit_of_lines": line[one.name]} if unit else None
+        text = descriptions.get(one.name)
+        fields[one.name] = (hint, Field(default, description=text, json_schema_extra=extra))
     return fields
 
 

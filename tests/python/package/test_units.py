@@ -15,6 +15,7 @@ import pytest
 import nacre
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import System, size_of
+from nacre.app.fields import field_of
 from nacre.contact.wear_solution import KEYWORDS
 from support import assert_close
 
@@ -87,7 +88,7 @@ def case(name: str, units: str, line: bool) -> tuple[str, dict[str, Any]]:
     numbers = {key: scaled(values[key], system.unit(declared[key])[0]) for key in given}
     steel = nacre.Elastic(STEEL[0] / pascal, STEEL[1])
     if line:
-        shape: nacre.Shape = nacre.Cylinder(CYLINDER / metre)
+        shape: nacre.types.Shape = nacre.Cylinder(CYLINDER / metre)
         grid = nacre.Grid.line(32, 6e-4 / metre)
     else:
         shape, grid = nacre.Sphere(BALL / metre), nacre.Grid((16, 16), (4e-4 / metre, 4e-4 / metre))
@@ -104,11 +105,12 @@ def case(name: str, units: str, line: bool) -> tuple[str, dict[str, Any]]:
 
 
 CASES = [
-    pytest.param(name, units, line, id=f"{name}-{units}-{'line' if line else 'area'}")
+    (name, units, line)
     for line, values in ((False, VALUES), (True, LINE))
     for name in values
     for units in SYSTEMS
 ]
+ONE_NUMBER = [case for case in CASES if not isinstance(VALUES[case[0]], tuple)]
 
 
 def test_every_keyword_with_a_unit_is_tried() -> None:
@@ -151,9 +153,7 @@ def _parts(value: Any) -> tuple[float | None, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-@pytest.mark.parametrize(
-    ("name", "units", "line"), [c for c in CASES if not isinstance(VALUES[c.values[0]], tuple)]
-)
+@pytest.mark.parametrize(("name", "units", "line"), ONE_NUMBER)
 def test_axes_of_studies_have_the_unit_of_the_keyword(name: str, units: str, line: bool) -> None:
     _, arguments = case(name, units, line)
     value = arguments.pop(name)
@@ -163,3 +163,33 @@ def test_axes_of_studies_have_the_unit_of_the_keyword(name: str, units: str, lin
     number, dimension = in_si(value, study[name].attrs["units"])
     assert dimension == keyword_units(*KEYWORDS, line=line)[name]
     assert_close(number, (LINE if line else VALUES)[name], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "units", "line"), CASES)
+def test_fields_of_the_page_have_the_unit_of_the_keyword(name: str, units: str, line: bool) -> None:
+    tables = {"solve": "solve", "slide": "slide", "roll": "roll", "wear": "wear"}
+    function, arguments = case(name, units, line)
+    if name in ("rate", "counter_rate"):
+        pytest.skip("rates stand with the materials")
+    table, value = tables[function], arguments[name]
+    grid = {"cells": 32, "width": 6e-4} if line else {"shape": [16, 16], "size": [4e-4, 4e-4]}
+    data = {
+        "units": units,
+        "shape": {"kind": "sphere", "radius": 1.0},
+        "body": {"substrate": {"young": 1.0, "poisson": 0.3}},
+        "grid": grid,
+        "solve": {"load": 1.0},
+    }
+    place = name
+    if isinstance(value, tuple):
+        place, value = f"{name}.{'y' if line else 'x'}", value[line]
+        data[table] = {**data.get(table, {}), name: {"y" if line else "x": value}}
+    else:
+        data[table] = {**data.get(table, {}), name: value}
+    field = field_of(data, f"{table}.{place}")
+    typed = field.typed(value, units)
+    assert typed is not None
+    number, dimension = in_si(typed, field.unit)
+    assert dimension == keyword_units(*KEYWORDS, line=line)[name]
+    expected = next(v for v in _parts((LINE if line else VALUES)[name]) if v)
+    assert_close(number, expected, rtol=1e-9)
