@@ -173,7 +173,7 @@ def test_fields_of_the_page_have_the_unit_of_the_keyword(name: str, units: str, 
         pytest.skip("rates stand with the materials")
     table, value = tables[function], arguments[name]
     grid = {"cells": 32, "width": 6e-4} if line else {"shape": [16, 16], "size": [4e-4, 4e-4]}
-    data = {
+    data: dict[str, Any] = {
         "units": units,
         "shape": {"kind": "sphere", "radius": 1.0},
         "body": {"substrate": {"young": 1.0, "poisson": 0.3}},
