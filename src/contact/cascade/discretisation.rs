@@ -162,6 +162,12 @@ const STEP: f64 = 1e-4;
 /// Relative error of approach or load, times the square of the cells across the contact; chosen by trial.
 const CHANCE: f64 = 0.1;
 
+/// Relative error of a number that is stationary in the place of the rim, which is known to a fraction of one of the cells
+/// of a contact that is so many `across`: changes between grids may be less by chance.
+pub(crate) fn chance_error(across: f64) -> f64 {
+    CHANCE / (across * across)
+}
+
 /// Coefficients of a body, or of two, on a grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Unresolved {
@@ -282,8 +288,7 @@ impl Unresolved {
         let starts =
             if grid.is_line() { along_y.starts } else { along_x.starts.max(along_y.starts) };
         let width = cells / starts;
-        let rim_error =
-            if singular && grid.is_line() { 0.5 / width } else { CHANCE / (width * width) };
+        let rim_error = if singular && grid.is_line() { 0.5 / width } else { chance_error(width) };
         let (approach, load) = if loaded {
             (excess / force + rim_error * (work / force).abs(), 0.0)
         } else {
