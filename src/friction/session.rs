@@ -154,6 +154,11 @@ impl<'a> Session<'a> {
             self.settle(&problem, &motion, friction, pressures, start, &mut course)?;
         let mut solution = self.finish(&problem, friction, (normal, solved), course)?;
         if let Some(half) = half.filter(|_| solution.report.converged()) {
+            // A pressure on which tractions act is found from one before, without nested grids.
+            if let (Ok(half), None) = (&half, solution.normal.report.discretisation) {
+                solution.normal.report.discretisation =
+                    self.contact.errors_from(&solution.normal, &[&half.normal], self.shape)?;
+            }
             let errors = half.and_then(|half| {
                 let freedoms = &problem.increments;
                 let errors = discretisation(&solution, &half, freedoms, last.map(|l| l.solution))?;
