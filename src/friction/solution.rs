@@ -349,10 +349,14 @@ impl FrictionSolution {
     /// ```
     ///
     /// The normal contact has ½ Σ p w dA without v. The sum of both changes by the work of the forces less what friction
-    /// dissipates. Without coupling v is 0; with it the share of the tractions alone may be below 0. Derived here.
+    /// dissipates. Without coupling v is 0; with it the share of the tractions alone may be below 0. It is not a number in line contact
+    /// where stiff layers move less than the datum, so that what the tractions alone displace, ½ Σ q · u less the share of
+    /// v, which is that of the pressure in u, would be below 0. Derived here.
     pub fn tangential_energy(&self) -> f64 {
         let ([qx, qy], [ux, uy]) = (&self.traction, &self.displacement);
-        0.5 * (qx * ux + qy * uy).sum() * self.grid().cell_area() + self.report.coupling_energy
+        let work = 0.5 * self.grid().cell_area() * (qx * ux + qy * uy);
+        let (own, rounding) = (work.sum() - self.report.coupling_energy, 1e-12 * work.abs().sum());
+        if own < -rounding { f64::NAN } else { work.sum() + self.report.coupling_energy }
     }
 }
 

@@ -63,10 +63,10 @@ impl Grid {
     ///
     /// The shape of the grid is (1, `cells`). Loads are per unit length along x, so that forces are
     /// in \[N/m\]. In plane strain the displacement of an elastic half-space grows without limit
-    /// with the distance. Displacement and approach are therefore relative to the surface of the
+    /// with the distance. Displacements, approach and shifts are therefore relative to the surface of the
     /// bare substrate at a distance `width` from the load, whatever layers there are. Under a load this
-    /// datum shifts displacement and approach, and changes no pressure. Below stiff layers that are wider
-    /// than the grid an approach cannot be prescribed, since it would fall as the load grows.
+    /// datum moves displacements, approach and shifts, and changes no pressure. Below stiff layers that are wider
+    /// than the grid approach and shift cannot be prescribed, since they would fall as the load or force grows.
     ///
     /// # Errors
     /// Unless there are at least two cells, one array of them fits into memory, and `width` is

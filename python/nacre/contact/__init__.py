@@ -260,7 +260,8 @@ def slide(
         Coefficient of friction, at least 0: one number, or one for each cell ``(nx, ny)``.
     shift : tuple of float or None, optional
         Shift ``(d_x, d_y)`` of the counterbody over the body at the end of the step [m], since
-        the first touch. None: it stays where it is, unless there is a force.
+        the first touch. None: it stays where it is, unless there is a force. In line contact it is
+        counted from the bare substrate's surface, as `Grid.line` says.
     force : tuple of float or None, optional
         Forces ``(∬ q_x dA, ∬ q_y dA)`` of the tractions on the body [N]; the shift along an axis
         with a number is found.

@@ -287,7 +287,7 @@ class Solution(NormalContact, Result):
         """Elastic energy of the normal displacement of both bodies [J], ``½ sum p u dA``.
 
         Where the approach has a datum, as in line contact, the displacement and the energy have it,
-        too.
+        too: the bare substrate's surface, as `Grid.line` says.
         """
         size, shape = self.grid.size, self.grid.shape
         cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
@@ -899,12 +899,21 @@ def _indentation(solution: Solution) -> str | None:
 
 def _approach(solution: Solution) -> str:
     """Return the approach with its error, or with the datum that it depends on and no error."""
-    report = solution.report
+    if datum := datum_words(solution.report):
+        return written(solution.approach, "m") + datum
+    return display.estimated(solution, "approach", "m")
+
+
+def datum_words(report: Report) -> str:
+    """Return from where displacements of a line contact are counted, in words; else nothing."""
     repeats = (True, False) if report.grid.is_line else report.grid.periodic
-    if sum(repeats) != 1 or all(map(_is_held, (report.body, report.counterbody))):
-        return display.estimated(solution, "approach", "m")
-    datum = report.grid.size[repeats.index(False)]
-    return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
+    free = [body for body in (report.body, report.counterbody) if not _is_held(body)]
+    if sum(repeats) != 1 or not free:
+        return ""
+    bare = all(isinstance(body, core.HalfSpace) and not body.layers for body in free)
+    surface = "surface" if bare else "bare substrate's surface"
+    width = report.grid.size[repeats.index(False)]
+    return f", from the {surface} {written(width, 'm')} away"
 
 
 def _is_held(body: Planned | None) -> bool:

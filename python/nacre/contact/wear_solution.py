@@ -219,6 +219,7 @@ class WearControl:
             count = core.integer("steps", self.steps)
             if count < 1:
                 raise ValueError(f"steps must be at least 1, got {count}")
+            core.check_memory("steps", count, 64)
             ends = distance * np.arange(1, count + 1) / count
         if ends.size and not math.isclose(ends[-1], distance, rel_tol=1e-12):
             raise ValueError(
