@@ -188,8 +188,8 @@ impl HalfSpacePlan {
         memory_of(grid.shape(), pressure + images)
     }
 
-    /// Estimated errors of the stress at `place`, from the size of the cells, under this friction, whose tractions may be
-    /// uniform over cells; none where the pressure is given as uniform over them.
+    /// Estimated errors of the stress at `place`, from the size of the cells, under this friction, and whether known tractions
+    /// are taken within cells; none where the pressure is given as uniform over them.
     pub(super) fn errors(&self, place: &Place, friction: ([f64; 2], bool)) -> Option<StepErrors> {
         Some(self.solved.as_ref()?.subcell.errors(&self.body, place, friction))
     }

@@ -111,7 +111,11 @@ impl<'a> PressureSource<'a> {
         let pressure = checked_pressure(body, grid, self.pressure)?;
         check_memory(grid.shape(), self.memory())?;
         let threads = Threads::new(threads)?;
-        let within = |pair| SubcellStress::plan((body, pair), grid, &pressure, &threads, progress);
+        let known = self.tractions.map(|both| both.map(|q| q.mapv(|q| self.sliding.sign * q)));
+        let by_cell =
+            known.as_ref().map(|both| both.each_ref().map(|q| q.iter().copied().collect()));
+        let loads = (&pressure[..], by_cell.as_ref());
+        let within = |pair| SubcellStress::plan((body, pair), grid, loads, &threads, progress);
         let subcell = match self.solved.as_ref().map(within) {
             Some(ControlFlow::Break(())) => return Ok(None),
             Some(ControlFlow::Continue(subcell)) => Some(subcell),
@@ -129,7 +133,6 @@ impl<'a> PressureSource<'a> {
         else {
             return Ok(None);
         };
-        let known = self.tractions.map(|both| both.map(|q| q.mapv(|q| self.sliding.sign * q)));
         for (axis, traction) in known.iter().flatten().enumerate() {
             if traction.iter().any(|q| *q != 0.0) {
                 let plan = HalfSpacePlan::uniform(
@@ -142,8 +145,14 @@ impl<'a> PressureSource<'a> {
                 parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }
         }
-        let known = known.map(|both| both.map(|q| q.into_iter().collect()));
-        Ok(Some(StressPlan { whole, sliding: self.sliding, span, parts, known, ends: errors }))
+        Ok(Some(StressPlan {
+            whole,
+            sliding: self.sliding,
+            span,
+            parts,
+            known: by_cell,
+            ends: errors,
+        }))
     }
 
     /// [`PressureSource::plan`], of which a stop is an error.
@@ -274,9 +283,8 @@ impl StressPlan {
         friction: [f64; 2],
         within: bool,
     ) -> Option<StepErrors> {
-        let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
-        let errors = self.whole.errors(place, (friction, uniform));
+        let errors = self.whole.errors(place, (friction, within));
         match self.ends.at(place) {
             None => errors,
             Some(of_ends) => Some(errors.unwrap_or_default().plus(of_ends)),

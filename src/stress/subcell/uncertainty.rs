@@ -87,7 +87,7 @@ const HIGHEST_RATIO: f64 = 100.0;
 const COUNT: u32 = 27;
 
 /// Distance in cells to which a step is felt near the surface.
-const STEP_REACH: usize = 6;
+pub(super) const STEP_REACH: usize = 6;
 
 /// What is not known of the pressure of a solved contact, at the wavenumbers that matter.
 #[derive(Debug)]
@@ -101,6 +101,8 @@ pub(super) struct Uncertainty {
     of_width: f64,
     half_width: f64,
     known: Vec<Known>,
+    /// Known tractions along x and along y.
+    tractions: Option<[Vec<f64>; 2]>,
     /// Waves along x and along y.
     waves: [Vec<Wave>; 2],
 }
@@ -116,21 +118,28 @@ struct Wave {
     column: Column,
 }
 
-/// Largest steps of the pressure from cell to cell along one axis \[Pa\], by how well the pressure is known
-/// in the worse of the two cells.
-type AxisSteps = [f64; 3];
+/// Largest steps from cell to cell along one axis \[Pa\]: of the pressure by how well it is known in the worse of the two cells,
+/// of known tractions likewise, and of what they differ by from a fixed part of the pressure, where that is known.
+type AxisSteps = [f64; STEPS];
+
+/// Number of kinds of [`AxisSteps`].
+const STEPS: usize = 7;
+
+/// Number of the first step of known tractions.
+const OF_TRACTION: usize = 3;
+
+/// Number of the step of what tractions differ by from a fixed part of the pressure.
+const OF_RATIO: usize = 6;
 
 /// Largest steps along x and along y in a part of the grid.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
 
 /// Errors of the stress at one depth per unit of the steps around a place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::stress) struct StepErrors {
-    /// Under pressure and the friction in proportion to it.
-    pressure: [AxisSteps; 2],
-    /// Under tractions that are uniform over cells.
-    traction: [AxisSteps; 2],
+    /// Under pressure and the friction in proportion to it, and under tractions that are uniform over cells.
+    factors: [AxisSteps; 2],
     /// Error that does not depend on the steps.
     everywhere: f64,
 }
@@ -139,10 +148,13 @@ impl StepErrors {
     /// Errors \[Pa\] from waves along x and along y, where the pressure has these steps.
     pub(in crate::stress) fn by_axis(&self, LocalSteps(steps): &LocalSteps) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let largest = |factors: &AxisSteps| {
-                factors.iter().zip(&steps[axis]).map(|(f, step)| f * step).fold(0.0, f64::max)
-            };
-            largest(&self.pressure[axis]) + largest(&self.traction[axis]) + self.everywhere
+            let errors = self.factors[axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
+            let mut largest = [0.0; 2];
+            for (k, error) in errors.enumerate() {
+                let largest = &mut largest[usize::from(k >= OF_TRACTION)];
+                *largest = error.max(*largest);
+            }
+            largest[0] + largest[1] + self.everywhere
         })
     }
 
@@ -154,12 +166,9 @@ impl StepErrors {
 
     /// The larger of two errors.
     pub(in crate::stress) fn larger(self, other: Self) -> Self {
-        let larger = |a: [AxisSteps; 2], b: [AxisSteps; 2]| {
-            [0, 1].map(|axis| [0, 1, 2].map(|known| f64::max(a[axis][known], b[axis][known])))
-        };
+        let larger = |axis: usize, k: usize| self.factors[axis][k].max(other.factors[axis][k]);
         Self {
-            pressure: larger(self.pressure, other.pressure),
-            traction: larger(self.traction, other.traction),
+            factors: [0, 1].map(|axis| std::array::from_fn(|k| larger(axis, k))),
             everywhere: self.everywhere.max(other.everywhere),
         }
     }
@@ -171,16 +180,18 @@ impl StepErrors {
     }
 
     /// The errors of values in cells of the layer at the surface, whose larger values at an edge that is known are found at
-    /// points of the edge.
+    /// points of the edge. What is not in proportion to the pressure there stays uniform over cells.
     pub(in crate::stress) fn beside_points(mut self) -> Self {
-        self.traction.iter_mut().for_each(|factors| factors[Known::Edge as usize] = 0.0);
+        for factors in &mut self.factors {
+            factors[OF_TRACTION + Known::Edge as usize] = 0.0;
+        }
         self
     }
 
     /// The errors of values in cells at depths of less than a cell, where larger ones may lie between centres at an edge that is
-    /// known. Farther below, stresses are smooth enough for parabolas.
+    /// known, but has no points. Farther below, stresses are smooth enough for parabolas.
     pub(in crate::stress) fn without_points(mut self) -> Self {
-        for factors in &mut self.pressure {
+        for factors in &mut self.factors {
             factors[Known::Edge as usize] = factors[Known::Mean as usize];
         }
         self
@@ -191,7 +202,7 @@ impl Uncertainty {
     pub(super) fn new(
         (body, pair): (&HalfSpace, &BodyPair),
         grid: &Grid,
-        pressure: &[f64],
+        (pressure, tractions): (&[f64], Option<[Vec<f64>; 2]>),
         reconstruction: &Reconstruction,
     ) -> Self {
         let shape = grid.shape();
@@ -230,6 +241,7 @@ impl Uncertainty {
             of_width: peak * (WIDTH_ERROR / across[0].min(across[1]).powi(2) + LEAST_ERROR),
             half_width: 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]),
             known,
+            tractions,
             waves: spacing.map(waves),
         }
     }
@@ -250,15 +262,31 @@ impl Uncertainty {
         self.known[a].max(self.known[b]) as usize
     }
 
-    /// Largest steps of `pressure` that are felt in the cells of `window`.
+    /// Steps of `pressure`, and of known tractions, from one cell to another.
+    fn steps_between(&self, pressure: &[f64], a: usize, b: usize) -> AxisSteps {
+        let (known, mut steps) = (self.worse(a, b), AxisSteps::default());
+        let [p, next] = [a, b].map(|cell| pressure[cell]);
+        steps[known] = (p - next).abs();
+        if let Some(tractions) = &self.tractions {
+            let length = |of: &dyn Fn(&[f64]) -> f64| of(&tractions[0]).hypot(of(&tractions[1]));
+            steps[OF_TRACTION + known] = length(&|q| q[a] - q[b]);
+            let larger = p.max(next);
+            if known != Known::Mean as usize && larger > 0.0 {
+                steps[OF_RATIO] = length(&|q| (q[a] * next - q[b] * p) / larger);
+            }
+        }
+        steps
+    }
+
+    /// Largest steps of `pressure`, and of known tractions, that are felt in the cells of `window`.
     pub(super) fn steps(&self, pressure: &[f64], window: &Window) -> LocalSteps {
         let [nx, ny] = self.shape;
         let rows = window[0].start.saturating_sub(STEP_REACH)..(window[0].end + STEP_REACH).min(nx);
         let columns =
             window[1].start.saturating_sub(STEP_REACH)..(window[1].end + STEP_REACH).min(ny);
-        let count = |steps: &mut AxisSteps, a: usize, b: usize| {
-            let largest = &mut steps[self.worse(a, b)];
-            *largest = largest.max((pressure[a] - pressure[b]).abs());
+        let count = |largest: &mut AxisSteps, a: usize, b: usize| {
+            let steps = self.steps_between(pressure, a, b);
+            largest.iter_mut().zip(steps).for_each(|(largest, step)| *largest = largest.max(step));
         };
         let [mut along, mut across] = [AxisSteps::default(); 2];
         for i in rows.clone() {
@@ -280,12 +308,12 @@ impl Uncertainty {
         let [nx, ny] = self.shape;
         let mut steps = vec![LocalSteps::default(); pressure.len()];
         for (axis, (next, count)) in [(ny, nx), (1, ny)].into_iter().enumerate() {
-            for known in [Known::Well, Known::Edge, Known::Mean] {
+            let kinds = if self.tractions.is_some() { STEPS } else { OF_TRACTION };
+            for kind in 0..kinds {
                 // The step from each cell to the next along the axis.
-                let step = |cell: usize| {
-                    let has_next = [cell / ny, cell % ny][axis] + 1 < count;
-                    let counts = has_next && self.worse(cell, cell + next) == known as usize;
-                    if counts { (pressure[cell] - pressure[cell + next]).abs() } else { 0.0 }
+                let step = |cell: usize| match [cell / ny, cell % ny][axis] + 1 < count {
+                    true => self.steps_between(pressure, cell, cell + next)[kind],
+                    false => 0.0,
                 };
                 let mut largest: Vec<f64> = (0..pressure.len()).map(step).collect();
                 for along in 0..2 {
@@ -293,22 +321,23 @@ impl Uncertainty {
                     largest = largest_around(&largest, self.shape, along, [STEP_REACH, ahead]);
                 }
                 for (steps, largest) in steps.iter_mut().zip(largest) {
-                    steps.0[axis][known as usize] = largest;
+                    steps.0[axis][kind] = largest;
                 }
             }
         }
         steps
     }
 
-    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it, and whether the
-    /// tractions of the friction are uniform over cells.
+    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it. Known tractions are
+    /// uniform over cells, unless they are taken `within` them, in proportion to the pressure.
     pub(super) fn at(
         &self,
         body: &HalfSpace,
         place: &Place,
-        (friction, uniform): ([f64; 2], bool),
+        (friction, within): ([f64; 2], bool),
     ) -> StepErrors {
         let friction = friction[0].hypot(friction[1]);
+        let uniform = self.tractions.is_some() && !within;
         let material = place.material;
         let mut errors = StepErrors::default();
         for axis in 0..2 {
@@ -319,16 +348,15 @@ impl Uncertainty {
                     [state.p, state.tau, along, across].map(f64::abs)
                 });
                 let (q, u) = fields.twist;
-                let twisted = friction * q.abs().max((material.shear() * u).abs());
+                let twisted = q.abs().max((material.shear() * u).abs());
                 // The largest error with these shares of the pressure and of the tractions.
                 let largest = |of_pressure: f64, of_tractions: f64| {
                     let pairs = pressed.iter().zip(&sheared);
                     let sums = pairs.map(|(p, s)| of_pressure * p + of_tractions * friction * s);
-                    sums.fold(of_tractions * twisted, f64::max)
+                    sums.fold(of_tractions * friction * twisted, f64::max)
                 };
-                for (known, (error, share)) in
-                    errors.pressure[axis].iter_mut().zip(wave.shares).enumerate()
-                {
+                let factors = &mut errors.factors[axis];
+                for (known, (error, share)) in factors.iter_mut().zip(wave.shares).enumerate() {
                     let of_tractions = match known == Known::Mean as usize {
                         _ if uniform => 0.0,
                         true => wave.uniform,
@@ -336,16 +364,13 @@ impl Uncertainty {
                     };
                     *error = error.max(largest(share, of_tractions));
                 }
-                if uniform {
-                    let sheared = sheared.iter().fold(0.0, |a: f64, s| a.max(friction * s));
-                    let of_traction = wave.uniform * sheared.max(twisted);
-                    let traction = &mut errors.traction[axis];
-                    traction.iter_mut().for_each(|error| *error = error.max(of_traction));
-                }
+                let of_traction = wave.uniform * sheared.iter().fold(twisted, |a, s| a.max(*s));
+                let first = if uniform { OF_TRACTION } else { OF_RATIO };
+                factors[first..].iter_mut().for_each(|error| *error = error.max(of_traction));
             }
             let distance = place.depth.max(self.followed) / self.spacing[axis];
             let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
-            let edge = &mut errors.pressure[axis][Known::Edge as usize];
+            let edge = &mut errors.factors[axis][Known::Edge as usize];
             *edge = edge.max(left_out);
         }
         errors
@@ -456,13 +481,16 @@ mod tests {
                 of_width: 0.0,
                 half_width: 1.0,
                 known: cells.clone().map(|k| known[k * k % 7 % 3]).collect(),
+                tractions: Some(
+                    [3, 5].map(|n| cells.clone().map(|k| (k * n % 13) as f64).collect()),
+                ),
                 waves: [Vec::new(), Vec::new()],
             };
             let pressure: Vec<f64> = cells.clone().map(|k| (k * k % 101) as f64).collect();
             let steps = uncertainty.steps_by_cell(&pressure);
-            for (k, LocalSteps(steps)) in cells.zip(&steps) {
+            for (k, steps) in cells.zip(&steps) {
                 let window = [k / ny, k % ny].map(|at| at..at + 1);
-                let LocalSteps(expected) = uncertainty.steps(&pressure, &window);
+                let expected = uncertainty.steps(&pressure, &window);
                 // The same differences, of which the largest is chosen.
                 assert_eq!(Some(*steps), Some(expected), "{k}");
             }
