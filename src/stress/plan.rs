@@ -291,6 +291,58 @@ impl StressPlan {
         }
     }
 
+    /// Estimated errors of extremes at `place`, with what lies between the centres of cells and the width of `contact`: in cells
+    /// that feel no edges but those whose larger values are found at `points`, and in all others.
+    pub(super) fn errors_of_extremes(
+        &self,
+        place: &Place,
+        friction: [f64; 2],
+        (points, contact): (bool, &Self),
+    ) -> Option<[StepErrors; 2]> {
+        let errors = self.errors(place, friction, false)?.plus(contact.whole.width_error(place));
+        let is_shallow = self.is_within_a_cell(place);
+        let elsewhere = if is_shallow { errors.without_points() } else { errors };
+        Some([if points { errors.beside_points() } else { elsewhere }, elsewhere])
+    }
+
+    /// Whether a place is less than a cell deep.
+    pub(super) fn is_within_a_cell(&self, place: &Place) -> bool {
+        let grid = &self.whole.grid;
+        let [dx, dy] = grid.spacing();
+        place.depth < if grid.is_line() { dy } else { dx.max(dy) }
+    }
+
+    /// Whether each cell feels a stretch of a located edge that has none of these `points`.
+    pub(super) fn feels_lost_edge(&self, points: &[CellPoint]) -> Vec<bool> {
+        let solved = self.whole.solved.as_ref();
+        solved.map_or_else(Vec::new, |solved| solved.subcell.feels_lost_edge(points))
+    }
+
+    /// Estimated errors \[Pa\] of the extremes of a section at `depths`, where points of the edge are evaluated, too: those that
+    /// [`StressPlan::summary`] counts. 0 where they are not known.
+    pub(crate) fn extreme_errors(
+        &self,
+        depths: &[f64],
+        options: &StressOptions,
+    ) -> Result<Vec<f64>> {
+        let (body, grid) = (&self.whole.body, &self.whole.grid);
+        let friction = self.sliding.traction(body, options)?;
+        let window = Points::new(body, grid, options.section)?.window();
+        let (points, steps, [_, ny]) =
+            (self.edge_points(), self.whole.steps(&window), grid.shape());
+        let lost = self.feels_lost_edge(&points);
+        let is_lost = window[0]
+            .clone()
+            .any(|i| window[1].clone().any(|j| lost.get(i * ny + j).copied().unwrap_or_default()));
+        let error = |depth: &f64| {
+            let place = place(body, *depth, options.side)?;
+            let points = place.layer == 0 && !points.is_empty();
+            let errors = self.errors_of_extremes(&place, friction, (points, self));
+            Ok(errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&steps)))
+        };
+        depths.iter().map(error).collect()
+    }
+
     /// Largest steps of the pressure that are felt in each cell; no cells where the pressure is given as uniform over them.
     pub(super) fn steps_by_cell(&self) -> Vec<LocalSteps> {
         self.whole.steps_by_cell()

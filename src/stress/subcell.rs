@@ -136,9 +136,9 @@ impl SubcellStress {
         self.uncertainty.steps(&self.solver_pressure, &self.margin.window(window))
     }
 
-    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, depth: f64) -> f64 {
-        self.uncertainty.width_error(depth)
+    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
+        self.uncertainty.width_error(body, place)
     }
 
     /// Largest steps of the pressure that are felt in each cell.

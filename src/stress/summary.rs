@@ -564,11 +564,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         for [i, j] in edge.iter().flat_map(|point| around(shape, point.cell, 1)) {
             near_edge[i * ny + j] = true;
         }
-        let lost = plan.whole.solved.as_ref();
-        let feels_lost_edge =
-            lost.map_or_else(Vec::new, |solved| solved.subcell.feels_lost_edge(&edge));
         Self {
-            feels_lost_edge,
+            feels_lost_edge: plan.feels_lost_edge(&edge),
             plan,
             scope,
             friction,
@@ -623,22 +620,11 @@ impl<'a, 'b> Planes<'a, 'b> {
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
         }
-        let grid = &self.plan.whole.grid;
-        let [dx, dy] = grid.spacing();
-        let within_a_cell = place.depth < if grid.is_line() { dy } else { dx.max(dy) };
-        self.by_points = points && within_a_cell;
-        self.errors = self.errors_at(place, false).map(|errors| {
-            let elsewhere = if within_a_cell { errors.without_points() } else { errors };
-            [if points { errors.beside_points() } else { elsewhere }, elsewhere]
-        });
+        self.by_points = points && self.plan.is_within_a_cell(place);
+        let of = (points, self.scope.contact);
+        self.errors = self.plan.errors_of_extremes(place, self.friction, of);
         self.done += 1;
         ControlFlow::Continue(())
-    }
-
-    /// The errors at `place`, of tractions that are known `within` cells or uniform over them.
-    fn errors_at(&self, place: &Place, within: bool) -> Option<StepErrors> {
-        let errors = self.plan.errors(place, self.friction, within)?;
-        Some(errors.plus(self.scope.contact.whole.width_error(place.depth)))
     }
 
     /// Whether a cell counts.
@@ -772,7 +758,8 @@ impl<'a, 'b> Planes<'a, 'b> {
                 }
             }
         }
-        let errors = self.errors_at(place, true);
+        let errors = self.plan.errors(place, self.friction, true);
+        let errors = errors.map(|errors| errors.plus(self.scope.contact.whole.width_error(place)));
         for (point, values) in points.iter().zip(known) {
             let Some(values) = values else { continue };
             let [x, y] = self.plan.position(point);

@@ -50,6 +50,11 @@ const UNIFORM_SHARE: f64 = 0.25;
 /// Share of a step that is not known where an edge is reconstructed.
 const EDGE_SHARE: f64 = 0.03;
 
+/// The same at points whose stress is summed over ever smaller pieces, as those of an edge, where the pressure is 0 and the place
+/// of the edge moves the whole curve. Of c √d under friction, the smallest piece misses 0.022 μ of the step and pieces that grow
+/// by a half make 0.009 μ too much ([`super::reconstruction`]), for 0.04 μ of this.
+const POINT_SHARE: f64 = 0.02;
+
 /// Share of a step that is not known in the interior. Below Hertz' contact of 128 cells to the half-width,
 /// stresses there err by 3.3e-4 of the peak pressure (`tests/stress/edge.rs`), and a step is a 34th of it.
 const INTERIOR_SHARE: f64 = 0.01;
@@ -60,6 +65,11 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 /// Share of a step of the tractions that is not known where they are uniform over cells. Under a sliding ball of 21 to 85
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
 const TRACTION_SHARE: f64 = 0.5;
+
+/// Share of a step of what tractions differ by from a fixed part of the pressure, as at the border of a zone that sticks. Where it
+/// grows as the root of the distance from a border anywhere in a cell, means of it make von Mises' stress at the best centre too
+/// small by up to 1.23 steps: σ_yy, of which 2 of this are, falls to one side of the border, and σ_yz to the other. Computed here.
+const RATIO_SHARE: f64 = 0.62;
 
 /// Stress that is left out at a distance of one cell from an edge, as a part of the step there, if it fell off as the inverse
 /// cube of the distance: that of the four cells at an edge p = √d under a strip of pressure, less their means and shares,
@@ -76,6 +86,10 @@ const WIDTH_ERROR: f64 = 0.3;
 /// followed over some cells only. Of a line contact refined to a thousand cells across, they are within 2.4e-5 of those on
 /// 1 088 cells.
 const LEAST_ERROR: f64 = 5e-5;
+
+/// Wavenumbers, over the inverse of the half-width, at which stresses that exceed the pressure, as in hard layers that bend, tell
+/// how much more their error of the width is.
+const OF_WIDTH: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Wavenumber of the longest waves of a step, times the side of a cell.
 const LONGEST: f64 = 1.5;
@@ -100,6 +114,8 @@ pub(super) struct Uncertainty {
     /// Error of the stress down to the depth of half the width of the contact, due to that width.
     of_width: f64,
     half_width: f64,
+    /// The body at wavenumbers of the width.
+    columns: Vec<Column>,
     known: Vec<Known>,
     /// Known tractions along x and along y.
     tractions: Option<[Vec<f64>; 2]>,
@@ -112,8 +128,10 @@ pub(super) struct Uncertainty {
 struct Wave {
     /// Its pressure over the step, by how well the pressure is known.
     shares: [f64; 3],
-    /// The same of tractions that are uniform over cells.
-    uniform: f64,
+    /// The same near an edge, at points whose stress is summed over ever smaller pieces.
+    at_point: f64,
+    /// The same of tractions that are uniform over cells, and of what they differ by from a fixed part of the pressure.
+    tractions: [f64; 2],
     /// The body at its wavenumber.
     column: Column,
 }
@@ -221,10 +239,12 @@ impl Uncertainty {
                 let ratio = HIGHEST_RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
                 let alpha = ratio * LONGEST / spacing;
                 let change = (pair.response(alpha) / of_cell - 1.0).abs();
-                let share = (SHARE_OF_CHANGE * change).clamp(EDGE_SHARE, UNIFORM_SHARE);
+                let [share, at_point] = [EDGE_SHARE, POINT_SHARE]
+                    .map(|least| (SHARE_OF_CHANGE * change).clamp(least, UNIFORM_SHARE));
                 Wave {
                     shares: [INTERIOR_SHARE, share, UNIFORM_SHARE].map(|share| share / ratio),
-                    uniform: TRACTION_SHARE / ratio,
+                    at_point: at_point / ratio,
+                    tractions: [TRACTION_SHARE, RATIO_SHARE].map(|share| share / ratio),
                     column: Column::new(body, alpha),
                 }
             };
@@ -234,12 +254,16 @@ impl Uncertainty {
         let spacing = grid.spacing();
         let across = cells_across(pressure, shape);
         let shorter = if grid.is_line() { spacing[1] } else { spacing[0].min(spacing[1]) };
+        let half_width = 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]);
+        let column = |alpha: f64| Column::new(body, alpha / half_width);
+        let is_wide = half_width > 0.0 && half_width.is_finite();
         Self {
             shape,
             spacing,
             followed: DEPTH_LIMIT * shorter,
             of_width: peak * (WIDTH_ERROR / across[0].min(across[1]).powi(2) + LEAST_ERROR),
-            half_width: 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]),
+            half_width,
+            columns: OF_WIDTH.into_iter().filter(|_| is_wide).map(column).collect(),
             known,
             tractions,
             waves: spacing.map(waves),
@@ -251,10 +275,15 @@ impl Uncertainty {
         around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
     }
 
-    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, depth: f64) -> f64 {
-        let beyond = (self.half_width / depth.max(self.half_width)).powi(2);
-        if self.of_width > 0.0 { self.of_width * beyond } else { 0.0 }
+    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
+        let beyond = (self.half_width / place.depth.max(self.half_width)).powi(2);
+        let of_column = |column: &Column| {
+            let (along, across) = column.at(body, place).pressure.lateral_stress(place.material);
+            along.abs().max(across.abs())
+        };
+        let response = self.columns.iter().map(of_column).fold(1.0, f64::max);
+        if self.of_width > 0.0 { self.of_width * beyond * response } else { 0.0 }
     }
 
     /// How well the pressure is known in the worse of two cells.
@@ -328,8 +357,8 @@ impl Uncertainty {
         steps
     }
 
-    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it. Known tractions are
-    /// uniform over cells, unless they are taken `within` them, in proportion to the pressure.
+    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it; `within` cells at a
+    /// point, where known tractions are in proportion to the pressure, and elsewhere uniform over cells.
     pub(super) fn at(
         &self,
         body: &HalfSpace,
@@ -356,17 +385,21 @@ impl Uncertainty {
                     sums.fold(of_tractions * friction * twisted, f64::max)
                 };
                 let factors = &mut errors.factors[axis];
-                for (known, (error, share)) in factors.iter_mut().zip(wave.shares).enumerate() {
+                let [well, edge, mean] = wave.shares;
+                let shares = [well, if within { wave.at_point } else { edge }, mean];
+                for (known, (error, share)) in factors.iter_mut().zip(shares).enumerate() {
                     let of_tractions = match known == Known::Mean as usize {
                         _ if uniform => 0.0,
-                        true => wave.uniform,
+                        true => wave.tractions[0],
                         false => share,
                     };
                     *error = error.max(largest(share, of_tractions));
                 }
-                let of_traction = wave.uniform * sheared.iter().fold(twisted, |a, s| a.max(*s));
+                let sheared = sheared.into_iter().fold(twisted, f64::max);
                 let first = if uniform { OF_TRACTION } else { OF_RATIO };
-                factors[first..].iter_mut().for_each(|error| *error = error.max(of_traction));
+                for (k, error) in factors.iter_mut().enumerate().skip(first) {
+                    *error = error.max(wave.tractions[usize::from(k == OF_RATIO)] * sheared);
+                }
             }
             let distance = place.depth.max(self.followed) / self.spacing[axis];
             let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
@@ -480,6 +513,7 @@ mod tests {
                 followed: DEPTH_LIMIT,
                 of_width: 0.0,
                 half_width: 1.0,
+                columns: Vec::new(),
                 known: cells.clone().map(|k| known[k * k % 7 % 3]).collect(),
                 tractions: Some(
                     [3, 5].map(|n| cells.clone().map(|k| (k * n % 13) as f64).collect()),
