@@ -556,6 +556,9 @@ class StressPlan:
     def body(self) -> HalfSpace: ...
     @property
     def edge(self) -> _Field: ...
+    def extreme_errors(
+        self, z: Any, fields: StressFields, options: StressOptions
+    ) -> list[float]: ...
 
 @final
 class Convolution:
