@@ -606,8 +606,8 @@ def wear(
         max_iterations,
         progress,
     )
-    setup = Setup(body, counterbody, grid or control.grid, max_cells, threads)
-    setup.check_end(shape, load, None)
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    setup.check_end(shape, load, initial if isinstance(initial, WearHistory) else None)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     extent = Sliding(sliding, cycles, slide, passes, roll, slip)
     bodies = Wearing(body, counterbody, rate, counter_rate, grows=grid is None)
