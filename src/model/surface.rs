@@ -12,7 +12,6 @@ use std::ops::Deref;
 
 use ndarray::{Array2, Axis};
 
-use self::height_map::around;
 use crate::error::{Error, Result, finite, refuse_if};
 use crate::model::grid::Grid;
 use crate::numerics::layout::slice_mut;
@@ -590,8 +589,8 @@ impl<S: Surface> OffsetShape<S> {
     }
 
     fn at(&self, x: f64, y: f64) -> f64 {
-        let ([i, k], s) = around(&self.grid, 0, x);
-        let ([j, l], t) = around(&self.grid, 1, y);
+        let ([i, k], s) = self.grid.around(0, x);
+        let ([j, l], t) = self.grid.around(1, y);
         let along = |i: usize| self.lift[[i, j]] * (1.0 - t) + self.lift[[i, l]] * t;
         along(i) * (1.0 - s) + along(k) * s
     }

@@ -118,31 +118,11 @@ value! {
 /// whose centre lies on the rim of the map.
 const ROUNDING: f64 = 1e-9;
 
-/// Indices along an axis of the samples below and above `coordinate`, and the weight of the latter; beyond the outermost samples
-/// theirs alone where the grid does not repeat.
-pub(super) fn around(grid: &Grid, axis: usize, coordinate: f64) -> ([usize; 2], f64) {
-    let (n, position) = (grid.shape()[axis], position(grid, axis, coordinate));
-    if grid.is_periodic()[axis] {
-        let below = position.floor();
-        let index = below.rem_euclid(n as f64) as usize % n;
-        return ([index, (index + 1) % n], position - below);
-    }
-    let position = position.clamp(0.0, (n - 1) as f64);
-    let below = (position as usize).min(n.saturating_sub(2));
-    ([below, (below + 1).min(n - 1)], position - below as f64)
-}
-
-/// Where `coordinate` lies between the samples along an axis, of which the first is at 0.
-fn position(grid: &Grid, axis: usize, coordinate: f64) -> f64 {
-    (coordinate - grid.center()[axis]) / grid.spacing()[axis]
-        + 0.5 * (grid.shape()[axis] - 1) as f64
-}
-
-/// [`around`]; `None` outside the map, which ends half a cell beyond the outermost samples unless it repeats.
+/// [`Grid::around`]; `None` outside the map, which ends half a cell beyond the outermost samples unless it repeats.
 fn locate(grid: &Grid, axis: usize, coordinate: f64) -> Option<([usize; 2], f64)> {
     let map = -0.5 - ROUNDING..=grid.shape()[axis] as f64 - 0.5 + ROUNDING;
-    let holds = grid.is_periodic()[axis] || map.contains(&position(grid, axis, coordinate));
-    holds.then(|| around(grid, axis, coordinate))
+    let holds = grid.is_periodic()[axis] || map.contains(&grid.position(axis, coordinate));
+    holds.then(|| grid.around(axis, coordinate))
 }
 
 impl Surface for HeightMap {

@@ -74,7 +74,8 @@ PASSES: dict[str, Any] = {"sliding": None, "passes": 1e6, "roll": ROLLED}
 
 
 def wear(**keywords: Any) -> Any:
-    given = {"load": 10.0, "grid": GRID, "rate": 1e-16, "sliding": 100.0, "steps": 1} | keywords
+    given: dict[str, Any] = {"load": 10.0, "grid": GRID, "rate": 1e-16, "sliding": 100.0}
+    given |= {"steps": 1, **keywords}
     return nacre.wear(BALL, COATED, given.pop("counterbody", STEEL), **given)
 
 
@@ -130,8 +131,8 @@ GROUPS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
 def numbers(result: Any) -> list[bytes]:
     """Return the fields of a result."""
     if isinstance(result, nacre.types.WearHistory):
-        last = result.states[-1]
-        fields = [last.depth, last.counter_depth, last.solution.pressure, result.distance]
+        end = result.states[-1]
+        fields = [end.depth, end.counter_depth, end.solution.pressure, result.distance]
         return [np.asarray(field).tobytes() for field in fields]
     last = result[-1] if isinstance(result, nacre.types.History | list) else result
     names = ("pressure", "gap", "approach", "traction", "slip")
