@@ -105,6 +105,26 @@ impl Grid {
         [0, 1].map(|axis| self.periodic[axis].then_some(self.size[axis]))
     }
 
+    /// Where a coordinate lies along an axis, in cells from the centre of the first.
+    pub(crate) fn position(&self, axis: usize, coordinate: f64) -> f64 {
+        (coordinate - self.center[axis]) / self.spacing()[axis]
+            + 0.5 * (self.shape[axis] - 1) as f64
+    }
+
+    /// Indices of the cells whose centres are below and above a coordinate along an axis, and the weight of the latter; beyond
+    /// the outermost centres theirs alone, unless the grid repeats.
+    pub(crate) fn around(&self, axis: usize, coordinate: f64) -> ([usize; 2], f64) {
+        let (n, position) = (self.shape[axis], self.position(axis, coordinate));
+        if self.periodic[axis] {
+            let below = position.floor();
+            let index = below.rem_euclid(n as f64) as usize % n;
+            return ([index, (index + 1) % n], position - below);
+        }
+        let position = position.clamp(0.0, (n - 1) as f64);
+        let below = (position as usize).min(n.saturating_sub(2));
+        ([below, (below + 1).min(n - 1)], position - below as f64)
+    }
+
     /// Whether this is a grid for line contact in plane strain.
     pub fn is_line(&self) -> bool {
         self.plane_strain

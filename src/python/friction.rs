@@ -280,6 +280,11 @@ pub(super) struct PyRolling<'py> {
 }
 
 impl PyRolling<'_> {
+    /// Order in the length of a cell; `usual` where none is given.
+    pub(super) fn order(&self, usual: usize) -> PyResult<usize> {
+        Ok(self.order.count("order", 1)?.unwrap_or(usual))
+    }
+
     /// Rolling of a shape, which says in which direction if it rolls in one alone.
     pub(super) fn read(&self, shape: &Shape) -> PyResult<Rolling> {
         let friction = self.friction.map(coefficient)?;
@@ -364,9 +369,7 @@ pub(super) fn roll(
         ));
     }
     friction_steps(py, shape, options, on, |shape, options| {
-        if let Some(order) = rolling.order.count("order", 1)? {
-            options.order = order;
-        }
+        options.order = rolling.order(options.order)?;
         let rolling = rolling.read(shape)?;
         Ok(match cells {
             Some(cells) => (Moves::RollCells(rolling, cells), true),

@@ -41,13 +41,16 @@ pub(super) struct PyWear<'py> {
 impl PyWear<'_> {
     fn read(&self, shape: &Shape) -> PyResult<Wear> {
         let friction = self.friction.as_ref().map(PyFrictionOptions::read).transpose()?;
-        let friction = friction.unwrap_or_default();
+        let mut friction = friction.unwrap_or_default();
         let slip = match (&self.cycle, &self.rolling, self.slip.get()) {
             (Some(steps), ..) => {
                 let steps = steps.iter().map(PyFrictionStep::read).collect::<PyResult<_>>()?;
                 Slip::Cycle(steps, friction)
             }
-            (_, Some(rolling), _) => Slip::Pass(Box::new(rolling.read(shape)?), friction),
+            (_, Some(rolling), _) => {
+                friction.order = rolling.order(friction.order)?;
+                Slip::Pass(Box::new(rolling.read(shape)?), friction)
+            }
             (.., Some(slip)) => Slip::Cells(real_matrix("slip", slip)?),
             _ => Slip::Everywhere,
         };

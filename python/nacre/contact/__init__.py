@@ -529,7 +529,8 @@ def wear(
         slips of the second time count.
     passes : float, optional
         Number of passes of a wheel; `roll` says how it rolls. A pass takes ``κ ∫ p |slip|`` along
-        the rolling direction off the whole track, and steps are explicit.
+        the rolling direction off the whole track, together κ/μ times what it dissipates, and steps
+        are explicit.
     roll : mapping, optional
         Keywords of `nacre.roll`: `friction`, `creepage`, `spin`, `direction` and others.
     slip : array_like, optional
@@ -538,7 +539,7 @@ def wear(
         Number of equal steps, or their ends in ascending order, from above 0 to the whole distance.
         By default as many as keep the error of each within `step_tolerance`.
     step_tolerance : float, optional
-        Largest error of the pressure that a step may add, over the peak.
+        Largest error of the pressure that a step may add, over the peak; not beside given `steps`.
     scheme : {"trapezoidal", "euler"}, optional
         Steps of second order, which ring where they are too long and given; or of first order,
         which never do.
@@ -548,13 +549,15 @@ def wear(
         as long, 1.3 times in line contact. Slips of `slide` and `roll`, stiffness, gradients and
         stresses of the solutions are those of layers as thick as before.
     initial : WearHistory or array_like, optional
-        History to go on from, by the distance that is given; or depth removed from the body before,
-        ``(nx, ny)`` [m].
+        History of the same shape, bodies, thickness and kind of motion to go on from, by the
+        distance that is given; load, rates, slips and steps may be others. Or depth removed from
+        the body before, ``(nx, ny)`` [m].
     until : "through", optional
         Whether it ends where the first layer is through.
     store : str or os.PathLike, optional
-        File ``.nc`` in which the history is kept after each step. Where it exists, the call goes on
-        from it.
+        File ``.nc`` for the history in the end. Each state is added to a ``.journal`` beside it
+        before the next step; where there is one, the same call goes on from it, with other steps if
+        need be. `nacre.load` reads both.
     tolerance, max_iterations : optional
         How each contact is solved, as `nacre.solve` explains.
     progress : callable, optional
@@ -569,7 +572,9 @@ def wear(
     ------
     ValueError
         If an argument is out of range, a layer is unknown or has no rate, or not exactly one of
-        `sliding`, `cycles` and `passes` is given.
+        `sliding`, `cycles` and `passes` is given; or if the history to go on from is another.
+    BlockingIOError
+        If another process writes the store.
     ConvergenceError
         If a contact did not converge. This and every other exception carries what is finished as
         `history`.
@@ -607,8 +612,8 @@ def wear(
         max_iterations,
         progress,
     )
-    setup = Setup(body, counterbody, grid or control.grid, max_cells, threads)
-    setup.check_end(shape, load, None)
+    setup = Setup(body, counterbody, grid, max_cells, threads)
+    setup.check_end(shape, load, initial if isinstance(initial, WearHistory) else None)
     motion = Motion(load, approach, eccentricity, moment, tilt)
     extent = Sliding(sliding, cycles, slide, passes, roll, slip)
     bodies = Wearing(body, counterbody, rate, counter_rate, grows=grid is None)

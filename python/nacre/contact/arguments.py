@@ -65,7 +65,8 @@ class Setup:
 
     def check_end(self, shape: object, load: object, initial: object) -> None:
         """Raise a `ValueError` that names a grid if a cylinder has none."""
-        if not isinstance(shape, core.Cylinder) or self.grid or initial is not None:
+        given = self.grid is not None or initial is not None
+        if given or not isinstance(shape, core.Cylinder):
             return
         compliance = _compliance(self.body) + _compliance(self.counterbody)
         if compliance > 0 and isinstance(load, int | float) and 0 < load < math.inf:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import dataclasses
 import json
 import math
@@ -17,9 +18,10 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.disk import check_folder
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Field, Matrix
-from nacre._tools.units import symbol, travelled, written
+from nacre._tools.units import Scale, rounded, symbol, system, travelled, written
 from nacre.contact.arguments import (
     MOTION,
     STEP,
@@ -32,6 +34,7 @@ from nacre.contact.arguments import (
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
+from nacre.results.journal import Journal, Record
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import WEAR
 from nacre.results.report import Picture, Sections, contact_pictures, table, writer
@@ -52,6 +55,14 @@ MODEL = (
     "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
     "no change of friction, and layers {}: `thickness_error` says what that costs"
 )
+DISTANCES = ("sliding", "cycles", "passes")
+"""Keywords of the distance, one of which is given."""
+STEP_TOLERANCE = 1e-3
+"""Error that a step may add by default."""
+MOST_STEPS = 1_000_000
+"""Largest number of equal steps: some days of line contacts on coarse grids."""
+ROUNDING = 1e-12
+"""Part of a distance below which another is none."""
 THICKNESSES: dict[str, str] = {
     "frozen": "as thick as before",
     "first order": "thinner to first order in the depth",
@@ -84,8 +95,7 @@ class Sliding:
 
     def __post_init__(self) -> None:
         """Raise a `ValueError` unless one distance is given, with what belongs to it."""
-        names = ("sliding", "cycles", "passes")
-        if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
+        if len(known := [name for name in DISTANCES if getattr(self, name) is not None]) != 1:
             several = " and ".join(known) or "none"
             raise ValueError(f"one of sliding, cycles and passes must be given, got {several}")
         distance = core.real(known[0], getattr(self, known[0]))
@@ -94,6 +104,8 @@ class Sliding:
         for name, one in (("slide", "cycles"), ("roll", "passes")):
             if (getattr(self, name) is None) != (getattr(self, one) is None):
                 raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
+            if not isinstance(keywords := getattr(self, name), Mapping | None):
+                raise TypeError(f"{name} must be a mapping of keywords, got {keywords!r}")
         if self.slip is not None and self.sliding is None:
             raise ValueError("slip must be given with sliding: slide and roll have their own")
         if self.slip is not None:
@@ -105,10 +117,14 @@ class Sliding:
         return "cycles" if self.cycles is not None else "m" if self.passes is None else "passes"
 
     @property
+    def name(self) -> str:
+        """Keyword of the distance."""
+        return "sliding" if self.unit == "m" else self.unit
+
+    @property
     def distance(self) -> float:
         """The distance."""
-        known = (self.sliding, self.cycles, self.passes)
-        return next(one for one in known if one is not None)
+        return core.real(self.name, getattr(self, self.name))
 
     @property
     def friction(self) -> FrictionOptions | None:
@@ -126,13 +142,16 @@ class Sliding:
         if self.slide is None:
             return None
         rest = self._rest(self.slide, ("steps", "friction"))
-        steps = [{**step} for step in rest.get("steps", ())]
+        given = rest.get("steps", ())
+        if not isinstance(given, Sequence) or not all(isinstance(one, Mapping) for one in given):
+            raise TypeError(f"steps of slide must be a list of mappings, got {given!r}")
+        steps = [{**step} for step in given]
         if not steps or rest.get("friction") is None:
             raise ValueError("slide must have friction, and steps of one cycle")
         if wrong := {key for step in steps for key in step} - {*STEP} | {
             key for step in steps for key in step if key in MOTION
         }:
-            raise ValueError(f"steps of slide must not have {', '.join(sorted(wrong))}")
+            raise ValueError(f"steps of slide must not have {', '.join(sorted(map(str, wrong)))}")
         steps[0].setdefault("friction", rest["friction"])
         return [FrictionStep.of(step) for step in steps]
 
@@ -156,7 +175,7 @@ class Sliding:
         options = ("tolerance", "max_convolutions", "coupling")
         rest = {key: value for key, value in keywords.items() if key not in options}
         if wrong := set(rest) - set(names):
-            raise ValueError(f"slide and roll must not have {', '.join(sorted(wrong))}")
+            raise ValueError(f"slide and roll must not have {', '.join(sorted(map(str, wrong)))}")
         return rest
 
 
@@ -176,26 +195,33 @@ class WearControl:
     progress: WearProgress | None
 
     def __post_init__(self) -> None:
-        """Raise a `ValueError` unless it ends in one of the ways that there are."""
-        if self.until not in (None, "through"):
+        """Raise an error unless it ends in one of the ways that there are, and can be stored."""
+        if not (self.until is None or (isinstance(self.until, str) and self.until == "through")):
             raise ValueError(f'until must be None or "through", got {self.until!r}')
         if not isinstance(self.store, str | os.PathLike | None):
             raise TypeError(f"store must be a path, got {self.store!r}")
+        if self.store is not None and Path(self.store).suffix.lower() != ".nc":
+            raise ValueError(f"store must end in .nc, got {str(self.store)!r}")
+        tolerance = core.real("step_tolerance", self.step_tolerance)
+        if not isinstance(self.steps, str) and tolerance != STEP_TOLERANCE:
+            raise ValueError(
+                "step_tolerance must not be given beside steps, whose lengths it would choose, "
+                f"got {tolerance:g}"
+            )
         check_progress(self.progress)
 
     @property
-    def history(self) -> WearHistory | None:
-        """History to go on from: that of the store, if there is one."""
-        if self.store is not None and Path(self.store).is_file():
-            if not isinstance(stored := files.load(self.store), WearHistory):
-                raise ValueError(f"store must be a history of wear, got a {type(stored).__name__}")
-            return stored
-        return self.initial if isinstance(self.initial, WearHistory) else None
+    def journal(self) -> Path | None:
+        """File beside the store to which each state is added."""
+        return None if self.store is None else Path(self.store).with_suffix(".journal")
 
-    @property
-    def grid(self) -> core.Grid | None:
-        """Grid of the history to go on from."""
-        return history.states[-1].solution.grid if (history := self.history) else None
+    def stored(self) -> WearHistory | None:
+        """Return the history of the store; None where there is none."""
+        if self.store is None or not Path(self.store).is_file():
+            return None
+        if not isinstance(stored := files.load(self.store), WearHistory):
+            raise ValueError(f"store must be a history of wear, got a {type(stored).__name__}")
+        return stored
 
     def depths(self, history: WearHistory | None) -> tuple[Any, Any] | None:
         """Return the depths removed from both bodies before."""
@@ -215,13 +241,16 @@ class WearControl:
                 )
             return None
         ends = core.real_array("steps", self.steps)
+        if ends.ndim > 1 or ends.size == 0:
+            raise ValueError(
+                f'steps must be "auto", a number or their ends, got an array of shape {ends.shape}'
+            )
         if ends.ndim == 0:
             count = core.integer("steps", self.steps)
-            if count < 1:
-                raise ValueError(f"steps must be at least 1, got {count}")
-            core.check_memory("steps", count, 64)
+            if not 1 <= count <= MOST_STEPS:
+                raise ValueError(f"steps must be at least 1 and at most {MOST_STEPS}, got {count}")
             ends = distance * np.arange(1, count + 1) / count
-        if ends.size and not math.isclose(ends[-1], distance, rel_tol=1e-12):
+        if not math.isclose(ends[-1], distance, rel_tol=1e-12):
             raise ValueError(
                 f"steps must end at {distance:g}, the whole distance, got {ends[-1]:g}"
             )
@@ -569,6 +598,25 @@ class WearHistory(Result):
                 raise ValueError("states must hold one at least")
             return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **parts)  # type: ignore[arg-type]
 
+    @classmethod
+    def _kept(cls, records: Mapping[str, Record]) -> Self:
+        """Return the history that a journal keeps."""
+        with values.refusing(cls.__name__):
+            states = []
+            for record in records.values():
+                numbers = np.frombuffer(base64.b64decode(record["numbers"]))
+                states += _filled(record["states"], _arrays(numbers))
+            rest = {key: record[key] for key in ("events", "unit", "report", "inputs")}
+        return cls._restored({"states": states, **rest})
+
+    def _keep(self, journal: Journal, first: int = 0) -> None:
+        """Add states to a journal, each with all that is known beside it."""
+        for place in range(first, len(self)) if journal.path else ():
+            one = dataclasses.replace(self, states=(self.states[place],))
+            plain, numbers = _packed(one._state())
+            text = base64.b64encode(numbers.tobytes()).decode()
+            journal.append({"key": str(place), "numbers": text, **plain})
+
     def _state(self) -> dict[str, object]:
         return {
             "states": [
@@ -732,7 +780,7 @@ class WearHistory(Result):
         """Return names and values of the main numbers, with units."""
         line = self.states[0].solution.grid.is_line
         report, last = self.report, self.states[-1]
-        volumes = [written(volume, "m²" if line else "m³") for volume in self.volume[-1]]
+        volumes = _alike(self.volume[-1], "m²" if line else "m³")
         error = report.step_error
         rows = [
             ("distance", travelled(last.distance, self.unit)),
@@ -811,7 +859,13 @@ def _filled(value: Any, take: Callable[[Sequence[int]], Field]) -> Any:
 
 
 def _fromto(numbers: Field, unit: str) -> str:
-    return f"{written(float(numbers[0]), unit)} to {written(float(numbers[-1]), unit)}"
+    return " to ".join(_alike(numbers[[0, -1]], unit))
+
+
+def _alike(numbers: Field, unit: str) -> list[str]:
+    """Return numbers in the unit of the largest one."""
+    scale = Scale.of(float(np.abs(numbers).max()), unit)
+    return [f"{rounded(scale.factor * number, 4)} {scale.unit}" for number in numbers]
 
 
 def rates(name: str, rate: Any, body: Body | None) -> list[float]:
@@ -848,36 +902,61 @@ def wear_history(
     on: Setup | core.Plan,
 ) -> WearHistory:
     """Return the history of wear of a shape, after that to go on from."""
-    start = time.perf_counter()
-    before = control.history
-    stored = control.store is not None and before is not None and before is not control.initial
     sliding = dataclasses.replace(sliding, motion=motion)
-    inputs = _inputs(shape, motion, bodies, sliding) | {
-        "scheme": control.scheme,
-        "thickness": control.thickness,
-    }
-    if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
-        raise ValueError("initial must be a history of the same body, in the same unit of distance")
+    stored, kept = control.stored(), None
+    if control.journal is not None:
+        check_folder(control.journal)
+    with Journal(control.journal, "history of wear") as journal:
+        if journal.records:
+            kept = WearHistory._kept(journal.records)
+            journal.records.clear()
+        if kept and len(kept) >= len(stored or ()):
+            stored = kept
+        elif stored:
+            stored._keep(journal)
+        return _gone_on(shape, motion, bodies, sliding, control, on, journal, stored)
+
+
+def _gone_on(
+    shape: core.Shape,
+    motion: Motion,
+    bodies: Wearing,
+    sliding: Sliding,
+    control: WearControl,
+    on: Setup | core.Plan,
+    journal: Journal,
+    stored: WearHistory | None,
+) -> WearHistory:
+    """Return the history of wear after a stored one, or after that to go on from."""
+    start = time.perf_counter()
+    initial = control.initial if isinstance(control.initial, WearHistory) else None
+    if initial and stored and len(stored) < len(initial):  # killed before it began
+        stored = None
+    before = stored or initial
+    inputs = _inputs(shape, motion, bodies, sliding, control)
+    base = 0.0
+    if initial is not None:
+        inputs, base = _joined(initial, inputs, sliding), float(initial.distance[-1])
+    if stored and (other := _other(stored.inputs, inputs)):
+        was, now = (one.get(other, "none") for one in (stored.inputs, inputs))
+        raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
+    if isinstance(on, Setup) and on.grid is None and before:
+        on = dataclasses.replace(on, grid=before.states[-1].solution.grid, max_cells=None)
     own = on.grid if isinstance(on, Setup) else on.grid()
-    if before and not bodies.grows and own != (grid := before.states[-1].solution.grid):
+    if before and own != (grid := before.states[-1].solution.grid):
         name = "store" if stored else "initial"
         raise ValueError(f"{name} must be a history on the same grid, {own!r}, got {grid!r}")
-    if before and not stored and before.inputs["thickness"] != control.thickness:
-        was = before.inputs["thickness"]
-        raise ValueError(
-            f'initial must be a history of the same thickness, "{control.thickness}", got "{was}"'
-        )
-    if stored and before and (other := _other(before.inputs, inputs)):
-        was, now = (one.get(other, "none") for one in (before.inputs, inputs))
-        raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
+    if initial and not stored:
+        dataclasses.replace(initial, inputs=inputs)._keep(journal)
     states = list(before.states) if before else []
     events = list(before.events) if before else []
     offset = states[-1].distance if states else 0.0
     ends = control.ends(sliding.distance)
-    distance = sliding.distance
-    if stored:
-        distance = max(distance - offset, 0.0)
-        ends = None if ends is None else [end - offset for end in ends if end > offset]
+    distance = base + sliding.distance - offset
+    if ends is not None:
+        ends = [base + end - offset for end in ends]
+        ends = [end for end in ends if end > ROUNDING * offset]
+    distance = distance if distance > ROUNDING * offset else 0.0
     options = WearOptions(
         rate=rates("rate", bodies.rate, bodies.body),
         counter_rate=rates("counter_rate", bodies.counter_rate, bodies.counterbody),
@@ -939,8 +1018,7 @@ def wear_history(
                 )
                 states.append(state)
                 events += [_event(one, offset, members) for one in through]
-                if control.store is not None:
-                    history(converged=False).save(control.store)
+                history(converged=False)._keep(journal, len(states) - 1)
                 if control.progress is not None:
                     if control.progress(state) is False:
                         break
@@ -962,14 +1040,18 @@ def wear_history(
 
 
 def _rate_notes(options: WearOptions) -> list[str]:
-    """Return what is wrong with rates that no test has measured."""
-    named = (("rate", options.rate), ("counter_rate", options.counter_rate))
-    return [
-        f"{name} is in m²/N, and {max(rates):.3g} m²/N are {1e9 * max(rates):.3g} mm³/(N m), more "
-        "than dry wear takes off: give a rate in mm³/(N m) times 1e-9"
-        for name, rates in named
-        if max(rates) > MOST_RATE
-    ]
+    """Return what is wrong with rates that no test has measured, in the units that are set."""
+    size, unit = system().unit("m²/N")
+    notes = []
+    for name, rates in (("rate", options.rate), ("counter_rate", options.counter_rate)):
+        for words, low, high in (("more", MOST_RATE, math.inf), ("less", 0.0, LEAST_RATE)):
+            notes += [
+                f"{name} is in {unit}, and {rate:.3g} {unit} are {1e9 * size * rate:.3g} "
+                f"mm³/(N m), {words} than dry wear takes off: 1 mm³/(N m) is {1e-9 / size:.3g} "
+                f"{unit}"
+                for rate in [rate for rate in rates if low < rate * size < high][:1]
+            ]
+    return notes
 
 
 def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
@@ -979,8 +1061,11 @@ def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) ->
     return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
 
 
-def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) -> dict[str, str]:
+def _inputs(
+    shape: object, motion: Motion, bodies: Wearing, sliding: Sliding, control: WearControl
+) -> dict[str, str]:
     """Return the inputs in words."""
+    initial = control.initial
     named = {
         "shape": shape,
         "body": bodies.body,
@@ -991,7 +1076,12 @@ def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) ->
         "slide": sliding.slide,
         "roll": sliding.roll,
         "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
-        "sliding" if sliding.unit == "m" else sliding.unit: float(sliding.distance),
+        sliding.name: sliding.distance,
+        "initial": None
+        if isinstance(initial, WearHistory | None)
+        else core.real_array("initial", initial),
+        "scheme": control.scheme,
+        "thickness": control.thickness,
     }
     return {name: _words(value) for name, value in named.items() if value is not None}
 
@@ -1003,6 +1093,37 @@ def _words(value: object) -> str:
         return text
     plain = json.dumps(values.encode(value, digest=True))
     return f"{text}, CRC {zlib.crc32(plain.encode()):08x}"
+
+
+def _joined(before: WearHistory, now: Mapping[str, str], sliding: Sliding) -> dict[str, str]:
+    """Return the inputs of a history and of what follows, which has the same bodies and motion.
+
+    Others may differ, and name both and the distance at which they change.
+    """
+    was, after = before.inputs, float(before.distance[-1])
+    for name in (sliding.name, "load", "approach"):
+        if (name in was) != (name in now):
+            kinds = (
+                ", ".join(one for one in (*DISTANCES, "load", "approach") if one in inputs)
+                for inputs in (now, was)
+            )
+            raise ValueError(
+                "initial must be a history of the same kind of motion, {}, got {}".format(*kinds)
+            )
+    for name in ("shape", "body", "counterbody", "thickness"):
+        if was[name] != now[name]:
+            raise ValueError(
+                f"initial must be a history of the same {name}, {now[name]}, got {was[name]}"
+            )
+    place = f"{after:g} {symbol('m') if before.unit == 'm' else before.unit}"
+    joined = {}
+    for name in dict.fromkeys((*was, *now)):
+        first, then = was.get(name, "none"), now.get(name, "none")
+        ends_alike = first.endswith(f" {then}") and ", then " in first
+        joined[name] = first if ends_alike else f"{first} up to {place}, then {then}"
+        if first == then or name == "initial":
+            joined[name] = first
+    return joined | {sliding.name: str(after + sliding.distance)}
 
 
 def _other(before: Mapping[str, str], now: Mapping[str, str]) -> str | None:
@@ -1099,6 +1220,8 @@ MOST_RATE = 1e-9
 Archard's K = κH is at most some 0.1, that of abrasion (NPTEL, course 112104122, lecture 7.5), and
 the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
 """
+LEAST_RATE = 1e-18
+"""Rate [m²/N] below which there is a warning: 1e-9 mm³/(N m), that of the least worn diamond."""
 MOST_THINNING = 0.05
 """Error of the pressure by the thickness of layers from which on there is a warning."""
 FIRST_ORDER = 0.4

@@ -11,9 +11,9 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.units import SI, Within, symbol, system
 from nacre.results import quantities
+from nacre.results.journal import Record
 from nacre.results.parameters import parameter_unit
 from nacre.results.quantities import ERROR
-from nacre.studies.journal import Record
 from nacre.studies.outputs import (
     AXES,
     ESTIMATED,

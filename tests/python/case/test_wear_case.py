@@ -172,7 +172,7 @@ def test_the_command_prints_the_history_in_the_units_of_the_case(
     life = history.life
     assert life is not None
     assert f"through after {life.distance / 1e3:.4g} m at y = 0 mm." in due
-    assert ", 0 mm² of the counterbody" in due
+    assert ", 0 µm² of the counterbody" in due
 
 
 def test_json_holds_the_numbers_of_all_states_exactly(tmp_path: Path, capsys: Capture) -> None:
