@@ -732,7 +732,7 @@ class WearSteps:
         tuple[_Field, _Field],
         Solved,
         list[dict[str, Any]],
-        float | None,
+        float,
         str | None,
         tuple[bool, bool],
         int,

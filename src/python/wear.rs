@@ -33,6 +33,7 @@ pub(super) struct PyWear<'py> {
     thickness: Argument<'py>,
     until_through: bool,
     initial: Option<[Bound<'py, PyAny>; 2]>,
+    goes_on: bool,
     tolerance: Argument<'py>,
     max_iterations: Argument<'py>,
     grows: bool,
@@ -72,6 +73,7 @@ impl PyWear<'_> {
             thickness: self.thickness.word("thickness")?,
             until_through: self.until_through,
             initial: initial.transpose()?,
+            goes_on: self.goes_on,
             options: Options {
                 tolerance: self.tolerance.real("tolerance")?,
                 max_iterations: self.max_iterations.count("max_iterations", 0)?,
@@ -85,14 +87,14 @@ impl PyWear<'_> {
 #[pyclass(name = "WearSteps", module = "nacre._core", frozen)]
 pub(super) struct PyWearSteps(Arc<Mutex<WearSession<Shape>>>);
 
-/// Distance, depths, solution, layers that are through, error of the step, why it wore nothing, whether it rings and is settled, and
+/// Distance, depths, solution, layers that are through, error by the steps, why it wore nothing, whether it rings and is settled, and
 /// how often the grid has grown.
 type State<'py> = (
     f64,
     [Bound<'py, PyArray2<f64>>; 2],
     PySolved,
     Plain<Vec<WearThrough>>,
-    Option<f64>,
+    f64,
     Plain<Option<Idle>>,
     [bool; 2],
     usize,

@@ -274,6 +274,7 @@ class WearOptions:
     thickness: str
     until_through: bool
     initial: tuple[Any, Any] | None
+    goes_on: bool
     tolerance: float
     max_iterations: int | None
     grows: bool
@@ -299,6 +300,8 @@ class WearThrough(Result):
     """Number and name of the layer, "layers[0] DLC"."""
     body: Literal["body", "counterbody"]
     """Whose layer it is."""
+    uncertainty: float | None = None
+    """Estimated error of the distance by the steps [m], cycles or passes."""
 
     def __repr__(self) -> str:
         """Return layer, distance and place in a line."""
@@ -307,8 +310,16 @@ class WearThrough(Result):
     def _words(self, unit: Unit | None) -> str:
         """Return layer, distance in the unit of a history, and place."""
         at = ", ".join(written(x, "m") for x in self.position)
-        distance = travelled(self.distance, unit) if unit else f"{self.distance:.4g}"
+        distance = self._travelled(unit) if unit else f"{self.distance:.4g}"
         return f"{self.layer} of the {self.body} after {distance}, at ({at})"
+
+
+    def _travelled(self, unit: Unit) -> str:
+        """Return the distance and its error in the unit of a history."""
+        distance = travelled(self.distance, unit)
+        if self.uncertainty is None:
+            return distance
+        return f"{distance} ± {travelled(self.uncertainty, unit)}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -324,15 +335,15 @@ class WearReport(Result):
     steps: int
     """Number of steps."""
     step_error: float | None
-    """Sum of the estimated errors of the pressure that the steps add, relative to the peak.
+    """Estimated error of the last pressure by the steps: the largest of a cell, over the peak.
 
-    Errors of earlier steps fade; None where the steps were given.
+    It is found with steps of another length. A history that goes on counts its own steps.
     """
     thickness_error: float | None
     """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
 
-    That of layers as thick as before, or of thinner ones to first order: the root of its mean
-    square within the contact, found with layers that are thinner by the mean of the depths. None
+    That of layers as thick as before, or of thinner ones to first order: the largest within the
+    contact and of the peak, found with layers that are thinner by the mean of the depths. None
     without a layer that wears.
     """
     regrids: int
@@ -372,7 +383,7 @@ class WearState(Result):
     solution: Solution
     """The contact; its gap has the wear in it."""
     step_error: float | None
-    """Estimated error of the pressure that the step has added, relative to the peak."""
+    """Estimated error of the pressure by the steps, the largest of a cell relative to the peak."""
     rings: bool
     """Whether pressures rise and fall from step to step, since the steps are too long."""
 
@@ -503,7 +514,7 @@ class WearHistory(Result):
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
         words = (
-            f"{life.layer} of the {life.body}: through after {travelled(life.distance, self.unit)} "
+            f"{life.layer} of the {life.body}: through after {life._travelled(self.unit)} "
             f"at {', '.join(places)}."
         )
         return Verdict("bad", words, (), None, life.layer, None)
@@ -971,6 +982,8 @@ def _gone_on(
         thickness=control.thickness,
         until_through=control.until is not None,
         initial=control.depths(before),
+        # A store that ends where it was to end does not go on.
+        goes_on=before is not None and not stored,
         tolerance=control.tolerance,
         max_iterations=control.max_iterations,
         grows=bodies.grows,
@@ -986,10 +999,9 @@ def _gone_on(
         idle = {reason for reason, note in NOTHING_WORN.items() if note in earlier.warnings}
 
     def history(*, converged: bool, thickness: float | None = None) -> WearHistory:
-        known = [state.step_error for state in states if state.step_error is not None]
         report = WearReport(
             steps=len(states) - 1,
-            step_error=sum(known) if known else None,
+            step_error=states[-1].step_error,
             thickness_error=thickness,
             regrids=regrids + (earlier.regrids if earlier else 0),
             converged=converged,
@@ -1058,7 +1070,8 @@ def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) ->
     kind: Literal["body", "counterbody"] = "body" if event["member"] == "body" else "counterbody"
     layer = _layers(members[kind == "counterbody"])[event["layer"]]
     x, y = event["position"]
-    return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
+    distance, error = offset + event["distance"], event["error"]
+    return WearThrough(distance, (x, y), event["layer"], layer, kind, error)
 
 
 def _inputs(
@@ -1142,11 +1155,18 @@ def _notes(
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
-    # Steps that are chosen have an error that counts it.
-    if any(state.rings and state.step_error is None for state in states):
+    wrong = states[-1].step_error or 0.0
+    if wrong > LARGEST_STEP_ERROR:
+        cure = ', or scheme="euler"' if any(state.rings for state in states) else ""
         notes.append(
-            "pressures of cells rise and fall from step to step: take shorter steps, or "
-            'scheme="euler"'
+            f"the last pressure errs by some {100 * wrong:.0f} % of the peak by the length of the "
+            f"steps: take shorter steps{cure}"
+        )
+    first, last = states[0].solution.load, states[-1].solution.load
+    if last < NOTHING_PRESSES * first:
+        notes.append(
+            f"at this approach, nothing presses any more: the load has fallen to {last / first:.1g} of "
+            "the first, and no more is worn: give a load"
         )
     if not settled:
         notes.append(NOT_SETTLED)
@@ -1222,6 +1242,10 @@ the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
 """
 LEAST_RATE = 1e-18
 """Rate [m²/N] below which there is a warning: 1e-9 mm³/(N m), that of the least worn diamond."""
+LARGEST_STEP_ERROR = 0.05
+"""Error of the pressure by the length of the steps from which on there is a warning."""
+NOTHING_PRESSES = 1e-3
+"""Part of the load of a contact at a given approach that is as good as none: a step's usual error."""
 MOST_THINNING = 0.05
 """Error of the pressure by the thickness of layers from which on there is a warning."""
 FIRST_ORDER = 0.4
