@@ -212,8 +212,11 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     ball = nacre.Sphere(5e-3)
     history = contact.wear(ball, load=10.0, rate=1e-15, passes=1.0, roll=roll, steps=1)
     wheel = contact.roll(ball, load=10.0, **roll)
-    track = (np.hypot(*wheel.slip) * wheel.pressure).sum(axis=0) * grid.spacing[0] * 1e-15
-    track *= wheel.dissipated / (wheel.dissipation.sum() * np.prod(grid.spacing))
+    # q·s/μ with the slip s = W − du/dx of central differences, x against the flow of material.
+    (q_x, q_y), (u_x, u_y) = wheel.traction, wheel.displacement
+    slope_x, slope_y = (np.gradient(u, grid.spacing[0], axis=0) for u in (u_x, u_y))
+    work = q_x * (wheel.creepage[0] + slope_x) + q_y * (wheel.creepage[1] + slope_y)
+    track = work.sum(axis=0) * grid.spacing[0] / 0.3 * 1e-15
     np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
     # All slip is at μp, and the pass takes it off along the whole grid.
     due = 1e-15 * wheel.dissipated / 0.3 * grid.size[0]
