@@ -61,7 +61,7 @@ STEP_TOLERANCE = 1e-3
 """Error that a step may add by default."""
 SAME = ("shape", "body", "counterbody", "thickness")
 """Inputs that stay where a history goes on; so do the kind of distance, and load or approach."""
-MOST_STEPS = 1_000_000
+MOST_ENDS = 1_000_000
 """Largest number of equal steps: some days of line contacts on coarse grids."""
 ROUNDING = 1e-12
 """Part of a distance below which another is none."""
@@ -249,8 +249,8 @@ class WearControl:
             )
         if ends.ndim == 0:
             count = core.integer("steps", self.steps)
-            if not 1 <= count <= MOST_STEPS:
-                raise ValueError(f"steps must be at least 1 and at most {MOST_STEPS}, got {count}")
+            if not 1 <= count <= MOST_ENDS:
+                raise ValueError(f"steps must be at least 1 and at most {MOST_ENDS}, got {count}")
             ends = distance * np.arange(1, count + 1) / count
         if not math.isclose(ends[-1], distance, rel_tol=1e-12):
             raise ValueError(
