@@ -582,11 +582,9 @@ impl<S: Surface> WearSession<S> {
                 let moves = std::iter::once(Move::RollSteadily(rolling));
                 let solutions = self.moved(depth, solution, moves, options, progress)?;
                 let axis = ndarray::Axis(rolling.direction.axis());
-                let width = self.plan.grid().spacing()[axis.index()];
                 let track = solutions.into_iter().flatten().next().and_then(|pass| {
-                    let line = (magnitude(&pass) * &pass.normal.pressure).sum_axis(axis);
-                    let line = line * (width * whole_work(&pass));
-                    line.insert_axis(axis).broadcast(shape).map(|track| track.to_owned())
+                    let line = pass.track(rolling.direction).insert_axis(axis);
+                    line.broadcast(shape).map(|track| track.to_owned())
                 });
                 track.map(|track| (Slipping::Track(track), None))
             }
@@ -997,13 +995,6 @@ fn mean_within(pressures: [&Array2<f64>; 3], apart: &Array2<f64>) -> f64 {
 fn magnitude(solution: &FrictionSolution) -> Array2<f64> {
     let [x, y] = &solution.slip;
     Zip::from(x).and(y).map_collect(|x, y| x.hypot(*y))
-}
-
-/// What friction dissipates in a pass over the sum of the slips of cells, which lacks that of the cells in which the stick zone
-/// ends; 1 where no cell slips.
-fn whole_work(pass: &FrictionSolution) -> f64 {
-    let by_cells = pass.dissipation().sum() * pass.grid().cell_area();
-    if by_cells > 0.0 { pass.dissipated().max(0.0) / by_cells } else { 1.0 }
 }
 
 /// Distance by which the surfaces pass each other in each cell in a step, |Δw − Δu|: the slip of cells in contact. Others may come

@@ -59,7 +59,9 @@ DISTANCES = ("sliding", "cycles", "passes")
 """Keywords of the distance, one of which is given."""
 STEP_TOLERANCE = 1e-3
 """Error that a step may add by default."""
-MOST_STEPS = 1_000_000
+SAME = ("shape", "body", "counterbody", "thickness")
+"""Inputs that stay where a history goes on; so do the kind of distance, and load or approach."""
+MOST_ENDS = 1_000_000
 """Largest number of equal steps: some days of line contacts on coarse grids."""
 ROUNDING = 1e-12
 """Part of a distance below which another is none."""
@@ -247,8 +249,8 @@ class WearControl:
             )
         if ends.ndim == 0:
             count = core.integer("steps", self.steps)
-            if not 1 <= count <= MOST_STEPS:
-                raise ValueError(f"steps must be at least 1 and at most {MOST_STEPS}, got {count}")
+            if not 1 <= count <= MOST_ENDS:
+                raise ValueError(f"steps must be at least 1 and at most {MOST_ENDS}, got {count}")
             ends = distance * np.arange(1, count + 1) / count
         if not math.isclose(ends[-1], distance, rel_tol=1e-12):
             raise ValueError(
@@ -914,13 +916,12 @@ def wear_history(
 ) -> WearHistory:
     """Return the history of wear of a shape, after that to go on from."""
     sliding = dataclasses.replace(sliding, motion=motion)
-    stored, kept = control.stored(), None
+    stored = control.stored()
     if control.journal is not None:
         check_folder(control.journal)
     with Journal(control.journal, "history of wear") as journal:
-        if journal.records:
-            kept = WearHistory._kept(journal.records)
-            journal.records.clear()
+        kept = WearHistory._kept(journal.records) if journal.records else None
+        journal.records.clear()
         if kept and len(kept) >= len(stored or ()):
             stored = kept
         elif stored:
@@ -965,8 +966,7 @@ def _gone_on(
     ends = control.ends(sliding.distance)
     distance = base + sliding.distance - offset
     if ends is not None:
-        ends = [base + end - offset for end in ends]
-        ends = [end for end in ends if end > ROUNDING * offset]
+        ends = [base + end - offset for end in ends if base + end - offset > ROUNDING * offset]
     distance = distance if distance > ROUNDING * offset else 0.0
     options = WearOptions(
         rate=rates("rate", bodies.rate, bodies.body),
@@ -1078,7 +1078,7 @@ def _inputs(
     shape: object, motion: Motion, bodies: Wearing, sliding: Sliding, control: WearControl
 ) -> dict[str, str]:
     """Return the inputs in words."""
-    initial = control.initial
+    initial = None if isinstance(control.initial, WearHistory) else control.initial
     named = {
         "shape": shape,
         "body": bodies.body,
@@ -1090,9 +1090,7 @@ def _inputs(
         "roll": sliding.roll,
         "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
         sliding.name: sliding.distance,
-        "initial": None
-        if isinstance(initial, WearHistory | None)
-        else core.real_array("initial", initial),
+        "initial": None if initial is None else core.real_array("initial", initial),
         "scheme": control.scheme,
         "thickness": control.thickness,
     }
@@ -1114,28 +1112,15 @@ def _joined(before: WearHistory, now: Mapping[str, str], sliding: Sliding) -> di
     Others may differ, and name both and the distance at which they change.
     """
     was, after = before.inputs, float(before.distance[-1])
-    for name in (sliding.name, "load", "approach"):
-        if (name in was) != (name in now):
-            kinds = (
-                ", ".join(one for one in (*DISTANCES, "load", "approach") if one in inputs)
-                for inputs in (now, was)
-            )
-            raise ValueError(
-                "initial must be a history of the same kind of motion, {}, got {}".format(*kinds)
-            )
-    for name in ("shape", "body", "counterbody", "thickness"):
-        if was[name] != now[name]:
-            raise ValueError(
-                f"initial must be a history of the same {name}, {now[name]}, got {was[name]}"
-            )
     place = f"{after:g} {symbol('m') if before.unit == 'm' else before.unit}"
     joined = {}
     for name in dict.fromkeys((*was, *now)):
         first, then = was.get(name, "none"), now.get(name, "none")
-        ends_alike = first.endswith(f" {then}") and ", then " in first
-        joined[name] = first if ends_alike else f"{first} up to {place}, then {then}"
-        if first == then or name == "initial":
-            joined[name] = first
+        kind = name in (sliding.name, "load", "approach")
+        if first != then and (name in SAME or (kind and "none" in (first, then))):
+            raise ValueError(f"initial must be a history of the same {name}, {then}, got {first}")
+        alike = first == then or name == "initial" or first.endswith(f", then {then}")
+        joined[name] = first if alike else f"{first} up to {place}, then {then}"
     return joined | {sliding.name: str(after + sliding.distance)}
 
 

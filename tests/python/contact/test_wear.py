@@ -150,6 +150,32 @@ def test_a_rate_in_the_wrong_unit_is_warned_of() -> None:
     assert worn(counter_rate=0.5e-9, **keywords).warnings == ()
 
 
+def test_bounds_of_rates_are_physical_in_any_units() -> None:
+    """1e-9 mm³/(N m) are 1e-18 m²/N and 1e-12 mm²/N; a roller in millimetres and megapascals."""
+    steel = nacre.Elastic(young=210e3, poisson=0.3)
+    keywords: dict[str, Any] = {"load": 100.0, "grid": nacre.Grid.line(64, 0.6), "sliding": 1.0}
+    keywords |= {"shape": nacre.Cylinder(10.0), "body": steel, "steps": 1}
+    with nacre.display_units("N-mm-MPa"):
+        assert nacre.wear(rate=1.1e-12, **keywords).warnings == ()
+        assert nacre.wear(rate=0.9e-3, **keywords | {"sliding": 1e-9}).warnings == ()
+        match = r"^rate is in mm²/N, and 9e-13 mm²/N are 9e-10 mm³/\(N m\), less .* is 0.001 mm²/N"
+        with pytest.warns(nacre.NacreWarning, match=match):
+            nacre.wear(rate=0.9e-12, **keywords)
+        with pytest.warns(nacre.NacreWarning, match="rate is in mm²/N, and 0.0011 mm²/N .* more"):
+            nacre.wear(rate=1.1e-3, **keywords | {"sliding": 1e-9})
+    with pytest.warns(nacre.NacreWarning, match="^counter_rate is in m²/N, and 9e-19 .* less"):
+        worn(counter_rate=0.9e-18)
+
+
+def test_printed_rows_have_one_unit() -> None:
+    """1e-17 m²/N of 1e5 N/m over 100 m are 100 µm²."""
+    rows = dict(worn(counter_rate=1e-18)._rows())
+    assert rows["worn volume"] == "100 µm² of the body, 10 µm² of the counterbody"
+    rows = dict(worn(sliding=50.0, steps=1)._rows())
+    assert rows["worn volume"] == "50 µm² of the body, 0 µm² of the counterbody"
+    assert rows["peak pressure"].count("MPa") == 2
+
+
 @pytest.mark.filterwarnings("ignore:the contact touches the edge of the grid")
 def test_a_depth_beyond_the_width_of_the_contact_is_warned_of() -> None:
     """The scar is as wide as the grid b, and κ s W/b deep, but for 1e-2 of that at its rim."""
@@ -212,8 +238,11 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     ball = nacre.Sphere(5e-3)
     history = contact.wear(ball, load=10.0, rate=1e-15, passes=1.0, roll=roll, steps=1)
     wheel = contact.roll(ball, load=10.0, **roll)
-    track = (np.hypot(*wheel.slip) * wheel.pressure).sum(axis=0) * grid.spacing[0] * 1e-15
-    track *= wheel.dissipated / (wheel.dissipation.sum() * np.prod(grid.spacing))
+    # q·s/μ with the slip s = W − du/dx of central differences, x against the flow of material.
+    (q_x, q_y), (u_x, u_y) = wheel.traction, wheel.displacement
+    slope_x, slope_y = (np.gradient(u, grid.spacing[0], axis=0) for u in (u_x, u_y))
+    work = q_x * (wheel.creepage[0] + slope_x) + q_y * (wheel.creepage[1] + slope_y)
+    track = work.sum(axis=0) * grid.spacing[0] / 0.3 * 1e-15
     np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
     # All slip is at μp, and the pass takes it off along the whole grid.
     due = 1e-15 * wheel.dissipated / 0.3 * grid.size[0]
@@ -246,6 +275,45 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
 def test_wrong_arguments_are_refused(keywords: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         worn(**keywords)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        (
+            {"sliding": None, "cycles": 1.0, "slide": 5},
+            "slide must be a mapping of keywords, got 5",
+        ),
+        ({"sliding": None, "passes": 1.0, "roll": "x"}, "roll must be a mapping of keywords, got"),
+        (
+            {"sliding": None, "cycles": 1.0, "slide": {"friction": 0.3, "steps": [5]}},
+            r"steps of slide must be a list of mappings, got \[5\]",
+        ),
+        (
+            {"sliding": None, "cycles": 1.0, "slide": {"friction": 0.3, 5: 1}},
+            "slide and roll must not have 5",
+        ),
+        ({"sliding": 1.0, "steps": [[1.0]]}, r"steps must be .*, got an array of shape \(1, 1\)"),
+        ({"steps": []}, r"steps must be .*, got an array of shape \(0,\)"),
+        ({"steps": 2**63}, "steps must be at least 1 and at most 1000000, got 9223372036854775808"),
+        ({"until": np.ones((2, 2))}, "until must be None or"),
+        ({"grid": np.ones((3, 3))}, "grid must be a nacre.Grid, got"),
+        ({"initial": "x"}, "initial must be a real array, got"),
+        ({"step_tolerance": "a"}, "step_tolerance must be a real number, got 'a'"),
+        ({"step_tolerance": 1e-2}, "step_tolerance must not be given beside steps"),
+    ],
+)
+def test_arguments_of_the_wrong_kind_are_refused_by_name(
+    keywords: dict[str, Any], message: str
+) -> None:
+    with pytest.raises((TypeError, ValueError), match=message):
+        worn(**keywords)
+
+
+def test_a_large_integer_is_a_distance() -> None:
+    with pytest.warns(nacre.NacreWarning):
+        history = worn(sliding=10**22, rate=1e-17)
+    assert history.distance[-1] == 1e22
 
 
 def test_thinner_layers_need_layers_that_are_known() -> None:
