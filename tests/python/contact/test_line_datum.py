@@ -7,7 +7,9 @@ import pytest
 
 import nacre
 
-LOAD, FRICTION, WIDTH = 1209.0, 0.2, 9.8e-4
+pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # few cells of stiff coats
+
+LOAD, FRICTION, WIDTH = 1209.0, 0.2, 2.45e-4
 BASE = nacre.Elastic(3.78e9, 0.3)
 SHAPE = nacre.Cylinder(0.01)
 COMPLIANCE = 2 * 2 * (1 - 0.3**2) / 3.78e9  # A of two bases
@@ -103,4 +105,4 @@ def test_printed_numbers_name_their_datum() -> None:
         )
         for printed, name in ((solution, "shift"), (solution.normal, "approach")):
             row = next(line for line in str(printed).splitlines() if line.startswith(name))
-            assert row.endswith(f", from the {surface} 980 µm away")
+            assert row.endswith(f", from the {surface} 245 µm away")

