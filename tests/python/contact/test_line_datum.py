@@ -96,7 +96,7 @@ def test_a_shift_is_refused_where_it_would_fall_with_the_force() -> None:
 
 
 def test_printed_numbers_name_their_datum() -> None:
-    for body, surface in ((coated(4, 60e-6), "bare substrate's surface"), (BASE, "surface")):
+    for body, surface in ((coated(4, 60e-6), "surface of the bare substrate"), (BASE, "surface")):
         solution = nacre.slide(
             SHAPE,
             *(body, body),

@@ -1,4 +1,4 @@
-"""Stated errors of rolling and sliding in line contact, at random places of the grid, against closed forms."""
+"""Stated errors of line contacts with friction, at random places of the grid."""
 
 import math
 
@@ -10,7 +10,7 @@ import nacre
 STEEL = nacre.Elastic(210e9, 0.3)
 MODULUS = 210e9 / 0.91 / 2
 HALF, RADIUS = 1e-4, 50e-3
-"""Half-width and radius: a circle differs from a parabola by (a/R)², 4e-6, far less than the errors."""
+"""Half-width and radius: a circle differs from a parabola by (a/R)², 4e-6."""
 LOAD = math.pi * HALF**2 * MODULUS / (4 * RADIUS)  # Hertz: a² = 4WR/πE*
 
 
