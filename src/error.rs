@@ -222,20 +222,30 @@ pub enum Error {
         /// Coordinate x of the shape's end \[m\].
         shape: f64,
     },
-    /// An approach or a shift that is prescribed to a line contact whose datum lies too near.
+    /// An approach that is prescribed to a line contact whose datum lies too near.
     #[error(
-        "{motion} cannot be prescribed on this grid: it is counted from the bare substrate's surface at \
+        "approach cannot be prescribed on this grid: it is counted from the bare substrate's surface at \
          {width:.3e} from the load, the grid's width, where stiff layers move the surface less; give a \
-         {load}, or a width of {needed:.3e} or more"
+         load, or a width of {needed:.3e} or more"
     )]
     Datum {
-        /// `approach` or `shift`.
-        motion: &'static str,
-        /// `load` or `force`.
-        load: &'static str,
         /// Width of the grid.
         width: f64,
         /// Width from which on the approach can be prescribed, estimated.
+        needed: f64,
+    },
+    /// A shift or creepage that is prescribed, or kept, in a line contact whose datum lies too near.
+    #[error(
+        "{motion} cannot be prescribed on this grid: it is counted from the bare substrate's surface at \
+         {width:.3e} from the load, the grid's width, where stiff layers move the surface less; give a \
+         force, or a width of {needed:.3e} or more"
+    )]
+    TangentialDatum {
+        /// `shift` or `creepage`.
+        motion: &'static str,
+        /// Width of the grid.
+        width: f64,
+        /// Width from which on the motion can be prescribed, estimated.
         needed: f64,
     },
     /// A shape that does not repeat with its grid.

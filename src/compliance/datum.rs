@@ -150,21 +150,29 @@ impl Datum {
         }
     }
 
-    /// An error where the `motion`, approach or shift, cannot be prescribed, and the `load` along it must be.
+    /// An error where an approach cannot be prescribed.
     ///
     /// # Errors
     /// [`Error::Datum`] where the operator is not positive definite with the datum of the grid.
-    pub(crate) fn check_prescribed(&self, motion: &'static str, load: &'static str) -> Result<()> {
-        if self.least > 0.0 {
-            return Err(Error::Datum {
-                motion,
-                load,
-                width: self.width,
-                // The wider the grid, the farther its datum must lie, by a quarter of the width at last.
-                needed: 2.0 * self.least,
-            });
-        }
-        Ok(())
+    pub(crate) fn check_approach(&self) -> Result<()> {
+        let error = |[width, needed]: [f64; 2]| Err(Error::Datum { width, needed });
+        self.widths().map_or(Ok(()), error)
+    }
+
+    /// An error where the `motion` along the surface, a shift or a creepage, cannot be prescribed.
+    ///
+    /// # Errors
+    /// [`Error::TangentialDatum`] as [`Datum::check_approach`].
+    pub(crate) fn check_motion(&self, motion: &'static str) -> Result<()> {
+        let error =
+            |[width, needed]: [f64; 2]| Err(Error::TangentialDatum { motion, width, needed });
+        self.widths().map_or(Ok(()), error)
+    }
+
+    /// Width of the grid and the one that is needed, where it is wider. The wider the grid, the farther its datum must lie,
+    /// by a quarter of the width at last.
+    fn widths(&self) -> Option<[f64; 2]> {
+        (self.least > 0.0).then_some([self.width, 2.0 * self.least])
     }
 }
 

@@ -192,7 +192,7 @@ impl Contact {
             .map(|hardness| hardness.check(&self.grid).map(|()| Bounds::of(hardness, columns)))
             .transpose()?;
         if !freedoms.loaded[0] {
-            self.datum.check_prescribed("approach", "load")?;
+            self.datum.check_approach()?;
         }
         let limited = self.ends.limit(shape);
         let steps = Steps {

@@ -15,7 +15,9 @@ mod threads;
 pub(crate) use lanes::{
     Lanes, ONE, ZERO, all, dot, sum, update, update_with_largest, where_positive,
 };
-pub(crate) use memory::{check_memory, memory_of, too_little};
+#[cfg(feature = "python")]
+pub(crate) use memory::too_little;
+pub(crate) use memory::{check_memory, memory_of};
 pub(crate) use rows::{Row, Rows, Total};
 pub(crate) use threads::{
     CAN_START_THREADS, LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number,

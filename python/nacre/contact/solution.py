@@ -911,7 +911,7 @@ def datum_words(report: Report) -> str:
     if sum(repeats) != 1 or not free:
         return ""
     bare = all(isinstance(body, core.HalfSpace) and not body.layers for body in free)
-    surface = "surface" if bare else "bare substrate's surface"
+    surface = "surface" if bare else "surface of the bare substrate"
     width = report.grid.size[repeats.index(False)]
     return f", from the {surface} {written(width, 'm')} away"
 

@@ -65,9 +65,9 @@ impl Tangential {
     /// An error where the `motion` along an axis, a shift or a creepage, cannot be prescribed.
     ///
     /// # Errors
-    /// [`Error::Datum`] where the operator is not positive definite with the datum of the grid.
+    /// [`Error::TangentialDatum`] where the operator is not positive definite with the datum of the grid.
     pub(crate) fn check_prescribed(&self, motion: &'static str, axis: usize) -> Result<()> {
-        self.data[axis].check_prescribed(motion, "force")
+        self.data[axis].check_motion(motion)
     }
 
     /// Whether tractions move the surfaces apart, and pressure moves them along each other.
