@@ -1,7 +1,7 @@
 """Stated errors of extremes of stresses hold against closed forms, wherever the grid lies.
 
-Each case is solved at random placings of grids with 20 to 200 cells across the contact. 99 % must be within the stated error,
-whose median is at most eight times the true one.
+Each case is solved at random placings of grids with 20 to 200 cells across the contact. 99 % must
+be within the stated error, whose median is at most eight times the true one.
 """
 
 import warnings
@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 HALF, RADIUS, POISSON = 1e-4, 1e-2, 0.3
 STEEL = nacre.Elastic(210e9, POISSON)
 LOAD = np.pi * HALF**2 * STEEL.plane_strain_modulus / (4 * RADIUS)
-"""That makes the half-width under a rigid cylinder, and of two bodies if its radius is half as large (Hertz)."""
+"""That makes the half-width under a rigid cylinder, or of two bodies of half the radius (Hertz)."""
 PEAK = 2 * LOAD / (np.pi * HALF)
 TOO_WIDE = 8.0
 
@@ -54,7 +54,7 @@ def tension_behind_a_cylinder(rng: np.random.Generator) -> list[Errors]:
 
 
 def without_points(rng: np.random.Generator) -> list[Errors]:
-    """The same on few cells, of which most do not locate an edge: the cusp is missed."""
+    """Miss the cusp of the same tension on few cells, of which most do not locate an edge."""
     friction = rng.uniform(0.1, 0.6)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # of few cells
@@ -64,7 +64,7 @@ def without_points(rng: np.random.Generator) -> list[Errors]:
 
 
 def fatigue_of_a_cylinder(rng: np.random.Generator) -> list[Errors]:
-    """The shear yz is at most p0/4, of both signs: a range of p0/2, and a shakedown limit of 4 k."""
+    """Reach a shear yz of p0/4 with both signs: a range of p0/2, a shakedown limit of 4 k."""
     (layer,) = fatigue.assess(cylinder(placed(rng)), threads=1).layers
     stated = layer.uncertainty
     return [
@@ -74,10 +74,11 @@ def fatigue_of_a_cylinder(rng: np.random.Generator) -> list[Errors]:
 
 
 def carter(share: float, friction: float, sense: float) -> tuple[float, float]:
-    """Return von Mises' stress and the shear of Carter's tractions at the surface, over the peak pressure.
+    """Return von Mises' stress and the shear of Carter's tractions at the surface, over the peak.
 
-    Tractions μ √(1 − y²) less μ c √(1 − (y − d)²/c²), c = √(1 − share), d = 1 − c, are those of two ellipses (Carter 1926,
-    doi:10.1098/rspa.1926.0100). Under a traction √(1 − y²), σ_yy is −2 y inside, and −2 (y − sgn y √(y² − 1)) outside.
+    Tractions μ √(1 − y²) less μ c √(1 − (y − d)²/c²), c = √(1 − share), d = 1 − c, are those of two
+    ellipses (Carter 1926, doi:10.1098/rspa.1926.0100). Under a traction √(1 − y²), σ_yy is −2 y
+    inside, and −2 (y − sgn y √(y² − 1)) outside.
     """
     c = np.sqrt(1 - share)
     border = 1 - 2 * c
@@ -103,7 +104,10 @@ def carter(share: float, friction: float, sense: float) -> tuple[float, float]:
 
 
 def rolling_cylinder(rng: np.random.Generator) -> list[Errors]:
-    """Extremes at the border of the zone that sticks; with this friction, those below the surface are smaller."""
+    """Extremes at the border of the zone that sticks.
+
+    With this friction, those below the surface are smaller.
+    """
     share, friction = rng.uniform(0.3, 0.95), rng.uniform(0.4, 0.6)
     sense = float(rng.choice([-1, 1]))
     rolled = nacre.roll(
