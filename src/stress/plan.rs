@@ -320,7 +320,10 @@ impl StressPlan {
 
     /// Estimated errors \[Pa\] of the extremes of a section at `depths`, where points of the edge are evaluated, too: those that
     /// [`StressPlan::summary`] counts. 0 where they are not known.
-    pub(crate) fn extreme_errors(
+    ///
+    /// # Errors
+    /// Bad depths or options.
+    pub fn extreme_errors(
         &self,
         depths: &[f64],
         options: &StressOptions,

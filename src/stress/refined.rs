@@ -50,7 +50,8 @@ const NEAR: f64 = 2.5;
 const MARGINS: [f64; 2] = [0.25, 1.25];
 
 /// Error of an extreme on finer cells, as a part of it, however fine they are: from the gap that is interpolated and from loads
-/// beside the patch, which are uniform over cells of the grid. Of XX extremes it is up to XX.
+/// beside the patch, which are uniform over cells of the grid. Found by trial: below coats, extremes on patches are within 5e-4 of
+/// those of whole grids of such cells.
 const LEAST_ERROR: f64 = 5e-4;
 
 /// Number of cells that a patch may have, however small the grid is: 512².

@@ -49,8 +49,8 @@ ROUNDS = 3
 """How many times the depths of maxima are refined by parabolas."""
 CLOSEST = 1e-3
 """Distance of depths in half-widths below which a refined one is no other: maxima are flat."""
-RANGES = {"orthogonal_shear": 2.0}
-"""How many errors of the stress a value has, if not one: a range has those of both its ends."""
+SINGLE = ("shakedown", "first_yield")
+"""Values with the error of one stress; others, ranges or sums of two, have it twice."""
 JUMP = 0.01
 """Part by which another maximum of the shear amplitude may be less for Matake's plane to jump."""
 DUST = 1e-9
@@ -599,7 +599,9 @@ class Assessment:
                 if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
                     own = [chosen[n] for n in at]
                     states = history.only(at)
-                    rows[k] += self._rows_of(region, own, states, errors[at] @ [1.0, friction], friction)
+                    rows[k] += self._rows_of(
+                        region, own, states, errors[at] @ [1.0, friction], friction
+                    )
         return rows
 
     def _rows_of(
@@ -637,7 +639,7 @@ class Assessment:
                     residual=(float(shaken[k, 1]), float(shaken[k, 2])),
                     gap=float(gaps[k]),
                     uncertainty={
-                        name: RANGES.get(name, 1.0) * float(errors[k]) for name in stresses
+                        name: (1 if name in SINGLE else 2) * float(errors[k]) for name in stresses
                     },
                     shear_range=_range(states[k, :, 4:])
                     if z in (region.top, region.bottom)

@@ -13,8 +13,9 @@
 //! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
 //! taken as uniform. Where an edge is reconstructed it is a thirtieth, and as much more as the bodies
 //! respond otherwise to a wave than to waves of a cell, from which the edge was found; a hundredth in the
-//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, or where the
-//! pressure is, it is a half: the surface beside a cell that the edge crosses sees the whole error. A step on cells of side d
+//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half, and three
+//! quarters where they may grow as a root within a cell: at an edge that is not located, and at the border of a zone that sticks.
+//! Steps of known tractions are their own. A step on cells of side d
 //! holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
 //! reaches a depth z with the transfer of the layered body, (1 + αz) e^{−αz} and the like:
 //!
@@ -29,8 +30,8 @@
 //! out falls off as the inverse cube of the distance from the edge, which is added.
 //!
 //! The edge is known to a part of a cell, and with it the width of the contact. Extremes at depths of up to a half-width have
-//! the error c/n² + c' of the largest pressure in a contact n cells wide; farther below, it falls as the square of the depth, at
-//! least as fast as the stress.
+//! the error c/n² + c' of the largest pressure in a contact n cells wide, and more in layers whose stress under waves as long as
+//! the contact exceeds the pressure; farther below, it falls as the square of the depth, at least as fast as the stress.
 
 use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place};
@@ -66,10 +67,12 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
 const TRACTION_SHARE: f64 = 0.5;
 
-/// Share of a step of what tractions differ by from a fixed part of the pressure, as at the border of a zone that sticks. Where it
-/// grows as the root of the distance from a border anywhere in a cell, means of it make von Mises' stress at the best centre too
-/// small by up to 1.23 steps: σ_yy, of which 2 of this are, falls to one side of the border, and σ_yz to the other. Computed here.
-const RATIO_SHARE: f64 = 0.62;
+/// Share of a step of tractions that is not known where they grow as the root of the distance from a place within a cell: at an
+/// edge that is not located, and at the border of a zone that sticks, of what they differ by there from a fixed part of the
+/// pressure. With exact means of c √d over cells and the place anywhere in one, the largest tension at centres is too small
+/// by up to 2 · 0.63 steps behind an edge (less a quarter of the pressure's), and von Mises' stress at a border by up to 2 · 0.62:
+/// σ_yy falls to one side and σ_yz to the other. Computed here; with the pressure of 35 contacts of 5 to 22 cells, by up to 2 · 0.74.
+const CUSP_SHARE: f64 = 0.75;
 
 /// Stress that is left out at a distance of one cell from an edge, as a part of the step there, if it fell off as the inverse
 /// cube of the distance: that of the four cells at an edge p = √d under a strip of pressure, less their means and shares,
@@ -85,7 +88,7 @@ const WIDTH_ERROR: f64 = 0.3;
 /// Error of extremes over the largest pressure on cells however small, from the search for their depth and from loads that are
 /// followed over some cells only. Of a line contact refined to a thousand cells across, they are within 2.4e-5 of those on
 /// 1 088 cells.
-const LEAST_ERROR: f64 = 5e-5;
+const LEAST_ERROR: f64 = 3e-5;
 
 /// Wavenumbers, over the inverse of the half-width, at which stresses that exceed the pressure, as in hard layers that bend, tell
 /// how much more their error of the width is.
@@ -130,7 +133,7 @@ struct Wave {
     shares: [f64; 3],
     /// The same near an edge, at points whose stress is summed over ever smaller pieces.
     at_point: f64,
-    /// The same of tractions that are uniform over cells, and of what they differ by from a fixed part of the pressure.
+    /// The same of tractions that are uniform over cells, and where they may grow as a root.
     tractions: [f64; 2],
     /// The body at its wavenumber.
     column: Column,
@@ -244,7 +247,7 @@ impl Uncertainty {
                 Wave {
                     shares: [INTERIOR_SHARE, share, UNIFORM_SHARE].map(|share| share / ratio),
                     at_point: at_point / ratio,
-                    tractions: [TRACTION_SHARE, RATIO_SHARE].map(|share| share / ratio),
+                    tractions: [TRACTION_SHARE, CUSP_SHARE].map(|share| share / ratio),
                     column: Column::new(body, alpha),
                 }
             };
@@ -390,7 +393,7 @@ impl Uncertainty {
                 for (known, (error, share)) in factors.iter_mut().zip(shares).enumerate() {
                     let of_tractions = match known == Known::Mean as usize {
                         _ if uniform => 0.0,
-                        true => wave.tractions[0],
+                        true => wave.tractions[1],
                         false => share,
                     };
                     *error = error.max(largest(share, of_tractions));
@@ -398,7 +401,8 @@ impl Uncertainty {
                 let sheared = sheared.into_iter().fold(twisted, f64::max);
                 let first = if uniform { OF_TRACTION } else { OF_RATIO };
                 for (k, error) in factors.iter_mut().enumerate().skip(first) {
-                    *error = error.max(wave.tractions[usize::from(k == OF_RATIO)] * sheared);
+                    let is_cusp = k == OF_RATIO || k == OF_TRACTION + Known::Mean as usize;
+                    *error = error.max(wave.tractions[usize::from(is_cusp)] * sheared);
                 }
             }
             let distance = place.depth.max(self.followed) / self.spacing[axis];
