@@ -433,9 +433,9 @@ impl Contact {
         let unseen = unresolved.errors(fields, window, &self.grid, loaded, singular);
         let corners = corner_error(pressure, &self.grid, shape, unresolved.short_waves);
         // Changes between grids show where the rim lies as well as what is known of one grid does.
-        let Discretisation { contact_area, contact_extent, .. } = changes.or_larger(unseen);
+        let Discretisation { contact_area, contact_extent, tilt, .. } = changes.or_larger(unseen);
         let all = changes.plus(unseen).at_least(corners);
-        Some(Discretisation { contact_area, contact_extent, ..all })
+        Some(Discretisation { contact_area, contact_extent, tilt, ..all })
     }
 
     /// Discretisation errors of a `solution`, from those on cells of twice, of four times … the length.
@@ -453,7 +453,17 @@ impl Contact {
         let fields = ([&solution.pressure, &solution.total_displacement()], &window);
         let loaded = Freedoms::new(&solution.report.motion, &self.grid)?.loaded;
         let results = (results, GridResult::from(solution));
-        Ok(self.discretisation(shape, results, fields, loaded, &solution.report.warnings))
+        let errors = self.discretisation(shape, results, fields, loaded, &solution.report.warnings);
+        // A peak that is the hardness of all cells has no error.
+        let limit = match &solution.hardness {
+            Some(Hardness::Uniform(limit)) => *limit,
+            _ => f64::INFINITY,
+        };
+        let is_known = solution.peak_pressure() >= limit;
+        Ok(errors.map(|errors| match is_known {
+            true => Discretisation { peak_pressure: Some(0.0), ..errors },
+            false => errors,
+        }))
     }
 
     /// States the errors of a `solution` that nested grids do not tell, from solutions on cells of twice and of four times

@@ -93,7 +93,7 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
 }
 """Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
 
-ESTIMATED = ("peak_pressure", "approach", "load")
+ESTIMATED = ("peak_pressure", "approach", "load", "contact_area")
 """Outputs whose errors due to the size of the cells are estimated."""
 ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
