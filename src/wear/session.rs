@@ -38,15 +38,21 @@ const MOMENT: f64 = 0.1 * THROUGH;
 
 /// Change of a step's length from one to the next, and the part of the length that the error permits.
 const CHANGE: [f64; 2] = [0.2, 3.0];
+/// The same where a step adds no more error than solves have: nothing is worn any more, and what is left ends soon.
+const IDLE_CHANGE: f64 = 1e3;
 const SAFETY: f64 = 0.8;
 
 /// Wear of the first step, as a part of the approach: its error decides the next ones.
 const FIRST: f64 = 0.02;
 
-/// Largest error of a step in its halves, and of a whole one, over the difference of both: of Euler's rule, over all waves that fade
-/// as exp(−z) in the step, 1.41 at z = 1.6 and 2.41 at z = 1.5. The trapezoidal rule has 1/2 and 4/3, and the explicit one of
-/// passes 1 and 2. Derived here.
-const ERROR: [f64; 2] = [1.5, 2.5];
+/// Bounds of the error of a step in its halves, and of a whole one, over the difference of both. Of waves that fade as exp(−z) in
+/// the step, Euler's rule has at most 1.41 and 2.41, at z = 1.6 and 1.5, the trapezoidal rule 1/2 and 4/3, and the explicit one of
+/// passes 1 and 2 (derived here). The next integers are for cells at the edge, whose pressures are no sums of few waves.
+const ERROR: [f64; 2] = [2.0, 3.0];
+
+/// Error of a pressure, relative to the peak, over the tolerance of its solve: solves of the same contact from other starts differ by
+/// no more where nothing is worn.
+const OF_SOLVES: f64 = 100.0;
 
 /// Correlation of two changes of the pressure below which it rings, and the least change relative to the peak that counts.
 const RINGING: f64 = -0.3;
@@ -320,10 +326,9 @@ impl<S: Surface> WearSession<S> {
         let apart = apart.fold(0.0_f64, |most, at, p, other| {
             if is_within(both, at) { most.max((p - other).abs()) } else { most }
         });
-        let [peak, of_other] =
-            [pressure, &other.pressure].map(|p| p.fold(0.0_f64, |m, p| m.max(*p)));
-        Ok((peak > 0.0)
-            .then_some(apart.max((peak - of_other).abs()) / last.solution.peak_pressure()))
+        let peaks = [pressure, &other.pressure].map(|p| p.fold(0.0_f64, |most, p| most.max(*p)));
+        let peak = peaks[0].min(peaks[1]);
+        Ok((peak > 0.0).then_some(apart.max((peaks[0] - peaks[1]).abs()) / peak))
     }
 
     /// The plan of bodies whose layers are thinner by these depths; `None` where that changes nothing.
@@ -404,7 +409,7 @@ impl<S: Surface> WearSession<S> {
                 _ => last.distance + trial.length,
             };
             let share = ERROR[usize::from(matches!(self.wear.steps, WearSteps::Ends(_)))];
-            let error = share * self.apart_in_distance(&begun, &trial, &twin);
+            let error = share * self.apart_in_distance(&begun, [&trial, &twin]);
             let idle = begun.idle;
             let through = self.through_at(distance, error, [&trial.reach, &trial.depth]);
             let change = &trial.solution.pressure - &last.solution.pressure;
@@ -424,7 +429,8 @@ impl<S: Surface> WearSession<S> {
                 depth: trial.depth,
                 solution: trial.solution,
                 through,
-                step_error: if apart > 0.0 { share * apart / peak } else { 0.0 },
+                step_error: if apart > 0.0 { share * apart / peak } else { 0.0 }
+                    .max(OF_SOLVES * self.wear.options.tolerance),
                 rings,
                 settled: trial.settled,
                 regrids: last.regrids,
@@ -478,10 +484,12 @@ impl<S: Surface> WearSession<S> {
             else {
                 return Ok(None);
             };
-            let error = self.added_error([begun, &beside], [&halves, &whole], tolerance);
+            let error = self.added_error([begun, &beside], [&halves, &whole]);
             let order = if self.is_second_order() { 3.0 } else { 2.0 };
             let factor = SAFETY * (tolerance / error.max(1e-9 * tolerance)).powf(1.0 / order);
-            let next = length * factor.clamp(CHANGE[0], CHANGE[1]);
+            let is_idle = error <= OF_SOLVES * self.wear.options.tolerance;
+            let most = if is_idle { IDLE_CHANGE } else { CHANGE[1] };
+            let next = length * factor.clamp(CHANGE[0], most);
             if error <= tolerance {
                 self.length = Some(if length < left { next } else { next.max(length) });
                 let Some(trial) = self.until_through(begun, halves, progress)? else {
@@ -499,16 +507,15 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Error that a step adds to the pressure: what the ends of its halves and of the whole step differ by more than their
-    /// `starts` did, relative to the peak. Where less than a `tolerance` of the largest pressure is left, nothing presses.
-    fn added_error(&self, starts: [&Start; 2], ends: [&Trial; 2], tolerance: f64) -> f64 {
+    /// `starts` did, relative to the largest pressure of the history: at a given approach, hardly any may be left.
+    fn added_error(&self, starts: [&Start; 2], ends: [&Trial; 2]) -> f64 {
         let [start, whole_start] = starts.map(|start| &start.solution.pressure);
         let [end, whole_end] = ends.map(|end| &end.solution.pressure);
         let apart = Zip::from(end).and(whole_end).and(start).and(whole_start);
         let apart = apart.map_collect(|end, whole, start, before| (whole - before) - (end - start));
         let error = mean_within([start, whole_end, end], &apart);
         let orders = if self.is_second_order() { 3.0 } else { 1.0 };
-        let peak = ends[0].solution.peak_pressure().max(tolerance * self.peak);
-        if error > 0.0 { error / (orders * peak) } else { 0.0 }
+        if error > 0.0 { error / (orders * self.peak) } else { 0.0 }
     }
 
     fn is_second_order(&self) -> bool {
@@ -712,19 +719,24 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Difference of the distances at which a layer is through where a step ends at it, and its twin does before or after; 0 where
-    /// none is.
-    fn apart_in_distance(&self, begun: &Start, trial: &Trial, twin: &Trial) -> f64 {
-        let (part, k, at) = match self.furthest(&trial.reach) {
+    /// none is. Depths go on as they grow at the end of the step: of the two ends, that at which more is worn, and where neither
+    /// wears, as in the step.
+    fn apart_in_distance(&self, begun: &Start, ends: [&Trial; 2]) -> f64 {
+        let (part, k, at) = match self.furthest(&ends[0].reach) {
             Some(furthest) if furthest.0 >= 1.0 - THROUGH => furthest,
             _ => return 0.0,
         };
-        let work = match &begun.slipping {
-            Slipping::Cells(slip) => slip[at] * trial.wearing()[at],
-            Slipping::Track(track) => track[at],
-        };
-        let rates = &self.rates[k];
-        let apart = (part - self.part_of_layer(&twin.reach)).abs().max(MOMENT);
-        apart * rates.bottoms[self.through[k]] / (rates.of(self.through[k]) * work)
+        let (rates, layer) = (&self.rates[k], self.through[k]);
+        let growth = ends.map(|end| match &begun.slipping {
+            Slipping::Cells(slip) => rates.of(layer) * slip[at] * end.wearing()[at],
+            Slipping::Track(track) => rates.of(layer) * track[at],
+        });
+        let mut growth = growth[0].max(growth[1]);
+        if growth <= 0.0 {
+            growth = (ends[0].reach[k][at] - begun.depth[k][at]) / ends[0].length;
+        }
+        let apart = (part - self.part_of_layer(&ends[1].reach)).abs().max(THROUGH);
+        apart * rates.bottoms[layer] / growth
     }
 
     /// Layers that are through with this reach and at this depth, and were not before; the distance errs by `error`.
@@ -754,7 +766,7 @@ impl<S: Surface> WearSession<S> {
 
     /// One step of this `length`, whose end is `expected` at this pressure. Cells that have just come into contact would carry too
     /// much by the trapezoidal rule, as their start counts without them or with a part of the step: where one of them then wears
-    /// faster than any cell did, the step is Euler's.
+    /// faster than any cell did, or that opens a cell which wore, the step is Euler's.
     fn trial(
         &self,
         begun: &Start,
@@ -774,16 +786,19 @@ impl<S: Surface> WearSession<S> {
         }
     }
 
-    /// Whether a cell that owes most of its depth to the step wears faster at its end than any did at its start.
+    /// Whether a cell that owes most of its depth to the step wears faster at its end than any did at its start, or one that wore is
+    /// out of contact.
     fn overshoots(&self, begun: &Start, end: &Trial) -> bool {
         let Slipping::Cells(slip) = &begun.slipping else { return false };
         let work = Zip::from(slip).and(begun.pressure);
         let most = work.fold(0.0_f64, |most, slip, p| most.max(slip * p));
         let [before, after] = [begun.depth, &end.depth].map(|depth| &depth[0] + &depth[1]);
-        let cells = Zip::from(slip).and(end.wearing()).and(&before).and(&after);
-        cells.any(|slip, p, before, after| {
+        let ends = Zip::from(slip).and(end.wearing());
+        let is_new_peak = ends.and(&before).and(&after).any(|slip, p, before, after| {
             slip * p > most * (1.0 + LEAST_CHANGE) && after - before > *before
-        })
+        });
+        let ends = Zip::from(slip).and(end.wearing()).and(begun.pressure);
+        is_new_peak || ends.any(|slip, p, before| *p <= 0.0 && slip * before > most * LEAST_CHANGE)
     }
 
     /// One step of this `length`, whose end has a weight and is `expected` at this pressure.
