@@ -106,6 +106,8 @@ struct Start<'a> {
     pressure: &'a Array2<f64>,
     slipping: Slipping,
     idle: Option<Idle>,
+    /// Weight θ of the ends of steps; `None` where the scheme and the step choose it.
+    weight: Option<f64>,
 }
 
 /// Where surfaces slip in a step.
@@ -127,6 +129,8 @@ struct Trial {
     solution: Solution,
     /// Pressure that wears at the end, where it is not that of the solution: [`worn_by`].
     pressure: Option<Array2<f64>>,
+    /// Weight θ of the end; of two halves the larger.
+    weight: f64,
     /// Whether the search for the distance at which a layer is through came to its end.
     settled: bool,
 }
@@ -552,6 +556,7 @@ impl<S: Surface> WearSession<S> {
             pressure,
             slipping,
             idle,
+            weight: None,
         }))
     }
 
@@ -653,8 +658,9 @@ impl<S: Surface> WearSession<S> {
         let Some(middle) = self.begun(from, &half.solution, half.wearing(), progress)? else {
             return Ok(None);
         };
+        let middle = Start { weight: begun.weight, ..middle };
         let end = self.trial(&middle, 0.5 * length, expected.clone(), progress)?;
-        Ok(end.map(|end| Trial { length, ..end }))
+        Ok(end.map(|end| Trial { length, weight: end.weight.max(half.weight), ..end }))
     }
 
     /// The step, or the shorter one at whose end the first cell of a layer is through.
@@ -668,6 +674,8 @@ impl<S: Surface> WearSession<S> {
         if part <= 1.0 + MOMENT {
             return Ok(Some(trial));
         }
+        // The depth is continuous in the length by one rule.
+        let begun = &Start { weight: Some(trial.weight), ..begun.clone() };
         let is_halved = matches!(self.wear.steps, WearSteps::Auto { .. });
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
         let mut least = [0.0, 1.0 - self.part_of_layer(begun.depth)];
@@ -774,12 +782,10 @@ impl<S: Surface> WearSession<S> {
         expected: Array2<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        if !self.is_second_order() {
-            return self.trial_by(1.0, begun, length, expected, progress);
-        }
-        let trial = self.trial_by(0.5, begun, length, expected, progress)?;
-        match trial {
-            Some(trial) if self.overshoots(begun, &trial) => {
+        let weight = begun.weight.unwrap_or(if self.is_second_order() { 0.5 } else { 1.0 });
+        let is_free = begun.weight.is_none() && weight < 1.0;
+        match self.trial_by(weight, begun, length, expected, progress)? {
+            Some(trial) if is_free && self.overshoots(begun, &trial) => {
                 self.trial_by(1.0, begun, length, trial.solution.pressure, progress)
             }
             trial => Ok(trial),
@@ -804,7 +810,7 @@ impl<S: Surface> WearSession<S> {
     /// One step of this `length`, whose end has a weight and is `expected` at this pressure.
     fn trial_by(
         &self,
-        end_weight: f64,
+        weight: f64,
         begun: &Start,
         length: f64,
         expected: Array2<f64>,
@@ -813,16 +819,23 @@ impl<S: Surface> WearSession<S> {
         if self.rates.iter().all(Rates::vanish) {
             let (depth, reach) = (begun.depth.clone(), begun.reach.clone());
             let solution = begun.solution.clone();
-            let trial = Trial { length, depth, reach, solution, pressure: None, settled: true };
+            let trial = Trial {
+                length,
+                depth,
+                reach,
+                solution,
+                pressure: None,
+                weight: 1.0,
+                settled: true,
+            };
             return Ok(Some(trial));
         }
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
         let (first, per_pressure) = match &begun.slipping {
             Slipping::Track(track) => (track * length, Array2::zeros(track.dim())),
-            Slipping::Cells(slip) => (
-                slip * begun.pressure * (length * (1.0 - end_weight)),
-                slip * (length * end_weight),
-            ),
+            Slipping::Cells(slip) => {
+                (slip * begun.pressure * (length * (1.0 - weight)), slip * (length * weight))
+            }
         };
         let mut rates = [0, 1].map(|k| match self.rates[k].uniform() {
             Some(rate) => Array2::from_elem(begun.depth[k].dim(), rate),
@@ -879,7 +892,8 @@ impl<S: Surface> WearSession<S> {
                     })
                 });
                 let depth = reached;
-                let trial = Trial { length, depth, reach, solution, pressure, settled: true };
+                let trial =
+                    Trial { length, depth, reach, solution, pressure, weight, settled: true };
                 return Ok(Some(trial));
             }
             missing = self.layers.as_ref().map(|_| reached);
@@ -941,7 +955,15 @@ impl<S: Surface> WearSession<S> {
         if let Some(twin) = twin {
             let Some((depth, solution)) = solved(&twin.depth)? else { return Ok(None) };
             let (length, reach) = (0.0, depth.clone());
-            let twin = Trial { length, depth, reach, solution, pressure: None, settled: true };
+            let twin = Trial {
+                length,
+                depth,
+                reach,
+                solution,
+                pressure: None,
+                weight: 1.0,
+                settled: true,
+            };
             self.twin = Some(twin);
         }
         Ok(Some(WearState { depth, solution, regrids: last.regrids + 1, ..last.clone() }))

@@ -100,7 +100,8 @@ fn worn_contacts_are_contacts_of_the_worn_shape() -> Result<()> {
 /// Chosen steps against ten times as many: half-width and peak within 2e-3 of the start's, which is twice the tolerance of a step.
 /// The edge of a worn contact lies on a cell's: those of the cylinder are so small that one of them is no more than that.
 /// At a given load, the mean pressure p̄ and the half-width a change together, by W = 2a p̄ in line: relative to a, Euler's
-/// half-widths err by what the pressure may err relative to p̄, which has fallen.
+/// half-widths err by what the pressure may err relative to p̄, which has fallen: 2e-3 of the first peak, and half of that for the
+/// cells, of which they are whole numbers.
 #[test]
 fn chosen_steps_keep_their_error() -> Result<()> {
     let end = 0.1;
@@ -137,7 +138,7 @@ fn chosen_steps_keep_their_error() -> Result<()> {
                 );
                 let [width, due] = [&state.solution, other].map(|s| s.contact_extent()[1][1]);
                 let mean = motion.load.expect("given") / other.contact_area();
-                let bar = 2e-3 * if scheme == WearScheme::Euler { peak / mean } else { 1.0 };
+                let bar = if scheme == WearScheme::Euler { 3e-3 * peak / mean } else { 2e-3 };
                 below!((width - due).abs(), bar * due, k, scheme);
             }
             let last = chosen.last().expect("a state");
@@ -261,9 +262,12 @@ pub(crate) fn apart_within(one: &Array2<f64>, other: &Array2<f64>) -> f64 {
 fn frozen_thickness_has_its_estimate() -> Result<()> {
     let plan = line()?;
     let even = Array2::from_elem([1, 96], 2e-5);
+    // Of the coat, the pressure feels 1e-5: solves must be finer.
+    let options = Options { tolerance: 1e-14, ..Options::default() };
     let wear = Wear {
         initial: Some([even, Array2::zeros([1, 96])]),
         steps: WearSteps::Ends(Vec::new()),
+        options: options.clone(),
         ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
     };
     let mut session =
@@ -274,9 +278,8 @@ fn frozen_thickness_has_its_estimate() -> Result<()> {
     let thin =
         HalfSpace::new(Elastic::new(1.0, 0.3)?, [Layer::new(Elastic::new(3.0, 0.3)?, 8e-5)?])?;
     let thin = Contact::plan(thin, *plan.grid(), Setup::default())?;
-    let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &Options::default())?;
+    let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &options)?;
     let due = apart_within(&state.solution.pressure, &exact.pressure);
-    // Both solves to 1e-8, of whose pressure the root counts.
     near!(error, due / exact.peak_pressure().min(state.solution.peak_pressure()), 0.01);
     Ok(())
 }
@@ -429,10 +432,10 @@ fn states_count_the_convolutions_of_their_step() -> Result<()> {
         ControlFlow::Continue(())
     })?;
     let count = state.expect("a step").solution.report.convolutions;
-    // The step and its halves; after the last iteration of a solve come two convolutions at most.
+    // The step and its halves; after the last iteration of a solve come four convolutions at most.
     assert_eq!(told.len(), 3);
     let told: f64 = told.iter().sum();
-    assert!(count >= told && count <= told + 6.0, "{count} {told}");
+    assert!(count >= told && count <= told + 12.0, "{count} {told}");
     Ok(())
 }
 

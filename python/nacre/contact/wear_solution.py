@@ -1050,8 +1050,8 @@ def _notes(
     if given and wrong > MOST_STEPS:
         cure = ', or scheme="euler"' if any(state.rings for state in states) else ""
         notes.append(
-            f"the last pressure of a cell errs by up to {100 * wrong:.0f} % of the peak by the steps: "
-            f"take shorter ones{cure}"
+            f"the last pressure of a cell errs by up to {100 * wrong:.0f} % of the peak by long "
+            f"steps: take shorter ones{cure}"
         )
     first, last = states[0].solution.load, states[-1].solution.load
     if last < NOTHING_PRESSES * first:
