@@ -36,6 +36,7 @@ def test_worn_volume_is_that_of_the_law() -> None:
     assert history.verdict.words.startswith("No layer is through")
 
 
+@pytest.mark.filterwarnings("ignore:the worn layer counts as thick")
 def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     history = worn(sliding=5e4, steps="auto", until="through")
     life = history.life
@@ -116,6 +117,7 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
     assert list(further.distance) == [0.0, 5.0, 10.0]
 
 
+@pytest.mark.filterwarnings("ignore:the contact is only 4 cells")
 @pytest.mark.parametrize("below", [0.0, 1e-17, 1e-15])
 def test_even_pressure_is_through_a_coat_at_the_exact_distance(below: float) -> None:
     """2 µm at 1e-17 m²/N and 100 MPa take 2000 m, whatever is below; half of it in one history."""
