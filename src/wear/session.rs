@@ -850,6 +850,11 @@ impl<S: Surface> WearSession<S> {
             let work = work(&expected);
             [0, 1].map(|k| &begun.depth[k] + &(&rates[k] * &work))
         });
+        // Where a step is to end as a layer is through, nothing below it wears.
+        let last = [0, 1].map(|k| match begun.weight {
+            Some(_) => self.through[k],
+            None => self.rates[k].bottoms.len(),
+        });
         let mut initial = expected;
         for round in 1.. {
             let cells = Zip::from(&rates[0]).and(&rates[1]);
@@ -874,7 +879,7 @@ impl<S: Surface> WearSession<S> {
                     Some(rate) if rate > 0.0 => depth.scaled_add(rate, &work),
                     Some(_) => (),
                     None => Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
-                        let mean = self.rates[k].mean(*depth, *work);
+                        let mean = self.rates[k].mean_above(last[k], *depth, *work);
                         changed = changed
                             .max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
                         *depth += *rate * work;

@@ -118,6 +118,7 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:the contact is only 4 cells")
+@pytest.mark.filterwarnings("ignore:a layer is through")
 @pytest.mark.parametrize("below", [0.0, 1e-17, 1e-15])
 def test_even_pressure_is_through_a_coat_at_the_exact_distance(below: float) -> None:
     """2 µm at 1e-17 m²/N and 100 MPa take 2000 m, whatever is below; half of it in one history."""
