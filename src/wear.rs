@@ -95,8 +95,8 @@ pub enum Slip {
 /// The steps of a history.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WearSteps {
-    /// Steps whose error of the pressure, the root of its mean square within the contact relative to the peak, is at most a
-    /// `tolerance`, up to the `end`. Cells at the edge do not count: they join the contact at once.
+    /// Steps that add an error of at most a `tolerance` to the pressure, up to the `end`: the root of its mean square within the
+    /// contact, relative to the largest pressure of the history. Cells at the edge do not count: they join the contact at once.
     Auto {
         /// Distance of the last step.
         end: f64,

@@ -72,12 +72,8 @@ impl Rates {
         self.rates[self.layers_through(depth)]
     }
 
-    /// Mean κ of the wear from a depth on by Σ v p Δs = `work` \[N/m\]: of one layer, or of several.
-    pub(super) fn mean(&self, depth: f64, work: f64) -> f64 {
-        self.mean_above(self.bottoms.len(), depth, work)
-    }
-
-    /// [`Rates::mean`] if all below the layer number `last` wore at its rate.
+    /// Mean κ of the wear from a depth on by Σ v p Δs = `work` \[N/m\]: of one layer, or of several, if all below the layer number
+    /// `last` wore at its rate.
     pub(super) fn mean_above(&self, last: usize, depth: f64, work: f64) -> f64 {
         let (mut layer, mut at, mut left) = (self.layers_through(depth).min(last), depth, work);
         while layer < last && at + self.rates[layer] * left > self.bottoms[layer] {
@@ -102,7 +98,7 @@ mod tests {
     fn rates_change_within_a_step() {
         let rates = Rates { bottoms: vec![2.0], rates: vec![0.5, 3.0] };
         for (work, removed) in [(1.0, 0.5), (4.0, 2.0), (5.0, 5.0), (6.0, 8.0)] {
-            assert!((rates.mean(0.0, work) * work - removed).abs() < 1e-14, "{work}");
+            assert!((rates.mean_above(1, 0.0, work) * work - removed).abs() < 1e-14, "{work}");
         }
         // By the first rate alone, it is passed as far.
         assert!((rates.mean_above(0, 0.0, 6.0) - 0.5).abs() < 1e-15);

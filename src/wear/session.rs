@@ -38,15 +38,21 @@ const MOMENT: f64 = 0.1 * THROUGH;
 
 /// Change of a step's length from one to the next, and the part of the length that the error permits.
 const CHANGE: [f64; 2] = [0.2, 3.0];
+/// The same where a step adds no more error than solves have: nothing is worn any more, and what is left ends soon.
+const IDLE_CHANGE: f64 = 1e3;
 const SAFETY: f64 = 0.8;
 
 /// Wear of the first step, as a part of the approach: its error decides the next ones.
 const FIRST: f64 = 0.02;
 
-/// Largest error of a step in its halves, and of a whole one, over the difference of both: of Euler's rule, over all waves that fade
-/// as exp(−z) in the step, 1.41 at z = 1.6 and 2.41 at z = 1.5. The trapezoidal rule has 1/2 and 4/3, and the explicit one of
-/// passes 1 and 2. Derived here.
-const ERROR: [f64; 2] = [1.5, 2.5];
+/// Bounds of the error of a step in its halves, and of a whole one, over the difference of both. Of waves that fade as exp(−z) in
+/// the step, Euler's rule has at most 1.41 and 2.41, at z = 1.6 and 1.5, the trapezoidal rule 1/2 and 4/3, and the explicit one of
+/// passes 1 and 2 (derived here). The next integers are for cells at the edge, whose pressures are no sums of few waves.
+const ERROR: [f64; 2] = [2.0, 3.0];
+
+/// Error of a pressure, relative to the peak, over the tolerance of its solve: solves of the same contact from other starts differ by
+/// no more where nothing is worn.
+const OF_SOLVES: f64 = 100.0;
 
 /// Correlation of two changes of the pressure below which it rings, and the least change relative to the peak that counts.
 const RINGING: f64 = -0.3;
@@ -100,6 +106,8 @@ struct Start<'a> {
     pressure: &'a Array2<f64>,
     slipping: Slipping,
     idle: Option<Idle>,
+    /// Weight θ of the ends of steps; `None` where the scheme and the step choose it.
+    weight: Option<f64>,
 }
 
 /// Where surfaces slip in a step.
@@ -121,6 +129,8 @@ struct Trial {
     solution: Solution,
     /// Pressure that wears at the end, where it is not that of the solution: [`worn_by`].
     pressure: Option<Array2<f64>>,
+    /// Weight θ of the end; of two halves the larger.
+    weight: f64,
     /// Whether the search for the distance at which a layer is through came to its end.
     settled: bool,
 }
@@ -320,10 +330,9 @@ impl<S: Surface> WearSession<S> {
         let apart = apart.fold(0.0_f64, |most, at, p, other| {
             if is_within(both, at) { most.max((p - other).abs()) } else { most }
         });
-        let [peak, of_other] =
-            [pressure, &other.pressure].map(|p| p.fold(0.0_f64, |m, p| m.max(*p)));
-        Ok((peak > 0.0)
-            .then_some(apart.max((peak - of_other).abs()) / last.solution.peak_pressure()))
+        let peaks = [pressure, &other.pressure].map(|p| p.fold(0.0_f64, |most, p| most.max(*p)));
+        let peak = peaks[0].min(peaks[1]);
+        Ok((peak > 0.0).then_some(apart.max((peaks[0] - peaks[1]).abs()) / peak))
     }
 
     /// The plan of bodies whose layers are thinner by these depths; `None` where that changes nothing.
@@ -404,7 +413,7 @@ impl<S: Surface> WearSession<S> {
                 _ => last.distance + trial.length,
             };
             let share = ERROR[usize::from(matches!(self.wear.steps, WearSteps::Ends(_)))];
-            let error = share * self.apart_in_distance(&begun, &trial, &twin);
+            let error = share * self.apart_in_distance(&begun, [&trial, &twin]);
             let idle = begun.idle;
             let through = self.through_at(distance, error, [&trial.reach, &trial.depth]);
             let change = &trial.solution.pressure - &last.solution.pressure;
@@ -424,7 +433,8 @@ impl<S: Surface> WearSession<S> {
                 depth: trial.depth,
                 solution: trial.solution,
                 through,
-                step_error: if apart > 0.0 { share * apart / peak } else { 0.0 },
+                step_error: if apart > 0.0 { share * apart / peak } else { 0.0 }
+                    .max(OF_SOLVES * self.wear.options.tolerance),
                 rings,
                 settled: trial.settled,
                 regrids: last.regrids,
@@ -478,10 +488,12 @@ impl<S: Surface> WearSession<S> {
             else {
                 return Ok(None);
             };
-            let error = self.added_error([begun, &beside], [&halves, &whole], tolerance);
+            let error = self.added_error([begun, &beside], [&halves, &whole]);
             let order = if self.is_second_order() { 3.0 } else { 2.0 };
             let factor = SAFETY * (tolerance / error.max(1e-9 * tolerance)).powf(1.0 / order);
-            let next = length * factor.clamp(CHANGE[0], CHANGE[1]);
+            let is_idle = error <= OF_SOLVES * self.wear.options.tolerance;
+            let most = if is_idle { IDLE_CHANGE } else { CHANGE[1] };
+            let next = length * factor.clamp(CHANGE[0], most);
             if error <= tolerance {
                 self.length = Some(if length < left { next } else { next.max(length) });
                 let Some(trial) = self.until_through(begun, halves, progress)? else {
@@ -499,16 +511,15 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Error that a step adds to the pressure: what the ends of its halves and of the whole step differ by more than their
-    /// `starts` did, relative to the peak. Where less than a `tolerance` of the largest pressure is left, nothing presses.
-    fn added_error(&self, starts: [&Start; 2], ends: [&Trial; 2], tolerance: f64) -> f64 {
+    /// `starts` did, relative to the largest pressure of the history: at a given approach, hardly any may be left.
+    fn added_error(&self, starts: [&Start; 2], ends: [&Trial; 2]) -> f64 {
         let [start, whole_start] = starts.map(|start| &start.solution.pressure);
         let [end, whole_end] = ends.map(|end| &end.solution.pressure);
         let apart = Zip::from(end).and(whole_end).and(start).and(whole_start);
         let apart = apart.map_collect(|end, whole, start, before| (whole - before) - (end - start));
         let error = mean_within([start, whole_end, end], &apart);
         let orders = if self.is_second_order() { 3.0 } else { 1.0 };
-        let peak = ends[0].solution.peak_pressure().max(tolerance * self.peak);
-        if error > 0.0 { error / (orders * peak) } else { 0.0 }
+        if error > 0.0 { error / (orders * self.peak) } else { 0.0 }
     }
 
     fn is_second_order(&self) -> bool {
@@ -545,6 +556,7 @@ impl<S: Surface> WearSession<S> {
             pressure,
             slipping,
             idle,
+            weight: None,
         }))
     }
 
@@ -645,8 +657,9 @@ impl<S: Surface> WearSession<S> {
         let Some(middle) = self.begun(from, &half.solution, half.wearing(), progress)? else {
             return Ok(None);
         };
+        let middle = Start { weight: begun.weight, ..middle };
         let end = self.trial(&middle, 0.5 * length, expected.clone(), progress)?;
-        Ok(end.map(|end| Trial { length, ..end }))
+        Ok(end.map(|end| Trial { length, weight: end.weight.max(half.weight), ..end }))
     }
 
     /// The step, or the shorter one at whose end the first cell of a layer is through.
@@ -660,6 +673,8 @@ impl<S: Surface> WearSession<S> {
         if part <= 1.0 + MOMENT {
             return Ok(Some(trial));
         }
+        // The depth is continuous in the length by one rule.
+        let begun = &Start { weight: Some(trial.weight), ..begun.clone() };
         let is_halved = matches!(self.wear.steps, WearSteps::Auto { .. });
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
         let mut least = [0.0, 1.0 - self.part_of_layer(begun.depth)];
@@ -711,19 +726,24 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// Difference of the distances at which a layer is through where a step ends at it, and its twin does before or after; 0 where
-    /// none is.
-    fn apart_in_distance(&self, begun: &Start, trial: &Trial, twin: &Trial) -> f64 {
-        let (part, k, at) = match self.furthest(&trial.reach) {
+    /// none is. Depths go on as they grow at the end of the step: of the two ends, that at which more is worn, and where neither
+    /// wears, as in the step.
+    fn apart_in_distance(&self, begun: &Start, ends: [&Trial; 2]) -> f64 {
+        let (part, k, at) = match self.furthest(&ends[0].reach) {
             Some(furthest) if furthest.0 >= 1.0 - THROUGH => furthest,
             _ => return 0.0,
         };
-        let work = match &begun.slipping {
-            Slipping::Cells(slip) => slip[at] * trial.wearing()[at],
-            Slipping::Track(track) => track[at],
-        };
-        let rates = &self.rates[k];
-        let apart = (part - self.part_of_layer(&twin.reach)).abs().max(MOMENT);
-        apart * rates.bottoms[self.through[k]] / (rates.of(self.through[k]) * work)
+        let (rates, layer) = (&self.rates[k], self.through[k]);
+        let growth = ends.map(|end| match &begun.slipping {
+            Slipping::Cells(slip) => rates.of(layer) * slip[at] * end.wearing()[at],
+            Slipping::Track(track) => rates.of(layer) * track[at],
+        });
+        let mut growth = growth[0].max(growth[1]);
+        if growth <= 0.0 {
+            growth = (ends[0].reach[k][at] - begun.depth[k][at]) / ends[0].length;
+        }
+        let apart = (part - self.part_of_layer(&ends[1].reach)).abs().max(THROUGH);
+        apart * rates.bottoms[layer] / growth
     }
 
     /// Layers that are through with this reach and at this depth, and were not before; the distance errs by `error`.
@@ -753,7 +773,7 @@ impl<S: Surface> WearSession<S> {
 
     /// One step of this `length`, whose end is `expected` at this pressure. Cells that have just come into contact would carry too
     /// much by the trapezoidal rule, as their start counts without them or with a part of the step: where one of them then wears
-    /// faster than any cell did, the step is Euler's.
+    /// faster than any cell did, or that opens a cell which wore, the step is Euler's.
     fn trial(
         &self,
         begun: &Start,
@@ -761,34 +781,35 @@ impl<S: Surface> WearSession<S> {
         expected: Array2<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        if !self.is_second_order() {
-            return self.trial_by(1.0, begun, length, expected, progress);
-        }
-        let trial = self.trial_by(0.5, begun, length, expected, progress)?;
-        match trial {
-            Some(trial) if self.overshoots(begun, &trial) => {
+        let weight = begun.weight.unwrap_or(if self.is_second_order() { 0.5 } else { 1.0 });
+        let is_free = begun.weight.is_none() && weight < 1.0;
+        match self.trial_by(weight, begun, length, expected, progress)? {
+            Some(trial) if is_free && self.overshoots(begun, &trial) => {
                 self.trial_by(1.0, begun, length, trial.solution.pressure, progress)
             }
             trial => Ok(trial),
         }
     }
 
-    /// Whether a cell that owes most of its depth to the step wears faster at its end than any did at its start.
+    /// Whether a cell that owes most of its depth to the step wears faster at its end than any did at its start, or one that wore is
+    /// out of contact.
     fn overshoots(&self, begun: &Start, end: &Trial) -> bool {
         let Slipping::Cells(slip) = &begun.slipping else { return false };
         let work = Zip::from(slip).and(begun.pressure);
         let most = work.fold(0.0_f64, |most, slip, p| most.max(slip * p));
         let [before, after] = [begun.depth, &end.depth].map(|depth| &depth[0] + &depth[1]);
-        let cells = Zip::from(slip).and(end.wearing()).and(&before).and(&after);
-        cells.any(|slip, p, before, after| {
+        let ends = Zip::from(slip).and(end.wearing());
+        let is_new_peak = ends.and(&before).and(&after).any(|slip, p, before, after| {
             slip * p > most * (1.0 + LEAST_CHANGE) && after - before > *before
-        })
+        });
+        let ends = Zip::from(slip).and(end.wearing()).and(begun.pressure);
+        is_new_peak || ends.any(|slip, p, before| *p <= 0.0 && slip * before > most * LEAST_CHANGE)
     }
 
     /// One step of this `length`, whose end has a weight and is `expected` at this pressure.
     fn trial_by(
         &self,
-        end_weight: f64,
+        weight: f64,
         begun: &Start,
         length: f64,
         expected: Array2<f64>,
@@ -797,16 +818,23 @@ impl<S: Surface> WearSession<S> {
         if self.rates.iter().all(Rates::vanish) {
             let (depth, reach) = (begun.depth.clone(), begun.reach.clone());
             let solution = begun.solution.clone();
-            let trial = Trial { length, depth, reach, solution, pressure: None, settled: true };
+            let trial = Trial {
+                length,
+                depth,
+                reach,
+                solution,
+                pressure: None,
+                weight: 1.0,
+                settled: true,
+            };
             return Ok(Some(trial));
         }
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
         let (first, per_pressure) = match &begun.slipping {
             Slipping::Track(track) => (track * length, Array2::zeros(track.dim())),
-            Slipping::Cells(slip) => (
-                slip * begun.pressure * (length * (1.0 - end_weight)),
-                slip * (length * end_weight),
-            ),
+            Slipping::Cells(slip) => {
+                (slip * begun.pressure * (length * (1.0 - weight)), slip * (length * weight))
+            }
         };
         let mut rates = [0, 1].map(|k| match self.rates[k].uniform() {
             Some(rate) => Array2::from_elem(begun.depth[k].dim(), rate),
@@ -820,6 +848,11 @@ impl<S: Surface> WearSession<S> {
         let mut missing = self.layers.as_ref().map(|_| {
             let work = work(&expected);
             [0, 1].map(|k| &begun.depth[k] + &(&rates[k] * &work))
+        });
+        // Where a step is to end as a layer is through, nothing below it wears.
+        let last = [0, 1].map(|k| match begun.weight {
+            Some(_) => self.through[k],
+            None => self.rates[k].bottoms.len(),
         });
         let mut initial = expected;
         for round in 1.. {
@@ -845,7 +878,7 @@ impl<S: Surface> WearSession<S> {
                     Some(rate) if rate > 0.0 => depth.scaled_add(rate, &work),
                     Some(_) => (),
                     None => Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
-                        let mean = self.rates[k].mean(*depth, *work);
+                        let mean = self.rates[k].mean_above(last[k], *depth, *work);
                         changed = changed
                             .max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
                         *depth += *rate * work;
@@ -863,7 +896,8 @@ impl<S: Surface> WearSession<S> {
                     })
                 });
                 let depth = reached;
-                let trial = Trial { length, depth, reach, solution, pressure, settled: true };
+                let trial =
+                    Trial { length, depth, reach, solution, pressure, weight, settled: true };
                 return Ok(Some(trial));
             }
             missing = self.layers.as_ref().map(|_| reached);
@@ -925,7 +959,15 @@ impl<S: Surface> WearSession<S> {
         if let Some(twin) = twin {
             let Some((depth, solution)) = solved(&twin.depth)? else { return Ok(None) };
             let (length, reach) = (0.0, depth.clone());
-            let twin = Trial { length, depth, reach, solution, pressure: None, settled: true };
+            let twin = Trial {
+                length,
+                depth,
+                reach,
+                solution,
+                pressure: None,
+                weight: 1.0,
+                settled: true,
+            };
             self.twin = Some(twin);
         }
         Ok(Some(WearState { depth, solution, regrids: last.regrids + 1, ..last.clone() }))

@@ -537,11 +537,13 @@ def wear(
         Slip of each cell per metre of sliding ``(nx, ny)``, at least 0; 1 by default.
     steps : int or array_like, optional
         Number of equal steps, or their ends in ascending order, from above 0 to the whole distance.
-        By default as many as keep the error of each within `step_tolerance`.
+        By default as many as keep the error of each within `step_tolerance`. All are made again in
+        halves, or whole, for `WearState.step_error` and the uncertainty of the life.
     step_tolerance : float, optional
-        Largest error of the pressure that a step may add, over the peak; not beside given `steps`.
+        Largest error of the pressure that a step may add, over the largest peak of the history; not
+        beside given `steps`.
     scheme : {"trapezoidal", "euler"}, optional
-        Steps of second order, which ring where they are too long and given; or of first order,
+        Steps of second order, which may ring where they are too long and given; or of first order,
         which never do.
     thickness : {"frozen", "first order"}, optional
         How thick the layers are in the elastic contact: as before wear, or, to first order in the

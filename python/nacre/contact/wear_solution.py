@@ -315,7 +315,6 @@ class WearThrough(Result):
         distance = self._travelled(unit) if unit else f"{self.distance:.4g}"
         return f"{self.layer} of the {self.body} after {distance}, at ({at})"
 
-
     def _travelled(self, unit: Unit) -> str:
         """Return the distance and its error in the unit of a history."""
         distance = travelled(self.distance, unit)
@@ -339,7 +338,7 @@ class WearReport(Result):
     step_error: float | None
     """Estimated error of the last pressure by the steps: the largest of a cell, over the peak.
 
-    It is found with steps of another length. A history that goes on counts its own steps.
+    It is found with steps of another length. Where a history goes on, that before is added.
     """
     thickness_error: float | None
     """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
@@ -804,7 +803,8 @@ class WearHistory(Result):
             *[("through", event._words(self.unit)) for event in self.events],
             (
                 "steps",
-                f"{report.steps}" + ("" if error is None else f", error {error:.1g} of the peak"),
+                f"{report.steps}"
+                + ("" if error is None else f", error of a cell {error:.1g} of the peak"),
             ),
         ]
         if report.thickness_error is not None:
@@ -989,6 +989,7 @@ def _gone_on(
         grows=bodies.grows,
     )
     regrids, earlier = 0, before.report if before else None
+    wrong = (earlier.step_error if earlier else None) or 0.0
     settled = earlier is None or NOT_SETTLED not in earlier.warnings
     members = (bodies.body, bodies.counterbody)
     first_notes = _rate_notes(options)
@@ -1008,7 +1009,14 @@ def _gone_on(
             warnings=(
                 *first_notes,
                 *(NOTHING_WORN[reason] for reason in sorted(idle)),
-                *_notes(states, events, control.thickness, thickness, settled=settled),
+                *_notes(
+                    states,
+                    events,
+                    control.thickness,
+                    thickness,
+                    given=options.steps is not None,
+                    settled=settled,
+                ),
             ),
             seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
         )
@@ -1026,10 +1034,10 @@ def _gone_on(
                 if before and distance == 0.0:
                     continue
                 state = WearState(
-                    offset + distance, *depths, Solution._of(solved, shape), error, rings
+                    offset + distance, *depths, Solution._of(solved, shape), wrong + error, rings
                 )
                 states.append(state)
-                events += [_event(one, offset, members) for one in through]
+                events += [_event(one, offset, wrong, members) for one in through]
                 history(converged=False)._keep(journal, len(states) - 1)
                 if control.progress is not None:
                     if control.progress(state) is False:
@@ -1066,11 +1074,15 @@ def _rate_notes(options: WearOptions) -> list[str]:
     return notes
 
 
-def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
+def _event(
+    event: Mapping[str, Any], offset: float, wrong: float, members: tuple[Any, Any]
+) -> WearThrough:
+    """Return an event after an offset whose pressure was so wrong."""
     kind: Literal["body", "counterbody"] = "body" if event["member"] == "body" else "counterbody"
     layer = _layers(members[kind == "counterbody"])[event["layer"]]
     x, y = event["position"]
-    distance, error = offset + event["distance"], event["error"]
+    distance = offset + event["distance"]
+    error = event["error"] + wrong * distance
     return WearThrough(distance, (x, y), event["layer"], layer, kind, error)
 
 
@@ -1136,22 +1148,23 @@ def _notes(
     model: Thickness,
     error: float | None,
     *,
+    given: bool,
     settled: bool,
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
     wrong = states[-1].step_error or 0.0
-    if wrong > LARGEST_STEP_ERROR:
+    if given and wrong > LARGEST_STEP_ERROR:
         cure = ', or scheme="euler"' if any(state.rings for state in states) else ""
         notes.append(
-            f"the last pressure errs by some {100 * wrong:.0f} % of the peak by the length of the "
-            f"steps: take shorter steps{cure}"
+            f"the last pressure of a cell errs by up to {100 * wrong:.0f} % of the peak by long "
+            f"steps: take shorter ones{cure}"
         )
     first, last = states[0].solution.load, states[-1].solution.load
     if last < NOTHING_PRESSES * first:
         notes.append(
-            f"at this approach, nothing presses any more: the load has fallen to {last / first:.1g} of "
-            "the first, and no more is worn: give a load"
+            "nothing presses any more at this approach, and no more is worn: the load has fallen "
+            f"to {last / first:.1g} of the first"
         )
     if not settled:
         notes.append(NOT_SETTLED)
@@ -1227,10 +1240,10 @@ the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
 """
 LEAST_RATE = 1e-18
 """Rate [m²/N] below which there is a warning: 1e-9 mm³/(N m), that of the least worn diamond."""
-LARGEST_STEP_ERROR = 0.05
-"""Error of the pressure by the length of the steps from which on there is a warning."""
+LARGEST_STEP_ERROR = 0.1
+"""Error of the pressure by the length of given steps from which on there is a warning."""
 NOTHING_PRESSES = 1e-3
-"""Part of the load of a contact at a given approach that is as good as none: a step's usual error."""
+"""Part of the first load, at a given approach, that is as good as none: a step's usual error."""
 MOST_THINNING = 0.05
 """Error of the pressure by the thickness of layers from which on there is a warning."""
 FIRST_ORDER = 0.4

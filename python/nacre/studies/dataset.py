@@ -18,6 +18,7 @@ from nacre.studies.outputs import (
     AXES,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
+    ESTIMATED_OF_WEAR,
     OF_SLIDING,
     RING_AXES,
     Output,
@@ -119,14 +120,17 @@ def assemble(
             dataset[name].attrs["units"] = own
     names = {*outputs, *map(str, dataset.coords)}
     estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
-    if kinds["indents"] or kinds["wears"]:
+    if kinds["indents"]:
         estimated = ()
+    elif kinds["wears"]:
+        estimated = ESTIMATED_OF_WEAR
     elif not kinds["bears"]:
         estimated = (*ESTIMATED, *OF_SLIDING)
     for name, quantity in errors(outputs, names, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
-        words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
+        cause = "length of the steps" if kinds["wears"] else "size of the cells"
+        words = f"error of {name.removesuffix(ERROR)} due to the {cause}, estimated"
         dataset[name].attrs = {"long_name": words}
         if quantity in units:
             dataset[name].attrs["units"] = symbol(units[quantity])
