@@ -5,6 +5,7 @@ mod batch;
 mod between_stations;
 mod cascade;
 mod driver;
+mod ends;
 mod options;
 mod plan;
 mod problem;

@@ -22,6 +22,13 @@ const UNCERTAIN: f64 = 0.1;
 /// automatic grid is fine enough.
 const UNSTATED: f64 = 0.01;
 
+impl From<&Solution> for GridResult {
+    fn from(solution: &Solution) -> Self {
+        let (approach, tilt) = (solution.approach, solution.tilt);
+        Self { approach, tilt, ..Self::of_pressure(&solution.pressure, solution.grid()) }
+    }
+}
+
 impl Contact {
     /// Presses the [alternatives](Surface::alternatives) of `shape` into the body as it was pressed for `solution`, and
     /// counts how far their solutions differ as discretisation errors. Where those of the cells are not known, a warning

@@ -71,8 +71,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use ndarray::{Array2, Axis};
 
 use crate::compliance::response::Body;
+use crate::contact::ends::{ContactEnd, contact_ends};
 use crate::contact::problem::patch::rows;
-use crate::contact::solution::{ContactEnd, Solution, contact_ends};
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::Surface;
 use crate::numerics::layout::slice;
@@ -146,13 +146,6 @@ impl GridResult {
             contact_extent: contact_ends(pressure, grid).map(|ends| ends.map(|end| end.at)),
             ..Self::default()
         }
-    }
-}
-
-impl From<&Solution> for GridResult {
-    fn from(solution: &Solution) -> Self {
-        let (approach, tilt) = (solution.approach, solution.tilt);
-        Self { approach, tilt, ..Self::of_pressure(&solution.pressure, solution.grid()) }
     }
 }
 
