@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import nacre
+from support import assert_close
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # few cells of stiff coats
 
@@ -60,7 +61,7 @@ def test_shifts_have_the_datum_of_the_bare_substrate(force: tuple[float | None, 
     assert near.shift is not None
     assert far.shift is not None
     inner = far.traction[:, :, 200:400]
-    np.testing.assert_allclose(near.traction, inner, atol=1e-6 * np.abs(inner).max())
+    assert_close(near.traction, inner, atol=1e-6 * np.abs(inner).max())
     along = 2 * 2 * 1.3 / 3.78e9
     for axis, compliance in enumerate((along, COMPLIANCE)):
         moved = compliance * (force[axis] or 0.0) / math.pi * math.log(3)
@@ -82,7 +83,7 @@ def test_a_shift_is_refused_where_it_would_fall_with_the_force() -> None:
     with pytest.raises(ValueError, match="shift cannot be"):
         slide(body, initial=pulled, load=0.5 * LOAD)
     again = slide(body, initial=pulled)
-    np.testing.assert_allclose(again.shift, pulled.shift, rtol=1e-9)
+    assert_close(again.shift, pulled.shift, rtol=1e-9)
     back = slide(body, initial=pulled, force=(None, 0.0))
     loop = slide(body, steps=[{"force": (None, 104.0)}, {"force": (None, 0.0)}])
     assert back.shift == pytest.approx(loop[-1].shift, rel=1e-6)

@@ -294,7 +294,7 @@ def test_a_pass_of_a_wheel_wears_the_whole_track() -> None:
     slope_x, slope_y = (np.gradient(u, grid.spacing[0], axis=0) for u in (u_x, u_y))
     work = q_x * (wheel.creepage[0] + slope_x) + q_y * (wheel.creepage[1] + slope_y)
     track = work.sum(axis=0) * grid.spacing[0] / 0.3 * 1e-15
-    np.testing.assert_allclose(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
+    assert_close(history.states[-1].depth, np.tile(track, (32, 1)), rtol=1e-6)
     # All slip is at μp, and the pass takes it off along the whole grid.
     due = 1e-15 * wheel.dissipated / 0.3 * grid.size[0]
     assert history.volume[-1, 0] == pytest.approx(due, rel=1e-6)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import nacre
+from support import assert_close
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Layer(nacre.Elastic(young=300e9, poisson=0.2), 2e-6, name="DLC")
@@ -42,9 +43,9 @@ def test_a_kill_leaves_a_store_that_the_same_call_goes_on_from(tmp_path: Path) -
     assert [*killed.distance] == [*whole.distance[:1]]
     assert not killed.report.converged
     went_on = nacre.wear(ball, STEEL, store=store, **keywords)
-    np.testing.assert_allclose(went_on.distance, whole.distance, rtol=1e-14)
+    assert_close(went_on.distance, whole.distance, rtol=1e-14)
     # Solves to 1e-8, in whose energy the pressure counts squared.
-    np.testing.assert_allclose(went_on.peak_pressure, whole.peak_pressure, rtol=1e-4)
+    assert_close(went_on.peak_pressure, whole.peak_pressure, rtol=1e-4)
     assert nacre.load(store) == went_on
     assert went_on.report.regrids == whole.report.regrids
 
@@ -69,8 +70,8 @@ def test_a_store_goes_on_from_a_history_and_from_a_depth(tmp_path: Path) -> None
         stopped = worn(progress=lambda state, base=base: state.distance < base + 50, **call)
         assert stopped.distance[-1] == base + 50
         went_on, whole = worn(**call), worn(initial=initial, load=2e5)
-        np.testing.assert_allclose(went_on.distance, whole.distance, rtol=1e-14)
-        np.testing.assert_allclose(went_on.deepest, whole.deepest, rtol=1e-4)
+        assert_close(went_on.distance, whole.distance, rtol=1e-14)
+        assert_close(went_on.deepest, whole.deepest, rtol=1e-4)
         assert went_on.inputs == whole.inputs
         assert worn(**call).states == went_on.states
     with pytest.raises(ValueError, match="store must be a history of the same initial"):

@@ -315,7 +315,7 @@ def balance(name: str) -> None:
     assert normal.pressure.sum() * area == pytest.approx(load, rel=1e-9)
     if name == "friction":
         force = result.traction.sum(axis=(1, 2)) * area
-        np.testing.assert_allclose(force, [1.5, 0.5], rtol=1e-6)
+        assert_close(force, [1.5, 0.5], rtol=1e-6)
     elif name not in ("periodic", "rough", "worn_rough", "line", "rolling", "sampled_profile"):
         arm = (normal.pressure.sum(axis=1) * grid.x).sum() * area / load
         assert arm == pytest.approx(1.2e-5, rel=1e-6)
@@ -454,4 +454,4 @@ def test_wear_of_rough_surfaces_is_that_of_the_law_wherever_they_begin(
     assert first.volume[-1, 0] == pytest.approx(1e-15 * 2.0 * 0.1, rel=1e-12)
     depth = np.roll(first.states[-1].depth, steps, (0, 1))
     # Sums of transforms that begin elsewhere differ by rounding.
-    np.testing.assert_allclose(other.states[-1].depth, depth, atol=1e-10 * depth.max())
+    assert_close(other.states[-1].depth, depth, atol=1e-10 * depth.max())
