@@ -308,7 +308,7 @@ impl<'a> LevelProblem<'a> {
     /// Numbers of a solution on this grid.
     fn result(&self, patch: &Patch, lambda: [f64; 3]) -> GridResult {
         let mut pressure = Array2::zeros(self.shape());
-        patch.paste(&mut slice_mut(&mut pressure), self.shape()[1]);
+        patch.paste(slice_mut(&mut pressure), self.shape()[1]);
         let (approach, tilt) = self.freedoms.rigid_motion(lambda);
         GridResult { approach, tilt, ..GridResult::of_pressure(&pressure, &self.level.grid) }
     }

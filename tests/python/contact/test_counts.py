@@ -1,6 +1,7 @@
 """Counts that need more memory than there is are refused by name."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,12 @@ import nacre
 from nacre import bearing, rough
 
 STEEL = nacre.Elastic(210e9, 0.3)
-LINE = {"grid": nacre.Grid.line(64, 3e-4), "load": 1e5, "friction": 0.3, "direction": "+y"}
+LINE: dict[str, Any] = {
+    "grid": nacre.Grid.line(64, 3e-4),
+    "load": 1e5,
+    "friction": 0.3,
+    "direction": "+y",
+}
 
 
 @pytest.mark.parametrize("count", [2**40, 2**62, np.uint64(2**63)])

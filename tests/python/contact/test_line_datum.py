@@ -1,6 +1,7 @@
 """Line contacts on stiff coats, whose own surface moves less than the datum of displacements."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,13 +26,14 @@ def slide(
     body: nacre.HalfSpace,
     counterbody: nacre.HalfSpace | nacre.Elastic | None = None,
     wider: int = 1,
-    **keywords: object,
-) -> nacre.types.FrictionSolution:
+    **keywords: Any,
+) -> Any:
     """Slide on 200 cells, or on as many times more as the grid is wider."""
     grid = nacre.Grid.line(200 * wider, wider * WIDTH)
     other = body if counterbody is None else counterbody
-    given = {"load": LOAD, "friction": FRICTION, "threads": 1}
-    return nacre.slide(SHAPE, body, other, grid=grid, **{**given, **keywords})
+    given: dict[str, Any] = {"load": LOAD, "friction": FRICTION, "threads": 1}
+    solution: Any = nacre.slide(SHAPE, body, other, grid=grid, **{**given, **keywords})
+    return solution
 
 
 @pytest.mark.parametrize("ratio", [3, 20, 100])
@@ -90,9 +92,13 @@ def test_a_shift_is_refused_where_it_would_fall_with_the_force() -> None:
     with pytest.raises(ValueError, match="creepage cannot be"):
         nacre.roll(
             SHAPE,
-            *(body, body),
+            body,
+            body,
             grid=nacre.Grid.line(200, WIDTH),
-            **{"load": LOAD, "friction": FRICTION, "creepage": (1e-4, None), "cells": 8},
+            load=LOAD,
+            friction=FRICTION,
+            creepage=(1e-4, None),
+            cells=8,
         )
 
 
@@ -100,9 +106,12 @@ def test_printed_numbers_name_their_datum() -> None:
     for body, surface in ((coated(4, 60e-6), "surface of the bare substrate"), (BASE, "surface")):
         solution = nacre.slide(
             SHAPE,
-            *(body, body),
+            body,
+            body,
             grid=nacre.Grid.line(200, WIDTH),
-            **{"load": LOAD, "friction": FRICTION, "force": (None, 104.0)},
+            load=LOAD,
+            friction=FRICTION,
+            force=(None, 104.0),
         )
         for printed, name in ((solution, "shift"), (solution.normal, "approach")):
             row = next(line for line in str(printed).splitlines() if line.startswith(name))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -86,7 +87,9 @@ def ellipse(rng: np.random.Generator) -> Pairs:
         "x": widths[0] / 2,
         "y": widths[1] / 2,
     }
-    given = {"load": exact["load"]} if rng.random() < 0.7 else {"approach": exact["approach"]}
+    given: dict[str, Any] = (
+        {"load": exact["load"]} if rng.random() < 0.7 else {"approach": exact["approach"]}
+    )
     shape = nacre.Paraboloid(0.5 / curvatures[0], 0.5 / curvatures[1])
     solution = nacre.solve(shape, STEEL, grid=grid, threads=1, **given)
     yield from compared(solution, {k: v for k, v in exact.items() if k not in given})

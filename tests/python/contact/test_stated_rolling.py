@@ -1,6 +1,7 @@
 """Stated errors of line contacts with friction, at random places of the grid."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,15 +38,17 @@ def _carter(seed: int, count: int) -> dict[str, np.ndarray]:
         given = "force" if number % 2 else "creepage"
         exact = {"creepage": creepage, "force": force}
         exact |= {"dissipated": force * creepage, "stick_share": sticks}
+        motion: dict[str, Any] = {given: (exact[given], None)}
         solution = nacre.roll(
             nacre.Cylinder(RADIUS),
-            *(STEEL, STEEL),
+            STEEL,
+            STEEL,
             grid=grid,
             load=LOAD,
             friction=friction,
-            direction=str(rng.choice(["+y", "-y"])),
+            direction="+y" if rng.random() < 0.5 else "-y",
             threads=1,
-            **{given: (exact[given], None)},
+            **motion,
         )
         stated = solution.report.discretisation
         assert stated is not None
@@ -99,7 +102,12 @@ def test_errors_of_sliding_are_within_those_stated(count: int) -> None:
 
 
 def test_the_torque_of_a_line_contact_has_an_error() -> None:
-    keywords = {"load": LOAD, "friction": 0.3, "creepage": (3e-4, 2e-4), "direction": "+y"}
+    keywords: dict[str, Any] = {
+        "load": LOAD,
+        "friction": 0.3,
+        "creepage": (3e-4, 2e-4),
+        "direction": "+y",
+    }
     solution, fine = (
         nacre.roll(
             nacre.Cylinder(RADIUS), STEEL, STEEL, grid=nacre.Grid.line(n, 2.6e-4), **keywords

@@ -89,7 +89,8 @@ def carter(share: float, friction: float, sense: float) -> tuple[float, float]:
         return np.sqrt(np.maximum(1 - t * t, 0.0))
 
     def in_plane(t: Array) -> Array:
-        return -2 * (t - np.sign(t) * np.sqrt(np.maximum(t * t - 1, 0.0)))
+        stresses: Array = -2 * (t - np.sign(t) * np.sqrt(np.maximum(t * t - 1, 0.0)))
+        return stresses
 
     p, zoom = ellipse(y), (y - (1 - c)) / c
     yz = friction * (p - c * ellipse(zoom))
