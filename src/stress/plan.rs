@@ -323,11 +323,7 @@ impl StressPlan {
     ///
     /// # Errors
     /// Bad depths or options.
-    pub fn extreme_errors(
-        &self,
-        depths: &[f64],
-        options: &StressOptions,
-    ) -> Result<Vec<f64>> {
+    pub fn extreme_errors(&self, depths: &[f64], options: &StressOptions) -> Result<Vec<f64>> {
         let (body, grid) = (&self.whole.body, &self.whole.grid);
         let friction = self.sliding.traction(body, options)?;
         let window = Points::new(body, grid, options.section)?.window();

@@ -45,10 +45,11 @@ const SAFETY: f64 = 0.8;
 /// Wear of the first step, as a part of the approach: its error decides the next ones.
 const FIRST: f64 = 0.02;
 
-/// Bounds of the error of a step in its halves, and of a whole one, over the difference of both. Of waves that fade as exp(−z) in
+/// Bound of the error of a step in its halves, and of a whole one, over the difference of both. Of waves that fade as exp(−z) in
 /// the step, Euler's rule has at most 1.41 and 2.41, at z = 1.6 and 1.5, the trapezoidal rule 1/2 and 4/3, and the explicit one of
-/// passes 1 and 2 (derived here). The next integers are for cells at the edge, whose pressures are no sums of few waves.
-const ERROR: [f64; 2] = [2.0, 3.0];
+/// passes 1 and 2 (derived here). Halves have the bound of whole steps, too: cells at the edge, whose pressures are no sums of few
+/// waves, err by up to 2.2.
+const ERROR: f64 = 3.0;
 
 /// Error of a pressure, relative to the peak, over the tolerance of its solve: solves of the same contact from other starts differ by
 /// no more where nothing is worn.
@@ -412,8 +413,7 @@ impl<S: Surface> WearSession<S> {
                 (WearSteps::Ends(_), true) => last.distance + left,
                 _ => last.distance + trial.length,
             };
-            let share = ERROR[usize::from(matches!(self.wear.steps, WearSteps::Ends(_)))];
-            let error = share * self.apart_in_distance(&begun, [&trial, &twin]);
+            let error = ERROR * self.apart_in_distance(&begun, [&trial, &twin]);
             let idle = begun.idle;
             let through = self.through_at(distance, error, [&trial.reach, &trial.depth]);
             let change = &trial.solution.pressure - &last.solution.pressure;
@@ -433,7 +433,7 @@ impl<S: Surface> WearSession<S> {
                 depth: trial.depth,
                 solution: trial.solution,
                 through,
-                step_error: if apart > 0.0 { share * apart / peak } else { 0.0 }
+                step_error: if apart > 0.0 { ERROR * apart / peak } else { 0.0 }
                     .max(OF_SOLVES * self.wear.options.tolerance),
                 rings,
                 settled: trial.settled,
@@ -669,13 +669,29 @@ impl<S: Surface> WearSession<S> {
         trial: Trial,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        let part = self.part_of_layer(&trial.reach);
-        if part <= 1.0 + MOMENT {
+        let is_before = |depth: &[Array2<f64>; 2]| self.part_of_layer(depth) <= 1.0 + MOMENT;
+        if is_before(&trial.reach) && is_before(&trial.depth) {
             return Ok(Some(trial));
         }
         // The depth is continuous in the length by one rule.
         let begun = &Start { weight: Some(trial.weight), ..begun.clone() };
         let is_halved = matches!(self.wear.steps, WearSteps::Auto { .. });
+        let mut step = |length: f64, expected: &Array2<f64>| match is_halved {
+            true => self.halved(begun, length, expected, progress),
+            false => self.trial(begun, length, expected.clone(), progress),
+        };
+        let mut trial = trial;
+        if is_before(&trial.reach) {
+            // Rates of what lies below did not settle: it takes no part before the layer is through.
+            let Some(settled) = step(trial.length, &trial.solution.pressure)? else {
+                return Ok(None);
+            };
+            trial = settled;
+            if is_before(&trial.reach) {
+                return Ok(Some(trial));
+            }
+        }
+        let part = self.part_of_layer(&trial.reach);
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
         let mut least = [0.0, 1.0 - self.part_of_layer(begun.depth)];
         let mut most = [trial.length, part - 1.0];
@@ -685,12 +701,7 @@ impl<S: Surface> WearSession<S> {
         for _ in 0..TRIALS {
             let [[a, lacks], [b, beyond]] = [least, most];
             let length = a + (b - a) * lacks / (lacks + beyond);
-            let expected = &nearest.solution.pressure;
-            let next = match is_halved {
-                true => self.halved(begun, length, expected, progress)?,
-                false => self.trial(begun, length, expected.clone(), progress)?,
-            };
-            let Some(next) = next else { return Ok(None) };
+            let Some(next) = step(length, &nearest.solution.pressure)? else { return Ok(None) };
             let part = self.part_of_layer(&next.reach);
             let is_beyond = part > 1.0;
             let [own, other] =

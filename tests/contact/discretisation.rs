@@ -152,11 +152,12 @@ fn hard_layers_thinner_than_cells_are_seen_not_to_be_resolved() -> Result<()> {
     let error = fine.peak_pressure() - coarse.peak_pressure();
     assert!(error > 0.1 * coarse.peak_pressure());
     assert!(error < 3.0 * peak_error(found));
-    // A layer of twice the substrate's modulus does nothing of the kind.
+    // A layer of twice the substrate's modulus does nothing of the kind. Of the peak, 3 % are the changes of a contact 11 cells
+    // wide, and up to 0.8 % what lies between the centres of its cells: ½ (δ/a)² half a diagonal δ beside the middle.
     let body = stack(Elastic::new(1.0, 0.3)?, [[2.0, 0.3, 0.1 * cell]])?;
     let mild = solved(&body, Grid::new([80; 2], [2.0; 2])?, &shape, &motion)?;
     let found = estimate(&mild)?;
-    below!(peak_error(found), 0.03 * mild.peak_pressure(), found);
+    below!(peak_error(found), 0.038 * mild.peak_pressure(), found);
     Ok(())
 }
 

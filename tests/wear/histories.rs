@@ -207,7 +207,8 @@ fn coats_are_through_where_finer_steps_say() -> Result<()> {
     let event = states.iter().find(|state| !state.through.is_empty()).expect("it is through");
     near!(event.distance, due.distance, 0.02);
     let last = states.last().expect("a state");
-    assert_eq!(states.len(), 8);
+    let distances: Vec<f64> = states.iter().map(|state| state.distance / due.distance).collect();
+    assert_eq!(states.len(), 8, "{distances:?}");
     let volume = last.depth[0].sum() * plan.grid().cell_area();
     let force = load().load.unwrap_or(0.0);
     assert!(volume > 1.2 * force * last.distance, "the substrate wears faster: {volume}");

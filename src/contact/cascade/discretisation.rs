@@ -31,7 +31,8 @@
 //!
 //! # Hard layers thinner than some cells
 //!
-//! Below the length of some cells, the body is stiffer by the ratio M of its response at q = π/6Δ and q = ∞. Like
+//! Below the length of a cell, or of six where the body is three times stiffer to short waves than to those as long as the
+//! grid, it is stiffer by the ratio M of its response at q = π/Δ, or π/6Δ, and q = ∞. Like
 //! a plate on a foundation, a hard layer of thickness h gathers the force at the rim of the contact over a
 //! length of about h M^⅓ and presses it on over h: the pressure of the outermost cells rises M^⅓ times. The
 //! error of the peak is what this exceeds the peak by. Where the peak stands at the rim already, the response at π/2Δ counts.
@@ -374,11 +375,13 @@ impl Unresolved {
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
         let local: f64 = bodies.iter().map(|body| body.local()).sum();
         let short_waves = normal(PI / finest);
-        let beside_rim = normal(PI / (WITHIN * finest));
-        let [stiffening, below_cell] = [beside_rim, normal(PI / (AT_RIM * finest))]
-            .map(|waves| if short > 0.0 && local <= 0.0 { waves / short } else { 1.0 });
         let side = grid.size().into_iter().fold(0.0, f64::max);
         let gathers = short > 0.0 && normal(2.0 * PI / side) > STIFF * short;
+        let cells = if gathers { [WITHIN, AT_RIM] } else { [1.0; 2] };
+        let [stiffening, below_cell] = cells.map(|cells| {
+            let waves = normal(PI / (cells * finest));
+            if short > 0.0 && local <= 0.0 { waves / short } else { 1.0 }
+        });
         Self { aliases, stiffening, below_cell, short_waves, gathers }
     }
 
@@ -474,7 +477,7 @@ impl Unresolved {
             }
         });
         Discretisation::of([
-            peak * (relative + chance) + concentrated + between,
+            (peak * relative + concentrated + between).max(peak * chance),
             approach,
             load,
             outline_error(pressure, grid) * grid.cell_area(),

@@ -12,11 +12,14 @@
 //!
 //! The stresses of the rectangles are summed ([`super::near`]): the nearer the target, the finer the cut.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::edge::{BAND, EdgeCell, RectangleSums, SquaredPressure, edge_cells, edge_distances};
+use super::edge::{
+    BAND, EdgeCell, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
+};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -110,8 +113,12 @@ impl Reconstruction {
             roots = threads.run(|| raised.filter_map(root).collect());
             uniform = uniform_part(pressure, &interior, &roots, shape);
         }
-        // Cells beyond the edge hold nothing; one that the edge just enters may hold no sampled point.
-        roots.retain(|root| root.mean > 0.0 || root.edge(0.5).is_some());
+        // Cells beyond the edge hold nothing; one that the edge just enters may hold no sampled point. It is kept where no
+        // cell beside it has the edge.
+        let with_edge = |root: &&RootCell| root.mean > 0.0 && root.edge(0.5).is_some();
+        let edges: BTreeSet<_> = roots.iter().filter(with_edge).map(|root| root.cell).collect();
+        let is_alone = |cell| !around(shape, cell, 1).any(|beside| edges.contains(&beside));
+        roots.retain(|root| root.mean > 0.0 || root.edge(0.5).is_some() && is_alone(root.cell));
         ControlFlow::Continue(Self { uniform, interior, roots })
     }
 }

@@ -1,6 +1,7 @@
 """Stated errors of line contacts with friction, at random places of the grid."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,13 @@ MODULUS = 210e9 / 0.91 / 2
 HALF, RADIUS = 1e-4, 50e-3
 """Half-width and radius: a circle differs from a parabola by (a/R)², 4e-6."""
 LOAD = math.pi * HALF**2 * MODULUS / (4 * RADIUS)  # Hertz: a² = 4WR/πE*
+
+CLAIMS = {
+    "creepage": "stated-rolling-creepage",
+    "force": "stated-rolling-force",
+    "dissipated": "stated-rolling-dissipated",
+    "stick_share": "stated-rolling-stick-share",
+}
 
 
 def _grid(rng: np.random.Generator, most: float = 200) -> nacre.Grid:
@@ -61,10 +69,15 @@ def _carter(seed: int, count: int) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("count", [30, pytest.param(300, marks=pytest.mark.slow)])
-def test_errors_of_rolling_are_within_those_stated(count: int) -> None:
+def test_errors_of_rolling_are_within_those_stated(
+    count: int, claim: Callable[[str, float], None]
+) -> None:
     for name, (stated, true) in _carter(1, count).items():
         assert np.mean(true <= stated) >= 0.99, name
-        assert 2 <= np.median(stated / true) <= (10 if count > 100 else 20), name
+        median = float(np.median(stated / true))
+        if count > 100:
+            claim(CLAIMS[name], median)
+        assert 2 <= median <= 20, name
 
 
 @pytest.mark.parametrize("count", [20, pytest.param(300, marks=pytest.mark.slow)])

@@ -25,7 +25,8 @@ TOO_WIDE = 8.0
 
 Errors = tuple[float, float]
 """True and stated error, over the peak pressure."""
-Case = Callable[[np.random.Generator], list[Errors]]
+Case = Callable[[np.random.Generator], dict[str, Errors]]
+"""Errors of a random placing, by the names of their claims."""
 
 
 def placed(rng: np.random.Generator, across: tuple[float, float] = (20, 200)) -> nacre.Grid:
@@ -43,34 +44,40 @@ def errors(value: float, stated: float, exact: float) -> Errors:
     return abs(value / PEAK - exact), stated / PEAK
 
 
-def tension_behind_a_cylinder(rng: np.random.Generator) -> list[Errors]:
+def tension_behind_a_cylinder(rng: np.random.Generator) -> dict[str, Errors]:
     """2 μ p0 at the trailing edge (Johnson, Contact Mechanics (1985), §7.1)."""
     friction, sense = rng.uniform(0.1, 0.6), float(rng.choice([-1, 1]))
     summary = cylinder(placed(rng)).stress_summary(
         friction=friction, direction=(0, sense), threads=1
     )
     (layer,) = summary.layers
-    return [errors(layer.tension[0], layer.uncertainty["tension"], 2 * friction)]
+    return {
+        "stated-sliding-tension": errors(
+            layer.tension[0], layer.uncertainty["tension"], 2 * friction
+        )
+    }
 
 
-def without_points(rng: np.random.Generator) -> list[Errors]:
+def without_points(rng: np.random.Generator) -> dict[str, Errors]:
     """Miss the cusp of the same tension on few cells, of which most do not locate an edge."""
     friction = rng.uniform(0.1, 0.6)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # of few cells
         solution = cylinder(placed(rng, across=(6, 14)))
         (layer,) = solution.stress_summary(friction=friction, direction=(0, 1), threads=1).layers
-    return [errors(layer.tension[0], layer.uncertainty["tension"], 2 * friction)]
+    return {"few-cells": errors(layer.tension[0], layer.uncertainty["tension"], 2 * friction)}
 
 
-def fatigue_of_a_cylinder(rng: np.random.Generator) -> list[Errors]:
+def fatigue_of_a_cylinder(rng: np.random.Generator) -> dict[str, Errors]:
     """Reach a shear yz of p0/4 with both signs: a range of p0/2, a shakedown limit of 4 k."""
     (layer,) = fatigue.assess(cylinder(placed(rng)), threads=1).layers
     stated = layer.uncertainty
-    return [
-        errors(layer.orthogonal_shear[0], stated["orthogonal_shear"], 0.5),
-        errors(layer.shakedown[0], stated["shakedown"], 0.25),
-    ]
+    return {
+        "stated-orthogonal-shear": errors(
+            layer.orthogonal_shear[0], stated["orthogonal_shear"], 0.5
+        ),
+        "stated-shakedown": errors(layer.shakedown[0], stated["shakedown"], 0.25),
+    }
 
 
 def carter(share: float, friction: float, sense: float) -> tuple[float, float]:
@@ -104,7 +111,7 @@ def carter(share: float, friction: float, sense: float) -> tuple[float, float]:
     return float(np.sqrt(squares.max())), float(shear.max())
 
 
-def rolling_cylinder(rng: np.random.Generator) -> list[Errors]:
+def rolling_cylinder(rng: np.random.Generator) -> dict[str, Errors]:
     """Extremes at the border of the zone that sticks.
 
     With this friction, those below the surface are smaller.
@@ -124,36 +131,42 @@ def rolling_cylinder(rng: np.random.Generator) -> list[Errors]:
     )
     (layer,) = rolled.stress_summary(threads=1).layers
     mises, shear = carter(share, friction, sense)
-    return [
-        errors(layer.von_mises[0], layer.uncertainty["von_mises"], mises),
-        errors(layer.max_shear[0], layer.uncertainty["max_shear"], shear),
-    ]
+    return {
+        "stated-rolling-von-mises": errors(
+            layer.von_mises[0], layer.uncertainty["von_mises"], mises
+        ),
+        "stated-rolling-shear": errors(layer.max_shear[0], layer.uncertainty["max_shear"], shear),
+    }
 
 
-CASES: list[tuple[Case, float]] = [
-    (tension_behind_a_cylinder, TOO_WIDE),
-    (without_points, TOO_WIDE),
-    (fatigue_of_a_cylinder, TOO_WIDE),
-    (rolling_cylinder, TOO_WIDE),
-]
+CASES = [tension_behind_a_cylinder, without_points, fatigue_of_a_cylinder, rolling_cylinder]
 
 
-def check(case: Case, count: int, widest: float) -> None:
+def medians(case: Case, count: int) -> dict[str, float]:
+    """Return the medians of stated over true errors, of which 99 % must be at least 1."""
     rng = np.random.default_rng(63)
-    true, stated = np.array([pair for _ in range(count) for pair in case(rng)]).T
-    assert np.mean(true <= stated) >= 0.99, (true / stated).max()
-    assert np.median(stated / true) <= widest
+    placings = [case(rng) for _ in range(count)]
+    ratios = {}
+    for name in placings[0]:
+        true, stated = np.array([placing[name] for placing in placings]).T
+        assert np.mean(true <= stated) >= 0.99, (name, (true / stated).max())
+        ratios[name] = float(np.median(stated / true))
+    return ratios
 
 
-@pytest.mark.parametrize(("case", "widest"), CASES)
-def test_errors_hold_at_some_placings(case: Case, widest: float) -> None:
-    check(case, 8, 2 * widest)
+@pytest.mark.parametrize("case", CASES)
+def test_errors_hold_at_some_placings(case: Case) -> None:
+    assert max(medians(case, 8).values()) <= 2 * TOO_WIDE
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("case", "widest"), CASES)
-def test_errors_hold_at_all_placings(case: Case, widest: float) -> None:
-    check(case, 300, widest)
+@pytest.mark.parametrize("case", CASES)
+def test_errors_hold_at_all_placings(case: Case, claim: Callable[[str, float], None]) -> None:
+    for name, median in medians(case, 300).items():
+        if name == "few-cells":
+            assert median <= TOO_WIDE
+        else:
+            claim(name, median)
 
 
 BETWEEN = nacre.Grid.line(64, 3.3884025748150403e-4, center=6.108925138100016e-07)
