@@ -147,6 +147,8 @@ pub struct WearState {
     pub through: Vec<WearThrough>,
     /// Estimated error of the pressure by the steps until then, the largest of a cell relative to the peak.
     pub step_error: f64,
+    /// Estimated error of the peak pressure by the length of the steps, relative to it.
+    pub peak_error: f64,
     /// Whether pressures of cells rise and fall from step to step, as the trapezoidal rule makes them where steps are too long.
     pub rings: bool,
     /// Whether the end is where a layer is through, if one is: the search for that distance may end before it is there.

@@ -732,7 +732,7 @@ class WearSteps:
         tuple[_Field, _Field],
         Solved,
         list[dict[str, Any]],
-        float,
+        tuple[float, float],
         str | None,
         tuple[bool, bool],
         int,

@@ -479,7 +479,11 @@ impl Contact {
         if is_told || options.initial.is_some() || options.algorithm != Algorithm::Cascade {
             return;
         }
-        let motion = solution.report.motion;
+        let (motion, spent) = (solution.report.motion, solution.report.seconds);
+        let mut goes_on = |report: &Report| {
+            progress(&Report { seconds: spent + report.seconds, ..report.clone() })
+        };
+        let progress: &mut Progress = &mut goes_on;
         let solved = |plan: &Self, options: &Options, progress: &mut Progress| {
             let (shape_of_grid, periodic) = (plan.grid.shape(), plan.grid.is_periodic());
             let halved = [!plan.grid.is_line(), true];

@@ -255,6 +255,7 @@ impl<S: Surface> WearSession<S> {
             solution,
             through,
             step_error: 0.0,
+            peak_error: 0.0,
             rings: false,
             settled: true,
             regrids: 0,
@@ -425,6 +426,7 @@ impl<S: Surface> WearSession<S> {
             self.change = through.is_empty().then_some((change, trial.length));
             let pressures = Zip::from(&trial.solution.pressure).and(&twin.solution.pressure);
             let apart = pressures.fold(0.0_f64, |most, p, other| most.max((p - other).abs()));
+            let peak_error = ERROR * (peak - twin.solution.peak_pressure()).abs();
             self.start = trial.pressure;
             self.twin = Some(twin);
             trial.solution.report.convolutions = self.spent();
@@ -433,6 +435,7 @@ impl<S: Surface> WearSession<S> {
                 depth: trial.depth,
                 solution: trial.solution,
                 through,
+                peak_error: if peak > 0.0 { peak_error / peak } else { 0.0 },
                 step_error: if apart > 0.0 { ERROR * apart / peak } else { 0.0 }
                     .max(OF_SOLVES * self.wear.options.tolerance),
                 rings,

@@ -989,7 +989,7 @@ def _gone_on(
         grows=bodies.grows,
     )
     regrids, earlier = 0, before.report if before else None
-    wrong = (earlier.step_error if earlier else None) or 0.0
+    wrong, peak_error = (earlier.step_error if earlier else None) or 0.0, 0.0
     settled = earlier is None or NOT_SETTLED not in earlier.warnings
     members = (bodies.body, bodies.counterbody)
     first_notes = _rate_notes(options)
@@ -1014,7 +1014,7 @@ def _gone_on(
                     events,
                     control.thickness,
                     thickness,
-                    given=options.steps is not None,
+                    peak_error=peak_error if options.steps is not None else 0.0,
                     settled=settled,
                 ),
             ),
@@ -1026,7 +1026,8 @@ def _gone_on(
     try:
         steps = core.wear(shape, motion, options, on)
         with lasting("wear", control.progress) as tell:
-            for distance, depths, solved, through, error, why_idle, signs, grown in steps:
+            for distance, depths, solved, through, step_errors, why_idle, signs, grown in steps:
+                error, peak_error = step_errors
                 rings, at_event = signs
                 if why_idle is not None:
                     idle.add(why_idle)
@@ -1148,17 +1149,16 @@ def _notes(
     model: Thickness,
     error: float | None,
     *,
-    given: bool,
+    peak_error: float,
     settled: bool,
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
-    wrong = states[-1].step_error or 0.0
-    if given and wrong > LARGEST_STEP_ERROR:
+    if peak_error > LARGEST_STEP_ERROR:
         cure = ', or scheme="euler"' if any(state.rings for state in states) else ""
         notes.append(
-            f"the last pressure of a cell errs by up to {100 * wrong:.0f} % of the peak by long "
-            f"steps: take shorter ones{cure}"
+            f"the last peak pressure errs by some {100 * peak_error:.0f} % by the length of the "
+            f"steps: take shorter steps{cure}"
         )
     first, last = states[0].solution.load, states[-1].solution.load
     if last < NOTHING_PRESSES * first:
@@ -1241,7 +1241,7 @@ the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
 LEAST_RATE = 1e-18
 """Rate [m²/N] below which there is a warning: 1e-9 mm³/(N m), that of the least worn diamond."""
 LARGEST_STEP_ERROR = 0.1
-"""Error of the pressure by the length of given steps from which on there is a warning."""
+"""Error of the peak by the length of given steps from which on there is a warning."""
 NOTHING_PRESSES = 1e-3
 """Part of the first load, at a given approach, that is as good as none: a step's usual error."""
 MOST_THINNING = 0.05

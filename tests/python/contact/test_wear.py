@@ -19,7 +19,6 @@ GRID = nacre.Grid.line(64, 6e-4)
 LINE: dict[str, Any] = {"load": 1e5, "grid": GRID, "rate": {0: 1e-17, "substrate": 1e-15}}
 
 # Two steps are enough for what is asked here, and their pressures err.
-pytestmark = pytest.mark.filterwarnings("ignore:the last pressure of a cell errs")
 
 
 def worn(**keywords: Any) -> nacre.types.WearHistory:

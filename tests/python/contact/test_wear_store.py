@@ -166,7 +166,8 @@ def test_events_of_a_history_that_goes_on_count_from_its_beginning() -> None:
     assert rest.life is not None
     # Steps of 1e-3 of the peak each, of the same scheme.
     assert rest.life.distance == pytest.approx(life.distance, rel=3e-3)
-    assert rest.life.position == life.position
+    # One of both cells beside the middle.
+    assert np.abs(rest.life.position) == pytest.approx(np.abs(life.position))
     assert rest.events == rest.events[:1]
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
         after = worn(sliding=10.0, steps=1, initial=rest)
