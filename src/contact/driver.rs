@@ -480,8 +480,10 @@ impl Contact {
             return;
         }
         let (motion, spent) = (solution.report.motion, solution.report.seconds);
+        let begin = std::time::Instant::now();
         let mut goes_on = |report: &Report| {
-            progress(&Report { seconds: spent + report.seconds, ..report.clone() })
+            let seconds = spent + begin.elapsed().as_secs_f64();
+            progress(&Report { seconds, ..report.clone() })
         };
         let progress: &mut Progress = &mut goes_on;
         let solved = |plan: &Self, options: &Options, progress: &mut Progress| {

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Solution
 
 
-LETTERS = 27
+LETTERS = 26
 """Letters of a line of the table of numbers; longer ones are wrapped."""
 
 
