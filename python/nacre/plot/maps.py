@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Solution
 
 
-LETTERS = 26
+LETTERS = 21
 """Letters of a line of the table of numbers; longer ones are wrapped."""
 
 
@@ -188,7 +188,7 @@ def _numbers(solution: Solution, axes: Axes) -> None:
     step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):
         height = 1 - (number + 0.5) * step
-        for text, offset, colour in ((name, 0, "0.35"), (value, 66, "black")):
+        for text, offset, colour in ((name, 0, "0.35"), (value, 68, "black")):
             axes.annotate(
                 text,
                 (0, height),
