@@ -52,6 +52,7 @@ __all__ = [
     "WearSteps",
     "__version__",
     "at",
+    "check_memory",
     "checked",
     "checked_report",
     "checked_stress",
