@@ -137,6 +137,11 @@ struct Trial {
 }
 
 impl Trial {
+    /// A step in which nothing wears.
+    fn at_rest(length: f64, [depth, reach]: [[Array2<f64>; 2]; 2], solution: Solution) -> Self {
+        Self { length, depth, reach, solution, pressure: None, weight: 1.0, settled: true }
+    }
+
     fn wearing(&self) -> &Array2<f64> {
         self.pressure.as_ref().unwrap_or(&self.solution.pressure)
     }
@@ -832,15 +837,7 @@ impl<S: Surface> WearSession<S> {
         if self.rates.iter().all(Rates::vanish) {
             let (depth, reach) = (begun.depth.clone(), begun.reach.clone());
             let solution = begun.solution.clone();
-            let trial = Trial {
-                length,
-                depth,
-                reach,
-                solution,
-                pressure: None,
-                weight: 1.0,
-                settled: true,
-            };
+            let trial = Trial::at_rest(length, [depth, reach], solution);
             return Ok(Some(trial));
         }
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
@@ -973,15 +970,7 @@ impl<S: Surface> WearSession<S> {
         if let Some(twin) = twin {
             let Some((depth, solution)) = solved(&twin.depth)? else { return Ok(None) };
             let (length, reach) = (0.0, depth.clone());
-            let twin = Trial {
-                length,
-                depth,
-                reach,
-                solution,
-                pressure: None,
-                weight: 1.0,
-                settled: true,
-            };
+            let twin = Trial::at_rest(length, [depth, reach], solution);
             self.twin = Some(twin);
         }
         Ok(Some(WearState { depth, solution, regrids: last.regrids + 1, ..last.clone() }))
