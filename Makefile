@@ -65,7 +65,7 @@ check-rust: $(BUILD)
 	PYO3_CROSS_PYTHON_VERSION=3.14 PYO3_NO_PYTHON=1 cargo check --target wasm32-unknown-emscripten --features python,serde; \
 	else echo "wasm32-unknown-emscripten is not checked: rustup target add wasm32-unknown-emscripten"; fi
 
-check-python: $(WHEEL) $(DEV)
+check-python: $(WHEEL) $(DEV) $(DOCS)
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy

@@ -5,6 +5,7 @@ mod batch;
 mod between_stations;
 mod cascade;
 mod driver;
+mod ends;
 mod options;
 mod plan;
 mod problem;
@@ -15,6 +16,7 @@ mod start;
 pub use automatic::{choose_grid, solve, solve_with};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
+pub(crate) use cascade::discretisation::chance_error;
 pub use driver::WatchedSolve;
 #[cfg(feature = "python")]
 pub(crate) use options::SMALLEST_GRID;

@@ -234,6 +234,20 @@ pub enum Error {
         /// Width from which on the approach can be prescribed, estimated.
         needed: f64,
     },
+    /// A shift or creepage that is prescribed, or kept, in a line contact whose datum lies too near.
+    #[error(
+        "{motion} cannot be prescribed on this grid: it is counted from the bare substrate's surface at \
+         {width:.3e} from the load, the grid's width, where stiff layers move the surface less; give a \
+         force, or a width of {needed:.3e} or more"
+    )]
+    TangentialDatum {
+        /// `shift` or `creepage`.
+        motion: &'static str,
+        /// Width of the grid.
+        width: f64,
+        /// Width from which on the motion can be prescribed, estimated.
+        needed: f64,
+    },
     /// A shape that does not repeat with its grid.
     #[error(
         "shape must repeat along {axis} as the grid does: its gap is {:e} at the one end of the period and {:e} at the \

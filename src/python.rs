@@ -28,7 +28,7 @@ mod wear;
 #[pymodule(name = "_core")]
 mod core {
     #[pymodule_export]
-    use super::arguments::{integer, number, plain, py_real_array, vector};
+    use super::arguments::{check_memory, integer, number, plain, py_real_array, vector};
     use super::bodies::{self, PyFree, PyRigid};
     #[pymodule_export]
     use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyResponse, PySpring};

@@ -55,6 +55,8 @@ pub struct Wear {
     pub until_through: bool,
     /// Depths removed before from body and counterbody \[m\]. Default: none.
     pub initial: Option<[Array2<f64>; 2]>,
+    /// Whether `initial` is the end of a history, which knows the layers that are through there. Default: false.
+    pub goes_on: bool,
     /// Options of the solves, which have no springs.
     pub options: Options,
 }
@@ -70,6 +72,7 @@ impl Wear {
             thickness: Thickness::default(),
             until_through: false,
             initial: None,
+            goes_on: false,
             options: Options::default(),
         }
     }
@@ -92,8 +95,8 @@ pub enum Slip {
 /// The steps of a history.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WearSteps {
-    /// Steps whose error of the pressure, the root of its mean square within the contact relative to the peak, is at most a
-    /// `tolerance`, up to the `end`. Cells at the edge do not count: they join the contact at once.
+    /// Steps that add an error of at most a `tolerance` to the pressure, up to the `end`: the root of its mean square within the
+    /// contact, relative to the largest pressure of the history. Cells at the edge do not count: they join the contact at once.
     Auto {
         /// Distance of the last step.
         end: f64,
@@ -142,8 +145,10 @@ pub struct WearState {
     pub solution: Solution,
     /// Layers of which the first cell is through here.
     pub through: Vec<WearThrough>,
-    /// Estimated error of the pressure that the step has added, relative to the peak; `None` where steps were given.
-    pub step_error: Option<f64>,
+    /// Estimated error of the pressure by the steps until then, the largest of a cell relative to the peak.
+    pub step_error: f64,
+    /// Estimated error of the peak pressure by the length of the steps, relative to it.
+    pub peak_error: f64,
     /// Whether pressures of cells rise and fall from step to step, as the trapezoidal rule makes them where steps are too long.
     pub rings: bool,
     /// Whether the end is where a layer is through, if one is: the search for that distance may end before it is there.
@@ -171,6 +176,8 @@ pub enum Idle {
 pub struct WearThrough {
     /// Distance at which it is.
     pub distance: f64,
+    /// Estimated error of the distance by the steps.
+    pub error: f64,
     /// Centre of the cell.
     pub position: [f64; 2],
     /// Number of the layer, from the surface down.

@@ -52,6 +52,7 @@ __all__ = [
     "WearSteps",
     "__version__",
     "at",
+    "check_memory",
     "checked",
     "checked_report",
     "checked_stress",
@@ -556,6 +557,9 @@ class StressPlan:
     def body(self) -> HalfSpace: ...
     @property
     def edge(self) -> _Field: ...
+    def extreme_errors(
+        self, z: Any, fields: StressFields, options: StressOptions
+    ) -> list[float]: ...
 
 @final
 class Convolution:
@@ -702,6 +706,7 @@ def real(name: str, value: object) -> float: ...
 def real_array(name: str, value: object) -> _Field: ...
 def integer(name: str, value: object) -> int: ...
 def vector(name: str, length: int, value: object) -> list[float | None]: ...
+def check_memory(name: str, count: int, each: float) -> None: ...
 def solve(shape: Shape, motion: Motion, options: SolveOptions, on: Plan | Setup) -> Solved: ...
 def slide(
     shape: Shape,
@@ -728,7 +733,7 @@ class WearSteps:
         tuple[_Field, _Field],
         Solved,
         list[dict[str, Any]],
-        float | None,
+        tuple[float, float],
         str | None,
         tuple[bool, bool],
         int,

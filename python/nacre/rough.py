@@ -47,6 +47,9 @@ __all__ = [
 
 Array = npt.NDArray[np.float64]
 
+SYNTHESIS_BYTES = 150.0
+"""Bytes that a random surface takes for each point while it is made; measured."""
+
 PERIMETER = (np.pi - 1 + np.log(2)) / 24
 """Error of the area of counted cells over perimeter times cell, by Yastrebov et al. (2017)."""
 
@@ -123,6 +126,8 @@ def random_surface(
     (name, target), *_ = rms.items()
     if not (np.isfinite(target) and target > 0):
         raise ValueError(f"{name} must be above 0, got {target}")
+    if min(shape) > 0:
+        core.check_memory("shape", nx * ny, SYNTHESIS_BYTES)
     topography = fourier_synthesis(
         shape,
         size,
@@ -564,6 +569,7 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
     bins = core.integer("bins", bins)
     if bins < 1:
         raise ValueError(f"bins must be a whole number of at least 1, got {bins!r}")
+    core.check_memory("bins", bins, 64)
     highest = float(values.max()) if values.size and values.max() > 0 else 1.0
     numbers, edges = np.histogram(values, bins, (0.0, highest))
     density = numbers / count / np.diff(edges)

@@ -61,21 +61,40 @@ impl Datum {
         (coefficients, additions): (&Array2<f64>, &[Addition]),
         threads: &Arc<Threads>,
     ) -> Result<Self> {
-        let Some(open) = open_direction(grid) else {
+        if open_direction(grid).is_none() {
             let magnitude: f64 = coefficients.iter().map(|c| c.abs()).sum();
             let displaced = coefficients.sum().abs() > ROUNDING * magnitude;
             return Ok(Self {
                 floats: grid.is_periodic() == [true; 2] && !displaced,
                 ..Self::default()
             });
+        }
+        let compliance = bodies.iter().map(|body| body.asymptotes().long).sum();
+        let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
+        let homogeneous = homogeneous && additions.is_empty();
+        Self::of_compliance(compliance, homogeneous, grid, (coefficients, additions), threads)
+    }
+
+    /// The same for one direction of loads, far below which the bodies have the `compliance` A \[1/Pa\] together; there is no
+    /// datum on grids without an open direction.
+    ///
+    /// # Errors
+    /// As [`Datum::find`].
+    pub(crate) fn of_compliance(
+        compliance: f64,
+        homogeneous: bool,
+        grid: &Grid,
+        (coefficients, additions): (&Array2<f64>, &[Addition]),
+        threads: &Arc<Threads>,
+    ) -> Result<Self> {
+        let Some(open) = open_direction(grid) else {
+            return Ok(Self::default());
         };
         let (width, period) = (grid.size()[open], grid.size()[1 - open]);
         let period = if grid.is_line() { 1.0 } else { period };
-        let compliance: f64 = bodies.iter().map(|body| body.asymptotes().long).sum();
         let near =
             Self { compliance: compliance / period, distance: width, width, ..Self::default() };
-        let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
-        if (homogeneous && additions.is_empty()) || near.compliance <= 0.0 {
+        if homogeneous || near.compliance <= 0.0 {
             return Ok(near);
         }
         for trial in 0..TRIALS {
@@ -136,14 +155,24 @@ impl Datum {
     /// # Errors
     /// [`Error::Datum`] where the operator is not positive definite with the datum of the grid.
     pub(crate) fn check_approach(&self) -> Result<()> {
-        if self.least > 0.0 {
-            return Err(Error::Datum {
-                width: self.width,
-                // The wider the grid, the farther its datum must lie, by a quarter of the width at last.
-                needed: 2.0 * self.least,
-            });
-        }
-        Ok(())
+        let error = |[width, needed]: [f64; 2]| Err(Error::Datum { width, needed });
+        self.widths().map_or(Ok(()), error)
+    }
+
+    /// An error where the `motion` along the surface, a shift or a creepage, cannot be prescribed.
+    ///
+    /// # Errors
+    /// [`Error::TangentialDatum`] as [`Datum::check_approach`].
+    pub(crate) fn check_motion(&self, motion: &'static str) -> Result<()> {
+        let error =
+            |[width, needed]: [f64; 2]| Err(Error::TangentialDatum { motion, width, needed });
+        self.widths().map_or(Ok(()), error)
+    }
+
+    /// Width of the grid and the one that is needed, where it is wider. The wider the grid, the farther its datum must lie,
+    /// by a quarter of the width at last.
+    fn widths(&self) -> Option<[f64; 2]> {
+        (self.least > 0.0).then_some([self.width, 2.0 * self.least])
     }
 }
 

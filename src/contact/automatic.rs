@@ -93,9 +93,12 @@ pub fn solve_with<'a>(
         Some(grid) => trial.solve(grid, options, &mut watched)?,
         None => solve_on_own_grid(trial, options, &mut watched)?,
     };
-    if !shape.alternatives().is_empty() {
+    if !shape.alternatives().is_empty() || solution.report.discretisation.is_none() {
         let plan = Contact::plan(body, *solution.grid(), setup.clone())?;
-        plan.run(|| plan.compare(&mut solution, shape, motion, options, &mut watched));
+        plan.run(|| {
+            plan.state_errors(&mut solution, shape, options, &mut watched);
+            plan.compare(&mut solution, shape, motion, options, &mut watched);
+        });
     }
     Ok(solution)
 }

@@ -1,6 +1,6 @@
 //! What the measurement of a shape leaves open: the error of a solution between the stations.
 
-use crate::contact::cascade::discretisation::Discretisation;
+use crate::contact::cascade::discretisation::GridResult;
 use crate::contact::options::{Motion, Options};
 use crate::contact::plan::Contact;
 use crate::contact::solution::warnings::Warning;
@@ -21,6 +21,13 @@ const UNCERTAIN: f64 = 0.1;
 /// Error of the peak, relative to it, from which on there is a warning where the report states no error: that at which an
 /// automatic grid is fine enough.
 const UNSTATED: f64 = 0.01;
+
+impl From<&Solution> for GridResult {
+    fn from(solution: &Solution) -> Self {
+        let (approach, tilt) = (solution.approach, solution.tilt);
+        Self { approach, tilt, ..Self::of_pressure(&solution.pressure, solution.grid()) }
+    }
+}
 
 impl Contact {
     /// Presses the [alternatives](Surface::alternatives) of `shape` into the body as it was pressed for `solution`, and
@@ -43,9 +50,8 @@ impl Contact {
             tolerance: options.tolerance.max(LOOSE),
             ..options.clone()
         };
-        let numbers = |s: &Solution| [s.peak_pressure(), s.approach, s.load()];
-        let own = numbers(solution);
-        let mut most = [0.0_f64; 3];
+        let own = GridResult::from(&*solution);
+        let mut between = own.distance(&own);
         for other in &others {
             let solved = self.solve_alone(other, motion, &options, progress);
             let Some(other) = solved.ok().filter(|other| other.report.converged()) else {
@@ -53,14 +59,12 @@ impl Contact {
                 solution.report.warnings.push(Warning::UnknownStations);
                 return;
             };
-            for ((most, other), own) in most.iter_mut().zip(numbers(&other)).zip(own) {
-                *most = most.max(BEYOND * (other - own).abs());
-            }
+            between = between.or_larger(own.distance(&GridResult::from(&other)));
             solution.report.convolutions += other.report.convolutions;
             solution.report.seconds += other.report.seconds;
         }
-        let ([error, approach, load], [peak, ..]) = (most, own);
-        let between = Discretisation { peak_pressure: Some(error), approach, load };
+        let between = between.times(BEYOND);
+        let (error, peak) = (between.peak_pressure.unwrap_or_default(), own.peak_pressure);
         let known = solution.report.discretisation;
         solution.report.discretisation = known.map(|known| known.plus(between));
         let is_stated = known.is_some_and(|known| known.peak_pressure.is_some());

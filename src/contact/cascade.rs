@@ -28,12 +28,12 @@ use crate::contact::start::{checked_gaps, uniform_pressure};
 use crate::error::Result;
 use crate::model::grid::{Grid, full_window, repeating};
 use crate::model::surface::Surface;
-use crate::numerics::layout::slice;
-use crate::numerics::parallel::{Rows, all, update, update_with_largest};
+use crate::numerics::layout::{slice, slice_mut};
+use crate::numerics::parallel::{Rows, all, update};
 
 /// Tolerance on coarser grids, whose results tell the discretisation error. With 1e-4, estimates of peak pressures on hard
 /// coats that slip are four times too large; with 1e-3 and 1e-2, convolutions are 5 to 7 % fewer.
-const COARSE_TOLERANCE: f64 = 1e-5;
+pub(super) const COARSE_TOLERANCE: f64 = 1e-5;
 
 /// Residual and overlap from which on the reference algorithm goes on where the preconditioned iteration ended. A worse
 /// pressure cost it two to five times the iterations that it takes from a uniform one, on coats 1e3 to 1e5 times harder
@@ -305,14 +305,12 @@ impl<'a> LevelProblem<'a> {
         balanced.then_some(patch)
     }
 
-    /// Peak pressure, approach and load of a solution on this grid.
+    /// Numbers of a solution on this grid.
     fn result(&self, patch: &Patch, lambda: [f64; 3]) -> GridResult {
-        let ([peak], [sum]) = update_with_largest([&patch.values], [], |[p], []| ([], [p], [p]));
-        GridResult {
-            peak_pressure: peak,
-            approach: self.freedoms.rigid_motion(lambda).0,
-            load: sum * self.freedoms.cell_area,
-        }
+        let mut pressure = Array2::zeros(self.shape());
+        patch.paste(slice_mut(&mut pressure), self.shape()[1]);
+        let (approach, tilt) = self.freedoms.rigid_motion(lambda);
+        GridResult { approach, tilt, ..GridResult::of_pressure(&pressure, &self.level.grid) }
     }
 
     /// Takes the pressure from cells that cannot touch, and balances it. False where that is impossible.

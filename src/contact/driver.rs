@@ -7,12 +7,13 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use crate::compliance::ends::check_carried;
-use crate::contact::cascade::Cascade;
 use crate::contact::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
+use crate::contact::cascade::{COARSE_TOLERANCE, Cascade, coarse_means};
 use crate::contact::options::{Algorithm, Motion, Options};
 use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::springs::Compliance;
 use crate::contact::problem::{Problem, Quality, SolutionFields};
 use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Gap, Progress, Report, Resultants, Solution};
@@ -21,6 +22,7 @@ use crate::contact::start::{
     Sampled, check_seam, checked_gaps, initial_pressure, uniform_pressure, yielding_pressure,
 };
 use crate::error::{Error, Result};
+use crate::model::grid::Window;
 use crate::model::surface::{OffsetShape, Surface};
 use crate::numerics::clock::Stopwatch;
 use crate::numerics::layout::slice;
@@ -91,6 +93,7 @@ impl Contact {
     ) -> Result<Solution> {
         self.run(|| {
             let mut solution = self.solve_sampled(shape, sampled, motion, options, progress)?;
+            self.state_errors(&mut solution, shape, options, progress);
             self.compare(&mut solution, shape, motion, options, progress);
             Ok(solution)
         })
@@ -369,11 +372,24 @@ impl<'a> Steps<'a> {
         report.solver = Some(outcome.solver);
         report.balance = resultants.balance(grid, self.motion);
         report.warnings = warnings;
-        // Where cells yield, the coarser grids say nothing.
+        // Where cells yield, the coarser grids of the elastic contact say nothing.
         if report.converged() && indentation.is_none() {
-            let finest =
-                GridResult { peak_pressure: resultants.peak, approach, load: resultants.force };
-            report.discretisation = self.discretisation(results, finest, &fields, &report.warnings);
+            let finest = GridResult {
+                peak_pressure: resultants.peak,
+                approach,
+                load: resultants.force,
+                tilt,
+                ..GridResult::of_pressure(pressure, grid)
+            };
+            let loaded = self.freedoms.loaded;
+            let fields = ([pressure, &fields.displacement], window);
+            report.discretisation = plan.discretisation(
+                self.shape,
+                (results, finest),
+                fields,
+                loaded,
+                &report.warnings,
+            );
         }
         let raised = plan.datum.raise() * resultants.force;
         if raised != 0.0 {
@@ -398,24 +414,123 @@ impl<'a> Steps<'a> {
             },
         })
     }
+}
 
+impl Contact {
     /// Discretisation errors, from results on the coarser grids and on the finest one.
     fn discretisation(
         &self,
-        mut results: Vec<GridResult>,
-        finest: GridResult,
-        fields: &SolutionFields,
+        shape: &dyn Surface,
+        (mut results, finest): (Vec<GridResult>, GridResult),
+        (fields, window): ([&Array2<f64>; 2], &Window),
+        loaded: [bool; 3],
         warnings: &[Warning],
     ) -> Option<Discretisation> {
         results.push(finest);
+        let (pressure, unresolved) = (fields[0], &self.unresolved);
         let singular = warnings.iter().any(Warning::is_singular);
-        let changes = estimate(&results, singular)?;
-        let (pressure, grid, unresolved) =
-            (&fields.pressure, &self.plan.grid, &self.plan.unresolved);
-        let (both, loaded) = ([pressure, &fields.displacement], self.motion.load.is_some());
-        let others = unresolved.errors(both, &fields.window, grid, loaded, singular);
-        let corners = corner_error(pressure, grid, self.shape, unresolved.short_waves);
-        Some(changes.plus(others).at_least(corners))
+        let changes = estimate(&results, singular, unresolved.stands_at_rim(pressure))?;
+        let unseen = unresolved.errors(fields, window, &self.grid, loaded, singular);
+        let corners = corner_error(pressure, &self.grid, shape, unresolved.short_waves);
+        // Changes between grids show where the rim lies as well as what is known of one grid does.
+        let Discretisation { contact_area, contact_extent, tilt, .. } = changes.or_larger(unseen);
+        let all = changes.plus(unseen).at_least(corners);
+        Some(Discretisation { contact_area, contact_extent, tilt, ..all })
+    }
+
+    /// Discretisation errors of a `solution`, from those on cells of twice, of four times … the length.
+    ///
+    /// # Errors
+    /// Motions that the grid does not permit.
+    pub(crate) fn errors_from(
+        &self,
+        solution: &Solution,
+        coarser: &[&Solution],
+        shape: &dyn Surface,
+    ) -> Result<Option<Discretisation>> {
+        let results = coarser.iter().rev().map(|coarse| GridResult::from(*coarse)).collect();
+        let Some(window) = solution.cells_in_contact() else { return Ok(None) };
+        let fields = ([&solution.pressure, &solution.total_displacement()], &window);
+        let loaded = Freedoms::new(&solution.report.motion, &self.grid)?.loaded;
+        let results = (results, GridResult::from(solution));
+        let errors = self.discretisation(shape, results, fields, loaded, &solution.report.warnings);
+        // A peak that is the hardness of all cells has no error.
+        let limit = match &solution.hardness {
+            Some(Hardness::Uniform(limit)) => *limit,
+            _ => f64::INFINITY,
+        };
+        let is_known = solution.peak_pressure() >= limit;
+        Ok(errors.map(|errors| match is_known {
+            true => Discretisation { peak_pressure: Some(0.0), ..errors },
+            false => errors,
+        }))
+    }
+
+    /// States the errors of a `solution` that nested grids do not tell, from solutions on cells of twice and of four times
+    /// the length: on small grids, and where surfaces yield. From a given pressure none is sought.
+    pub(super) fn state_errors(
+        &self,
+        solution: &mut Solution,
+        shape: &dyn Surface,
+        options: &Options,
+        progress: &mut Progress,
+    ) {
+        let is_told = solution.report.discretisation.is_some() || !solution.report.converged();
+        if is_told || options.initial.is_some() || options.algorithm != Algorithm::Cascade {
+            return;
+        }
+        let (motion, spent) = (solution.report.motion, solution.report.seconds);
+        let begin = std::time::Instant::now();
+        let mut goes_on = |report: &Report| {
+            let seconds = spent + begin.elapsed().as_secs_f64();
+            progress(&Report { seconds, ..report.clone() })
+        };
+        let progress: &mut Progress = &mut goes_on;
+        let solved = |plan: &Self, options: &Options, progress: &mut Progress| {
+            let (shape_of_grid, periodic) = (plan.grid.shape(), plan.grid.is_periodic());
+            let halved = [!plan.grid.is_line(), true];
+            let divides =
+                |k: usize| shape_of_grid[k] >= FEW && !(periodic[k] && shape_of_grid[k] % 2 == 1);
+            if !(0..2).all(|axis| !halved[axis] || divides(axis)) {
+                return None;
+            }
+            let coarse = plan.halved().ok()?;
+            let options = coarse_options(options, halved);
+            let of = coarse.solve_alone(shape, &motion, &options, progress).ok()?;
+            of.report.converged().then_some((coarse, options, of))
+        };
+        let Some((half, of_half, first)) = solved(self, options, progress) else { return };
+        let second = solved(&half, &of_half, progress).map(|(_, _, second)| second);
+        let coarser: Vec<&Solution> =
+            [Some(&first), second.as_ref()].into_iter().flatten().collect();
+        for coarse in &coarser {
+            solution.report.convolutions += coarse.report.convolutions
+                * coarse.pressure.len() as f64
+                / solution.pressure.len() as f64;
+            solution.report.seconds += coarse.report.seconds;
+        }
+        solution.report.discretisation = self.errors_from(solution, &coarser, shape).ok().flatten();
+    }
+}
+
+/// Cells along a side below which no coarser grid tells the error.
+const FEW: usize = 8;
+
+/// Options of the same solve on a grid whose cells are twice as long in the directions of `halved`.
+fn coarse_options(options: &Options, halved: [bool; 2]) -> Options {
+    let means = |cells: &Array2<f64>| coarse_means(cells, halved);
+    Options {
+        tolerance: options.tolerance.max(COARSE_TOLERANCE),
+        hardness: options.hardness.as_ref().map(|hardness| match hardness {
+            Hardness::Cells(cells) => Hardness::Cells(means(cells)),
+            Hardness::Uniform(_) => hardness.clone(),
+        }),
+        compliance: options.compliance.as_ref().map(|compliance| match compliance {
+            Compliance::Cells(cells) => Compliance::Cells(means(cells)),
+            Compliance::Uniform(_) => compliance.clone(),
+        }),
+        indentation: options.indentation.as_ref().map(means),
+        ..options.clone()
     }
 }
 

@@ -11,6 +11,7 @@ use ndarray::{ArcArray2, Array1, Array2};
 use crate::compliance::ends::{Ends, FreeEnds};
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
+use crate::contact::ends::contact_ends;
 use crate::contact::options::Motion;
 use crate::contact::plan::{Contact, PlannedOperator, check_coefficients};
 use crate::contact::problem::bounds::{Hardness, check_indentation};
@@ -335,64 +336,8 @@ impl Solution {
     /// contact, and NaN along an axis on which the grid is periodic where the contact goes on from its last cell to its
     /// first.
     pub fn contact_extent(&self) -> [[f64; 2]; 2] {
-        [0, 1].map(|axis| {
-            let lanes = || self.pressure.lanes(ndarray::Axis(axis)).into_iter();
-            let wraps = |p: ndarray::ArrayView1<f64>| p[0] > 0.0 && p[p.len() - 1] > 0.0;
-            if self.grid().is_periodic()[axis] && lanes().any(wraps) {
-                return [f64::NAN; 2];
-            }
-            let ends = lanes().filter_map(line_ends).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
-            let first = self.grid().coordinates(axis)[0];
-            let spacing = self.grid().spacing()[axis];
-            ends.map_or([0.0; 2], |ends| ends.map(|end| first + spacing * end))
-        })
+        contact_ends(&self.pressure, self.grid()).map(|ends| ends.map(|end| end.at))
     }
-}
-
-/// Ends of the contact on one line of cells, in cells from the centre of the first.
-fn line_ends(pressure: ndarray::ArrayView1<f64>) -> Option<[f64; 2]> {
-    let first = pressure.iter().position(|&p| p > 0.0)?;
-    let last = pressure.iter().rposition(|&p| p > 0.0)?;
-    let width = last - first + 1;
-    let square = |k: usize| pressure[k] * pressure[k];
-    Some([
-        first as f64 - edge_beyond(|k| square(first + k), width),
-        last as f64 + edge_beyond(|k| square(last - k), width),
-    ])
-}
-
-/// Distance by which the contact ends beyond the centre of its outermost cell, in cells; `square(k)` is p²
-/// of the k-th cell from the edge inwards.
-fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
-    // The end of the outermost cell.
-    const OUTER_CELL: f64 = 0.5;
-    // The outer two cells carry the discretisation of the edge.
-    const FIRST: usize = 2;
-    // Cells that the parabola is fitted to: two more than determine it.
-    const POINTS: usize = 5;
-    if width < 2 * (FIRST + POINTS) {
-        return OUTER_CELL;
-    }
-    // Least squares on evenly spaced points, in orthogonal polynomials of t = −2 … 2:
-    // p² = mean + slope t + bend (t² − 2).
-    let half = (POINTS / 2) as f64;
-    let (mut mean, mut slope, mut bend) = (0.0, 0.0, 0.0);
-    for k in 0..POINTS {
-        let t = k as f64 - half;
-        let s = square(FIRST + k);
-        mean += s / 5.0;
-        slope += t * s / 10.0;
-        bend += (t * t - 2.0) * s / 14.0;
-    }
-    // The outer zero of the parabola: t = −2c/(slope + √…), which holds for bend = 0 too.
-    let constant = mean - 2.0 * bend;
-    let discriminant = slope * slope - 4.0 * bend * constant;
-    if slope <= 0.0 || discriminant < 0.0 {
-        return OUTER_CELL;
-    }
-    let zero = -2.0 * constant / (slope + discriminant.sqrt());
-    let beyond = -(zero + half + FIRST as f64);
-    if (-1.0..=1.0).contains(&beyond) { beyond } else { OUTER_CELL }
 }
 
 /// The gap of a solution, or what it is computed from.

@@ -7,12 +7,13 @@ use std::sync::Arc;
 use super::coulomb::Law;
 use super::newton::{Effort, Operator, TractionProblem};
 use super::step::RollingDirection;
+use super::tangential_problem::{GRID_BYTES, ROLLING_BYTES};
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
 use crate::error::{Error, Result, positive, refuse_if, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
-use crate::numerics::parallel::Threads;
+use crate::numerics::parallel::{Threads, check_memory};
 
 /// Kalker's coefficients of an elliptic contact with the semi-axes a, along the direction of rolling, and b:
 ///
@@ -66,7 +67,7 @@ const MOST: usize = 2000;
 /// `watch` is asked with each convolution whether to continue.
 ///
 /// # Errors
-/// Semi-axes that are not above 0, fewer than 8 cells, bodies without layers and substrate, two rigid bodies;
+/// Semi-axes that are not above 0, fewer than 8 cells, too little memory, bodies without layers and substrate, two rigid bodies;
 /// [`Error::Stopped`] where `watch` breaks.
 ///
 /// ```
@@ -98,6 +99,10 @@ pub fn creep_coefficients(
         )?;
     }
     let shear = shear(&body, counterbody.as_ref())?;
+    // All divides as the square of the cells.
+    let shape = [cells.saturating_add(2), cells];
+    let bytes = (GRID_BYTES + ROLLING_BYTES) as f64 * (cells as f64).powi(2);
+    check_memory(shape, bytes as u64)?;
     let threads = Arc::new(Threads::new(None)?);
     let mut ask = || watch.as_mut().map_or(ControlFlow::Continue(()), |watch| watch());
     let mut on = |cells: usize| {

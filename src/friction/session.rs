@@ -15,7 +15,7 @@ use super::newton::{Effort, Misfit, small_system};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::tangential_problem::{
-    Before, PressedCells, SolvedTractions, TangentialProblem, bounds, zeros,
+    Before, FrictionFields, PressedCells, SolvedTractions, TangentialProblem, bounds, zeros,
 };
 use crate::compliance::traction::Tangential;
 use crate::contact::{
@@ -154,6 +154,11 @@ impl<'a> Session<'a> {
             self.settle(&problem, &motion, friction, pressures, start, &mut course)?;
         let mut solution = self.finish(&problem, friction, (normal, solved), course)?;
         if let Some(half) = half.filter(|_| solution.report.converged()) {
+            // A pressure on which tractions act is found from one before, without nested grids.
+            if let (Ok(half), None) = (&half, solution.normal.report.discretisation) {
+                solution.normal.report.discretisation =
+                    self.contact.errors_from(&solution.normal, &[&half.normal], self.shape)?;
+            }
             let errors = half.and_then(|half| {
                 let freedoms = &problem.increments;
                 let errors = discretisation(&solution, &half, freedoms, last.map(|l| l.solution))?;
@@ -190,7 +195,7 @@ impl<'a> Session<'a> {
             .ok_or(Error::Inconsistent("the first step must have a coefficient of friction"))?;
         friction.check(grid)?;
         let freedoms = step.freedoms(grid)?;
-        let before = before_of(last, self.contact)?;
+        let before = self.before(last)?;
         let [x, y] = before.shift;
         let starts = [x, y, before.twist];
         let problem = TangentialProblem {
@@ -204,6 +209,55 @@ impl<'a> Session<'a> {
             before,
         };
         Ok((motion, friction, problem))
+    }
+
+    /// The state that a solution leaves, or that of bodies that have not touched, with the data of the operator.
+    ///
+    /// # Errors
+    /// Where the solution is one on another grid, or of other bodies.
+    fn before(&self, last: Option<&FrictionSolution>) -> Result<Before> {
+        let contact = self.contact;
+        let Some(last) = last else {
+            return Ok(Before::nothing(contact.grid()));
+        };
+        contact.grid().check_initial(Some(last.grid()))?;
+        last.normal.report.check_bodies(contact.body(), contact.setup().counterbody.as_ref())?;
+        let (shift, twist) = match last.motion {
+            TangentialMotion::Slide { shift, twist } => (shift, twist),
+            TangentialMotion::Roll { .. } => ([0.0; 2], 0.0),
+        };
+        let raised = self.tangential.raised(last.force());
+        Ok(Before {
+            traction: last.traction.clone(),
+            displacement: [0, 1].map(|axis| &last.displacement[axis] + raised[axis]),
+            shift,
+            twist,
+        })
+    }
+
+    /// Takes back by how much the data of the operator raise displacements and shifts.
+    ///
+    /// # Errors
+    /// Where a shift that is given, or stays where it was, would change by that: the force that it needs is not known.
+    fn lower(&self, problem: &TangentialProblem, fields: &mut FrictionFields) -> Result<()> {
+        let area = self.contact.grid().cell_area();
+        let force = |q: &[Array2<f64>; 2]| q.each_ref().map(|q| q.sum() * area);
+        let raised = self.tangential.raised(force(&fields.traction));
+        let before = self.tangential.raised(force(&problem.before.traction));
+        let motion = if problem.slides() { "shift" } else { "creepage" };
+        for axis in 0..2 {
+            let largest = fields.displacement[axis].fold(0.0_f64, |most, u| most.max(u.abs()));
+            let change = raised[axis] - before[axis];
+            let is_changed = change.abs() > self.options.tolerance * largest;
+            if is_changed && !problem.is_steady && !problem.is_loaded(axis) {
+                self.tangential.check_prescribed(motion, axis)?;
+            }
+            fields.displacement[axis] -= raised[axis];
+            if let TangentialMotion::Slide { shift, .. } = &mut fields.motion {
+                shift[axis] -= change;
+            }
+        }
+        Ok(())
     }
 
     /// The problem of rolling, steady or by one cell after `last`.
@@ -226,7 +280,7 @@ impl<'a> Session<'a> {
             is_steady,
             is_second_order: self.options.order == 2,
             increments: [along, across, Freedom::Prescribed(rolling.spin)].map(over_a_cell),
-            before: before_of(last, self.contact)?,
+            before: self.before(last)?,
         })
     }
 
@@ -360,6 +414,7 @@ impl<'a> Session<'a> {
         if course.stopped {
             fields.restore(problem);
         }
+        self.lower(problem, &mut fields)?;
         let is_good = fields.violation <= tolerance + ROUNDING
             && course.report.imbalance <= tolerance + ROUNDING
             && course.report.pressure_change <= tolerance
@@ -612,26 +667,4 @@ fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
     let pairs = normal.pressure.iter().zip(before);
     let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if moved > 0.0 { moved / normal.peak_pressure() } else { 0.0 }
-}
-
-/// The state that a solution leaves, or that of bodies that have not touched.
-///
-/// # Errors
-/// Where the solution is one on another grid, or of other bodies.
-fn before_of(last: Option<&FrictionSolution>, contact: &Contact) -> Result<Before> {
-    let Some(last) = last else {
-        return Ok(Before::nothing(contact.grid()));
-    };
-    contact.grid().check_initial(Some(last.grid()))?;
-    last.normal.report.check_bodies(contact.body(), contact.setup().counterbody.as_ref())?;
-    let (shift, twist) = match last.motion {
-        TangentialMotion::Slide { shift, twist } => (shift, twist),
-        TangentialMotion::Roll { .. } => ([0.0; 2], 0.0),
-    };
-    Ok(Before {
-        traction: last.traction.clone(),
-        displacement: last.displacement.clone(),
-        shift,
-        twist,
-    })
 }

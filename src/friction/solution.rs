@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ndarray::{Array2, Axis};
+use ndarray::{Array1, Array2, Axis};
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
@@ -342,6 +342,34 @@ impl FrictionSolution {
         sum * self.grid().cell_area() / self.grid().spacing()[axis]
     }
 
+    /// Σ p |s| d \[N/m\] of steady rolling over each line of cells in its direction. To second order it is Σ q · s d/μ with the
+    /// slip s of [`FrictionSolution::dissipated`], of which the lines together have all; derived here. Cells without friction have
+    /// their own slip.
+    pub(crate) fn track(&self, direction: RollingDirection) -> Array1<f64> {
+        let (grid, bound, axis) = (self.grid(), self.bound(), direction.axis());
+        let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing()[axis]);
+        let [ex, ey] = direction.vector();
+        let slipping = Array2::from_shape_fn(bound.dim(), |(i, j)| {
+            let (p, bound) = (self.normal.pressure[[i, j]], bound[[i, j]]);
+            let [own_x, own_y] = self.slip.each_ref().map(|slip| slip[[i, j]]);
+            let (TangentialMotion::Roll { creepage: [along, across], spin, .. }, true, 2) =
+                (self.motion, bound > 0.0, self.report.order)
+            else {
+                return p * own_x.hypot(own_y);
+            };
+            let rigid =
+                [along * ex - across * ey - spin * y[j], along * ey + across * ex + spin * x[i]];
+            let (n, mut low, mut high) = (grid.shape()[axis], [i, j], [i, j]);
+            (low[axis], high[axis]) = (low[axis].saturating_sub(1), (high[axis] + 1).min(n - 1));
+            let between = (high[axis] - low[axis]) as f64 * spacing * (ex + ey);
+            let parts = self.traction.iter().zip(&self.displacement).zip(rigid);
+            let work =
+                parts.map(|((q, u), rigid)| q[[i, j]] * (rigid - (u[low] - u[high]) / between));
+            work.sum::<f64>() * p / bound
+        });
+        slipping.sum_axis(Axis(axis)).mapv(|line| line.max(0.0) * spacing)
+    }
+
     /// What tractions add to the elastic energy of the bodies \[J\]: with the normal displacement v that they make,
     ///
     /// ```text
@@ -349,10 +377,14 @@ impl FrictionSolution {
     /// ```
     ///
     /// The normal contact has ½ Σ p w dA without v. The sum of both changes by the work of the forces less what friction
-    /// dissipates. Without coupling v is 0; with it the share of the tractions alone may be below 0. Derived here.
+    /// dissipates. Without coupling v is 0; with it the share of the tractions alone may be below 0. It is not a number in line contact
+    /// where stiff layers move less than the datum, so that what the tractions alone displace, ½ Σ q · u less the share of
+    /// v, which is that of the pressure in u, would be below 0. Derived here.
     pub fn tangential_energy(&self) -> f64 {
         let ([qx, qy], [ux, uy]) = (&self.traction, &self.displacement);
-        0.5 * (qx * ux + qy * uy).sum() * self.grid().cell_area() + self.report.coupling_energy
+        let work = 0.5 * self.grid().cell_area() * (qx * ux + qy * uy);
+        let (own, rounding) = (work.sum() - self.report.coupling_energy, 1e-12 * work.abs().sum());
+        if own < -rounding { f64::NAN } else { work.sum() + self.report.coupling_energy }
     }
 }
 

@@ -19,13 +19,13 @@ use crate::numerics::parallel::check_memory;
 
 /// Bytes that the fields of a solution, and the operators on the whole grid take for each cell. Measured, as those of
 /// iterations: 185.
-const GRID_BYTES: u64 = 200;
+pub(super) const GRID_BYTES: u64 = 200;
 
 /// Bytes of an iteration for each cell of its window, in sliding. Measured: 720.
 const SLIDING_BYTES: u64 = 800;
 
 /// The same in rolling. Measured: 1120.
-const ROLLING_BYTES: u64 = 1200;
+pub(super) const ROLLING_BYTES: u64 = 1200;
 
 /// What is asked of the tangential motion.
 #[derive(Debug)]
@@ -94,6 +94,12 @@ impl TangentialProblem<'_> {
     /// Direction of a steady state.
     fn steady(&self) -> Option<RollingDirection> {
         self.direction().filter(|_| self.is_steady)
+    }
+
+    /// Whether the force along an axis is given.
+    pub(super) fn is_loaded(&self, axis: usize) -> bool {
+        let turned = self.direction().map_or(0, RollingDirection::axis);
+        matches!(self.increments[(axis + turned) % 2], Freedom::Loaded(_))
     }
 
     /// Increments that are prescribed; 0 elsewhere.

@@ -63,10 +63,10 @@ impl Grid {
     ///
     /// The shape of the grid is (1, `cells`). Loads are per unit length along x, so that forces are
     /// in \[N/m\]. In plane strain the displacement of an elastic half-space grows without limit
-    /// with the distance. Displacement and approach are therefore relative to the surface of the
+    /// with the distance. Displacements, approach and shifts are therefore relative to the surface of the
     /// bare substrate at a distance `width` from the load, whatever layers there are. Under a load this
-    /// datum shifts displacement and approach, and changes no pressure. Below stiff layers that are wider
-    /// than the grid an approach cannot be prescribed, since it would fall as the load grows.
+    /// datum moves displacements, approach and shifts, and changes no pressure. Below stiff layers that are wider
+    /// than the grid approach and shift cannot be prescribed, since they would fall as the load or force grows.
     ///
     /// # Errors
     /// Unless there are at least two cells, one array of them fits into memory, and `width` is
@@ -103,6 +103,26 @@ impl Grid {
     /// Periods along x and along y \[m\]; `None` where the grid does not repeat.
     pub(crate) fn periods(&self) -> [Option<f64>; 2] {
         [0, 1].map(|axis| self.periodic[axis].then_some(self.size[axis]))
+    }
+
+    /// Where a coordinate lies along an axis, in cells from the centre of the first.
+    pub(crate) fn position(&self, axis: usize, coordinate: f64) -> f64 {
+        (coordinate - self.center[axis]) / self.spacing()[axis]
+            + 0.5 * (self.shape[axis] - 1) as f64
+    }
+
+    /// Indices of the cells whose centres are below and above a coordinate along an axis, and the weight of the latter; beyond
+    /// the outermost centres theirs alone, unless the grid repeats.
+    pub(crate) fn around(&self, axis: usize, coordinate: f64) -> ([usize; 2], f64) {
+        let (n, position) = (self.shape[axis], self.position(axis, coordinate));
+        if self.periodic[axis] {
+            let below = position.floor();
+            let index = below.rem_euclid(n as f64) as usize % n;
+            return ([index, (index + 1) % n], position - below);
+        }
+        let position = position.clamp(0.0, (n - 1) as f64);
+        let below = (position as usize).min(n.saturating_sub(2));
+        ([below, (below + 1).min(n - 1)], position - below as f64)
     }
 
     /// Whether this is a grid for line contact in plane strain.

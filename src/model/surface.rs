@@ -574,7 +574,8 @@ pub(super) fn absent(name: &str) -> Error {
     }
 }
 
-/// A shape plus a field on the cells of a grid, bilinear between cell centres and constant beyond the outer ones.
+/// A shape plus a field on the cells of a grid, bilinear between cell centres; it repeats where the grid does, and is constant
+/// beyond the outer ones elsewhere.
 #[derive(Debug)]
 pub(crate) struct OffsetShape<S> {
     shape: S,
@@ -588,14 +589,8 @@ impl<S: Surface> OffsetShape<S> {
     }
 
     fn at(&self, x: f64, y: f64) -> f64 {
-        let around = |axis: usize, at: f64| {
-            let (n, spacing) = (self.grid.shape()[axis], self.grid.spacing()[axis]);
-            let first = self.grid.center()[axis] - 0.5 * (n - 1) as f64 * spacing;
-            let position = ((at - first) / spacing).clamp(0.0, (n - 1) as f64);
-            let below = (position as usize).min(n.saturating_sub(2));
-            (below, (below + 1).min(n - 1), position - below as f64)
-        };
-        let ((i, k, s), (j, l, t)) = (around(0, x), around(1, y));
+        let ([i, k], s) = self.grid.around(0, x);
+        let ([j, l], t) = self.grid.around(1, y);
         let along = |i: usize| self.lift[[i, j]] * (1.0 - t) + self.lift[[i, l]] * t;
         along(i) * (1.0 - s) + along(k) * s
     }

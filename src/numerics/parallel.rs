@@ -15,6 +15,8 @@ mod threads;
 pub(crate) use lanes::{
     Lanes, ONE, ZERO, all, dot, sum, update, update_with_largest, where_positive,
 };
+#[cfg(feature = "python")]
+pub(crate) use memory::too_little;
 pub(crate) use memory::{check_memory, memory_of};
 pub(crate) use rows::{Row, Rows, Total};
 pub(crate) use threads::{

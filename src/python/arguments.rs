@@ -9,7 +9,7 @@ use numpy::{
     get_array_module,
 };
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyException, PyOverflowError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyException, PyMemoryError, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBool, PyComplex, PyDict, PyFloat, PyList, PyTuple};
 use serde::de::DeserializeOwned;
@@ -17,6 +17,7 @@ use serde::de::value::StrDeserializer;
 
 mod labels;
 
+use crate::numerics::parallel::too_little;
 pub(super) use labels::Coordinate;
 use labels::{axes, in_si};
 
@@ -315,6 +316,17 @@ pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyRes
         PyValueError::new_err(format!("{name} must be {requirement}, got {value}"))
     };
     integer(name, value)?.extract::<usize>().ok().filter(|&n| n >= least).ok_or_else(refuse)
+}
+
+/// An error where there is too little memory for `count` items of `each` bytes, of which the argument `name` says how many.
+#[pyfunction]
+pub(super) fn check_memory(name: &str, count: &Bound<'_, PyAny>, each: f64) -> PyResult<()> {
+    let needed = count.extract::<f64>().unwrap_or(f64::INFINITY) * each;
+    let Some([needed, available]) = too_little(needed as u64) else { return Ok(()) };
+    let (needed, available) = (needed >> 20, available >> 20);
+    Err(PyMemoryError::new_err(format!(
+        "{name}, {count}, needs about {needed} MiB, and {available} MiB are available; take fewer"
+    )))
 }
 
 /// So many numbers, each of which may be `None`.

@@ -7,7 +7,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::arguments::{Argument, Pair, count, read_only, real_array, real_matrix, word};
+use super::arguments::{
+    Argument, Pair, check_memory, count, read_only, real_array, real_matrix, word,
+};
 use super::background::{self, Caller};
 use super::bodies::half_space;
 use super::contact::{PyMotion, PyOn, PySetup, shape_of};
@@ -69,7 +71,7 @@ struct Numbers {
     force: [f64; 2],
     torque: f64,
     dissipated: f64,
-    tangential_energy: f64,
+    tangential_energy: Option<f64>,
     #[serde(flatten)]
     motion: TangentialMotion,
     report: FrictionReport,
@@ -111,7 +113,7 @@ impl PyFrictionSolved {
             force: self.0.force(),
             torque: self.0.torque(),
             dissipated: self.0.dissipated(),
-            tangential_energy: self.0.tangential_energy(),
+            tangential_energy: Some(self.0.tangential_energy()).filter(|energy| !energy.is_nan()),
             motion: self.0.motion,
             report: self.0.report.clone(),
         })
@@ -143,6 +145,10 @@ impl PyFrictionSolved {
         checked.err().map(|error| error.to_string())
     }
 }
+
+/// Bytes that a solution keeps for each cell of its grid: of pressure, displacement and gap, and two components of
+/// tractions, displacements and slip.
+const KEPT_BYTES: f64 = 72.0;
 
 /// Steps that are asked for.
 enum Moves {
@@ -274,6 +280,11 @@ pub(super) struct PyRolling<'py> {
 }
 
 impl PyRolling<'_> {
+    /// Order in the length of a cell; `usual` where none is given.
+    pub(super) fn order(&self, usual: usize) -> PyResult<usize> {
+        Ok(self.order.count("order", 1)?.unwrap_or(usual))
+    }
+
     /// Rolling of a shape, which says in which direction if it rolls in one alone.
     pub(super) fn read(&self, shape: &Shape) -> PyResult<Rolling> {
         let friction = self.friction.map(coefficient)?;
@@ -358,9 +369,7 @@ pub(super) fn roll(
         ));
     }
     friction_steps(py, shape, options, on, |shape, options| {
-        if let Some(order) = rolling.order.count("order", 1)? {
-            options.order = order;
-        }
+        options.order = rolling.order(options.order)?;
         let rolling = rolling.read(shape)?;
         Ok(match cells {
             Some(cells) => (Moves::RollCells(rolling, cells), true),
@@ -389,6 +398,10 @@ fn friction_steps(
         PyOn::Plan(plan) => Arc::clone(&plan.get().0),
         PyOn::Setup(setup) => planned(py, &setup, &shape, moves.widest(), last.as_deref())?,
     };
+    if let Moves::RollCells(_, cells) = moves {
+        let [nx, ny] = contact.grid().shape();
+        check_memory("cells", cells.into_pyobject(py)?.as_any(), KEPT_BYTES * (nx * ny) as f64)?;
+    }
     let problem = Arc::new(Problem { contact, shape, moves, options });
     Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
 }

@@ -76,11 +76,12 @@ class! {
         /// Grid of a line contact: strips side by side along y, endless along x, in plane strain.
         ///
         /// Its shape is ``(1, cells)``, and loads on it are per unit length along x [N/m]. In plane
-        /// strain the displacement of an elastic half-space has no limit at a distance. Displacement and
-        /// approach are therefore relative to the bare substrate's surface at a distance `width` from the load,
-        /// whatever layers there are. Under a load this datum shifts displacement and approach, and changes no
-        /// pressure. Below stiff layers that are wider than the grid an approach cannot be prescribed, since it
-        /// would fall as the load grows.
+        /// strain the displacement of an elastic half-space has no limit at a distance. Displacements, approach and
+        /// shifts are therefore relative to the bare substrate's surface at a distance `width` from the load,
+        /// whatever layers there are: under a stiff layer the body's own surface moves less than that there, under a
+        /// soft one more. Under a load this datum moves displacements, approach and shifts, and changes no
+        /// pressure. Below stiff layers that are wider than the grid approach and shift cannot be prescribed, since
+        /// they would fall as the load or force grows.
         ///
         /// Parameters
         /// ----------

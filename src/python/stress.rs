@@ -56,6 +56,18 @@ impl PyStressPlan {
     fn edge<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         Array2::from(self.0.edge()).into_pyarray(py)
     }
+
+    /// Estimated errors of the extremes of a section at the depths `z`, for `nacre.fatigue`.
+    fn extreme_errors(
+        &self,
+        z: &Bound<'_, PyAny>,
+        fields: PyStressFields<'_>,
+        options: PyStressOptions<'_>,
+    ) -> PyResult<Vec<f64>> {
+        let (mut options, _) = options.read(self.0.body())?;
+        fields.read(&mut options)?;
+        Ok(self.0.extreme_errors(&depths(z)?.0, &options)?)
+    }
 }
 
 /// What a stress is evaluated of: a solved contact, one with friction, or a plan for one of its bodies.

@@ -33,6 +33,7 @@ pub(super) struct PyWear<'py> {
     thickness: Argument<'py>,
     until_through: bool,
     initial: Option<[Bound<'py, PyAny>; 2]>,
+    goes_on: bool,
     tolerance: Argument<'py>,
     max_iterations: Argument<'py>,
     grows: bool,
@@ -41,13 +42,16 @@ pub(super) struct PyWear<'py> {
 impl PyWear<'_> {
     fn read(&self, shape: &Shape) -> PyResult<Wear> {
         let friction = self.friction.as_ref().map(PyFrictionOptions::read).transpose()?;
-        let friction = friction.unwrap_or_default();
+        let mut friction = friction.unwrap_or_default();
         let slip = match (&self.cycle, &self.rolling, self.slip.get()) {
             (Some(steps), ..) => {
                 let steps = steps.iter().map(PyFrictionStep::read).collect::<PyResult<_>>()?;
                 Slip::Cycle(steps, friction)
             }
-            (_, Some(rolling), _) => Slip::Pass(Box::new(rolling.read(shape)?), friction),
+            (_, Some(rolling), _) => {
+                friction.order = rolling.order(friction.order)?;
+                Slip::Pass(Box::new(rolling.read(shape)?), friction)
+            }
             (.., Some(slip)) => Slip::Cells(real_matrix("slip", slip)?),
             _ => Slip::Everywhere,
         };
@@ -69,6 +73,7 @@ impl PyWear<'_> {
             thickness: self.thickness.word("thickness")?,
             until_through: self.until_through,
             initial: initial.transpose()?,
+            goes_on: self.goes_on,
             options: Options {
                 tolerance: self.tolerance.real("tolerance")?,
                 max_iterations: self.max_iterations.count("max_iterations", 0)?,
@@ -82,14 +87,14 @@ impl PyWear<'_> {
 #[pyclass(name = "WearSteps", module = "nacre._core", frozen)]
 pub(super) struct PyWearSteps(Arc<Mutex<WearSession<Shape>>>);
 
-/// Distance, depths, solution, layers that are through, error of the step, why it wore nothing, whether it rings and is settled, and
+/// Distance, depths, solution, layers that are through, error by the steps, why it wore nothing, whether it rings and is settled, and
 /// how often the grid has grown.
 type State<'py> = (
     f64,
     [Bound<'py, PyArray2<f64>>; 2],
     PySolved,
     Plain<Vec<WearThrough>>,
-    Option<f64>,
+    [f64; 2],
     Plain<Option<Idle>>,
     [bool; 2],
     usize,
@@ -123,7 +128,7 @@ impl PyWearSteps {
             [body?, counterbody?],
             state.solution.into(),
             Plain(state.through),
-            state.step_error,
+            [state.step_error, state.peak_error],
             Plain(state.idle),
             [state.rings, state.settled],
             state.regrids,

@@ -264,6 +264,12 @@ impl Extreme {
         Self { bound: self.larger_bound(other), ..largest }
     }
 
+    /// This extreme, with a bound that is at least by this part of it larger.
+    pub(super) fn uncertain_by(self, part: f64) -> Self {
+        let least = Self::of(self.value, self.position, Some(part * self.value.abs()));
+        if self.bound.is_some() { self.bounded_by(least) } else { self }
+    }
+
     /// This extreme, with the larger bound of both.
     pub(super) fn bounded_by(self, other: Self) -> Self {
         Self { bound: self.larger_bound(other), ..self }

@@ -188,15 +188,15 @@ impl HalfSpacePlan {
         memory_of(grid.shape(), pressure + images)
     }
 
-    /// Estimated errors of the stress at `place`, from the size of the cells, under this friction, whose tractions may be
-    /// uniform over cells; none where the pressure is given as uniform over them.
+    /// Estimated errors of the stress at `place`, from the size of the cells, under this friction, and whether known tractions
+    /// are taken within cells; none where the pressure is given as uniform over them.
     pub(super) fn errors(&self, place: &Place, friction: ([f64; 2], bool)) -> Option<StepErrors> {
         Some(self.solved.as_ref()?.subcell.errors(&self.body, place, friction))
     }
 
-    /// Error of the stress at a depth \[Pa\] due to the width of the contact in cells, at all places.
-    pub(super) fn width_error(&self, depth: f64) -> f64 {
-        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.width_error(depth))
+    /// Error of the stress at the depth of `place` \[Pa\] due to the width of the contact in cells, at all places.
+    pub(super) fn width_error(&self, place: &Place) -> f64 {
+        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.width_error(&self.body, place))
     }
 
     /// Largest steps of the pressure that are felt in the cells of `window`.

@@ -111,7 +111,11 @@ impl<'a> PressureSource<'a> {
         let pressure = checked_pressure(body, grid, self.pressure)?;
         check_memory(grid.shape(), self.memory())?;
         let threads = Threads::new(threads)?;
-        let within = |pair| SubcellStress::plan((body, pair), grid, &pressure, &threads, progress);
+        let known = self.tractions.map(|both| both.map(|q| q.mapv(|q| self.sliding.sign * q)));
+        let by_cell =
+            known.as_ref().map(|both| both.each_ref().map(|q| q.iter().copied().collect()));
+        let loads = (&pressure[..], by_cell.as_ref());
+        let within = |pair| SubcellStress::plan((body, pair), grid, loads, &threads, progress);
         let subcell = match self.solved.as_ref().map(within) {
             Some(ControlFlow::Break(())) => return Ok(None),
             Some(ControlFlow::Continue(subcell)) => Some(subcell),
@@ -129,7 +133,6 @@ impl<'a> PressureSource<'a> {
         else {
             return Ok(None);
         };
-        let known = self.tractions.map(|both| both.map(|q| q.mapv(|q| self.sliding.sign * q)));
         for (axis, traction) in known.iter().flatten().enumerate() {
             if traction.iter().any(|q| *q != 0.0) {
                 let plan = HalfSpacePlan::uniform(
@@ -142,8 +145,14 @@ impl<'a> PressureSource<'a> {
                 parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }
         }
-        let known = known.map(|both| both.map(|q| q.into_iter().collect()));
-        Ok(Some(StressPlan { whole, sliding: self.sliding, span, parts, known, ends: errors }))
+        Ok(Some(StressPlan {
+            whole,
+            sliding: self.sliding,
+            span,
+            parts,
+            known: by_cell,
+            ends: errors,
+        }))
     }
 
     /// [`PressureSource::plan`], of which a stop is an error.
@@ -274,13 +283,63 @@ impl StressPlan {
         friction: [f64; 2],
         within: bool,
     ) -> Option<StepErrors> {
-        let uniform = self.known.is_some() && !within;
         let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
-        let errors = self.whole.errors(place, (friction, uniform));
+        let errors = self.whole.errors(place, (friction, within));
         match self.ends.at(place) {
             None => errors,
             Some(of_ends) => Some(errors.unwrap_or_default().plus(of_ends)),
         }
+    }
+
+    /// Estimated errors of extremes at `place`, with what lies between the centres of cells and the width of `contact`: in cells
+    /// that feel no edges but those whose larger values are found at `points`, and in all others.
+    pub(super) fn errors_of_extremes(
+        &self,
+        place: &Place,
+        friction: [f64; 2],
+        (points, contact): (bool, &Self),
+    ) -> Option<[StepErrors; 2]> {
+        let errors = self.errors(place, friction, false)?.plus(contact.whole.width_error(place));
+        let is_shallow = self.is_within_a_cell(place);
+        let elsewhere = if is_shallow { errors.without_points() } else { errors };
+        Some([if points { errors.beside_points() } else { elsewhere }, elsewhere])
+    }
+
+    /// Whether a place is less than a cell deep.
+    pub(super) fn is_within_a_cell(&self, place: &Place) -> bool {
+        let grid = &self.whole.grid;
+        let [dx, dy] = grid.spacing();
+        place.depth < if grid.is_line() { dy } else { dx.max(dy) }
+    }
+
+    /// Whether each cell feels a stretch of a located edge that has none of these `points`.
+    pub(super) fn feels_lost_edge(&self, points: &[CellPoint]) -> Vec<bool> {
+        let solved = self.whole.solved.as_ref();
+        solved.map_or_else(Vec::new, |solved| solved.subcell.feels_lost_edge(points))
+    }
+
+    /// Estimated errors \[Pa\] of the extremes of a section at `depths`, where points of the edge are evaluated, too: those that
+    /// [`StressPlan::summary`] counts. 0 where they are not known.
+    ///
+    /// # Errors
+    /// Bad depths or options.
+    pub fn extreme_errors(&self, depths: &[f64], options: &StressOptions) -> Result<Vec<f64>> {
+        let (body, grid) = (&self.whole.body, &self.whole.grid);
+        let friction = self.sliding.traction(body, options)?;
+        let window = Points::new(body, grid, options.section)?.window();
+        let (points, steps, [_, ny]) =
+            (self.edge_points(), self.whole.steps(&window), grid.shape());
+        let lost = self.feels_lost_edge(&points);
+        let is_lost = window[0]
+            .clone()
+            .any(|i| window[1].clone().any(|j| lost.get(i * ny + j).copied().unwrap_or_default()));
+        let error = |depth: &f64| {
+            let place = place(body, *depth, options.side)?;
+            let points = place.layer == 0 && !points.is_empty();
+            let errors = self.errors_of_extremes(&place, friction, (points, self));
+            Ok(errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&steps)))
+        };
+        depths.iter().map(error).collect()
     }
 
     /// Largest steps of the pressure that are felt in each cell; no cells where the pressure is given as uniform over them.

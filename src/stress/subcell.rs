@@ -69,13 +69,14 @@ mod near;
 mod reconstruction;
 mod uncertainty;
 
+use edge::BAND;
 pub(super) use edge::around;
 pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};
 pub(super) use uncertainty::BodyPair;
-use uncertainty::Uncertainty;
 pub(super) use uncertainty::{LocalSteps, StepErrors};
+use uncertainty::{STEP_REACH, Uncertainty};
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
 /// left to the convolution.
@@ -95,11 +96,12 @@ pub(super) struct SubcellStress {
 }
 
 impl SubcellStress {
-    /// Reconstructs `pressure` within cells, for one body of a contact of the `pair`. `progress` is asked many times, with 0.
+    /// Reconstructs `pressure` within cells, for one body of a contact of the `pair` with `tractions` where they are known,
+    /// which stay uniform over cells. `progress` is asked many times, with 0.
     pub(super) fn plan(
         (body, pair): (&HalfSpace, &BodyPair),
         grid: &Grid,
-        pressure: &[f64],
+        (pressure, tractions): (&[f64], Option<&[Vec<f64>; 2]>),
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -114,7 +116,10 @@ impl SubcellStress {
         // A free base does not see what has neither force nor moment.
         let kernels =
             threads.run(|| Kernels::new(&body.with_rigid_base(), grid, Cuts::SMALLEST, reach));
-        let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
+        let tractions =
+            tractions.map(|both| both.each_ref().map(|q| margin.around(q).into_owned()));
+        let loads = (pressure, tractions);
+        let uncertainty = Uncertainty::new((body, pair), &wide, loads, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),
             margin,
@@ -131,9 +136,9 @@ impl SubcellStress {
         self.uncertainty.steps(&self.solver_pressure, &self.margin.window(window))
     }
 
-    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, depth: f64) -> f64 {
-        self.uncertainty.width_error(depth)
+    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
+        self.uncertainty.width_error(body, place)
     }
 
     /// Largest steps of the pressure that are felt in each cell.
@@ -141,8 +146,8 @@ impl SubcellStress {
         self.margin.middle(&self.uncertainty.steps_by_cell(&self.solver_pressure))
     }
 
-    /// Estimated errors of the stress in `body` at `place`, from the size of the cells; with the friction, whether its
-    /// tractions are uniform over cells.
+    /// Estimated errors of the stress in `body` at `place`, from the size of the cells; with the friction, whether known
+    /// tractions are taken within cells.
     pub(super) fn errors(
         &self,
         body: &HalfSpace,
@@ -170,6 +175,21 @@ impl SubcellStress {
     /// Points of the edge of the contact, at most one in a cell; none where the grid repeats.
     pub(super) fn edge(&self) -> Vec<CellPoint> {
         if self.margin.is_empty() { self.near.edge() } else { Vec::new() }
+    }
+
+    /// Whether each cell feels a stretch of an edge that is reconstructed, but has none of these `points`.
+    pub(super) fn feels_lost_edge(&self, points: &[CellPoint]) -> Vec<bool> {
+        let shape @ [nx, ny] = self.margin.wide_shape();
+        let marked = |cells: &mut dyn Iterator<Item = [usize; 2]>, reach: usize| {
+            let mut marked = vec![false; nx * ny];
+            for [i, j] in cells.flat_map(|cell| around(shape, cell, reach)) {
+                marked[i * ny + j] = true;
+            }
+            marked
+        };
+        let has_point = marked(&mut points.iter().map(|point| point.cell), usize::from(BAND) + 1);
+        let mut lost = self.near.edge_cells().filter(|[i, j]| !has_point[i * ny + j]);
+        self.margin.middle(&marked(&mut lost, STEP_REACH))
     }
 
     /// Unit vector along the edge at one of its points; none where it has no direction, as in line contact.

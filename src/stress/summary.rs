@@ -527,8 +527,11 @@ struct Planes<'a, 'b> {
     by_points: bool,
     /// Largest steps of the pressure that are felt in each cell; no cells where errors do not depend on them.
     steps: Vec<LocalSteps>,
-    /// Errors of the components by those steps; none where they are not known.
-    errors: Option<StepErrors>,
+    /// Errors of the components by those steps, in cells that feel no other edges than those with points and in the others; none
+    /// where they are not known.
+    errors: Option<[StepErrors; 2]>,
+    /// Whether each cell feels a stretch of an edge without points.
+    feels_lost_edge: Vec<bool>,
     /// Bounds of each extreme in each cell, where they are recorded.
     bounds: Vec<Vec<f64>>,
     /// Each extreme beyond the grid, where bounds are recorded.
@@ -562,6 +565,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             near_edge[i * ny + j] = true;
         }
         Self {
+            feels_lost_edge: plan.feels_lost_edge(&edge),
             plan,
             scope,
             friction,
@@ -616,27 +620,11 @@ impl<'a, 'b> Planes<'a, 'b> {
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
         }
-        let grid = &self.plan.whole.grid;
-        let [dx, dy] = grid.spacing();
-        let within_a_cell = place.depth < if grid.is_line() { dy } else { dx.max(dy) };
-        self.by_points = points && within_a_cell;
-        self.errors = self.errors_at(place, false).map(|errors| {
-            if points {
-                errors.beside_points()
-            } else if within_a_cell {
-                errors.without_points()
-            } else {
-                errors
-            }
-        });
+        self.by_points = points && self.plan.is_within_a_cell(place);
+        let of = (points, self.scope.contact);
+        self.errors = self.plan.errors_of_extremes(place, self.friction, of);
         self.done += 1;
         ControlFlow::Continue(())
-    }
-
-    /// The errors at `place`, of tractions that are known `within` cells or uniform over them.
-    fn errors_at(&self, place: &Place, within: bool) -> Option<StepErrors> {
-        let errors = self.plan.errors(place, self.friction, within)?;
-        Some(errors.plus(self.scope.contact.whole.width_error(place.depth)))
     }
 
     /// Whether a cell counts.
@@ -669,7 +657,8 @@ impl<'a, 'b> Planes<'a, 'b> {
 
     /// The error of a cell at the place that was evaluated last; 0 where it is not known.
     fn error(&self, cell: usize) -> f64 {
-        self.errors.map_or(0.0, |errors| errors.at(&self.steps(cell)))
+        let is_lost = self.feels_lost_edge.get(cell).copied().unwrap_or_default();
+        self.errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&self.steps(cell)))
     }
 
     /// The largest von Mises stress, principal stress and shear stress at `place`.
@@ -769,7 +758,8 @@ impl<'a, 'b> Planes<'a, 'b> {
                 }
             }
         }
-        let errors = self.errors_at(place, true);
+        let errors = self.plan.errors(place, self.friction, true);
+        let errors = errors.map(|errors| errors.plus(self.scope.contact.whole.width_error(place)));
         for (point, values) in points.iter().zip(known) {
             let Some(values) = values else { continue };
             let [x, y] = self.plan.position(point);
@@ -798,7 +788,8 @@ impl<'a, 'b> Planes<'a, 'b> {
     fn jump(&mut self, above: &Place, below: &Place) -> ControlFlow<(), Extreme> {
         let (before, errors) = ([self.fields.clone()], self.errors);
         self.evaluate(below, false)?;
-        self.errors = self.errors.zip(errors).map(|(below, above)| below.larger(above));
+        self.errors =
+            self.errors.zip(errors).map(|(below, above)| [0, 1].map(|k| below[k].larger(above[k])));
         let of = |tensors: &[Tensor; 2]| [jump(*tensors)];
         let peaks = self.largest(below, (3, &before), of);
         let inside = (3, peaks, [f64::NEG_INFINITY; 1]);

@@ -57,6 +57,11 @@ impl Rates {
         self.rates.iter().all(|rate| (rate - first).abs() <= 0.0).then_some(first)
     }
 
+    /// κ of a layer, or of the substrate.
+    pub(super) fn of(&self, layer: usize) -> f64 {
+        self.rates[layer]
+    }
+
     /// Number of layers that are through at a depth.
     fn layers_through(&self, depth: f64) -> usize {
         self.bottoms.iter().take_while(|bottom| depth >= **bottom * (1.0 - THROUGH)).count()
@@ -67,10 +72,11 @@ impl Rates {
         self.rates[self.layers_through(depth)]
     }
 
-    /// Mean κ of the wear from a depth on by Σ v p Δs = `work` \[N/m\]: of one layer, or of several.
-    pub(super) fn mean(&self, depth: f64, work: f64) -> f64 {
-        let (mut layer, mut at, mut left) = (self.layers_through(depth), depth, work);
-        while layer < self.bottoms.len() && at + self.rates[layer] * left > self.bottoms[layer] {
+    /// Mean κ of the wear from a depth on by Σ v p Δs = `work` \[N/m\]: of one layer, or of several, if all below the layer number
+    /// `last` wore at its rate.
+    pub(super) fn mean_above(&self, last: usize, depth: f64, work: f64) -> f64 {
+        let (mut layer, mut at, mut left) = (self.layers_through(depth).min(last), depth, work);
+        while layer < last && at + self.rates[layer] * left > self.bottoms[layer] {
             left -= (self.bottoms[layer] - at) / self.rates[layer];
             at = self.bottoms[layer];
             layer += 1;
@@ -92,8 +98,10 @@ mod tests {
     fn rates_change_within_a_step() {
         let rates = Rates { bottoms: vec![2.0], rates: vec![0.5, 3.0] };
         for (work, removed) in [(1.0, 0.5), (4.0, 2.0), (5.0, 5.0), (6.0, 8.0)] {
-            assert!((rates.mean(0.0, work) * work - removed).abs() < 1e-14, "{work}");
+            assert!((rates.mean_above(1, 0.0, work) * work - removed).abs() < 1e-14, "{work}");
         }
+        // By the first rate alone, it is passed as far.
+        assert!((rates.mean_above(0, 0.0, 6.0) - 0.5).abs() < 1e-15);
         assert!((rates.at(1.9) - 0.5).abs() < 1e-15 && (rates.at(2.0) - 3.0).abs() < 1e-15);
     }
 }

@@ -1,6 +1,6 @@
 //! Steps of wear, their control, and the moments at which layers are through.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ndarray::{Array2, Zip};
 
@@ -38,10 +38,22 @@ const MOMENT: f64 = 0.1 * THROUGH;
 
 /// Change of a step's length from one to the next, and the part of the length that the error permits.
 const CHANGE: [f64; 2] = [0.2, 3.0];
+/// The same where a step adds no more error than solves have: nothing is worn any more, and what is left ends soon.
+const IDLE_CHANGE: f64 = 1e3;
 const SAFETY: f64 = 0.8;
 
 /// Wear of the first step, as a part of the approach: its error decides the next ones.
 const FIRST: f64 = 0.02;
+
+/// Bound of the error of a step in its halves, and of a whole one, over the difference of both. Of waves that fade as exp(−z) in
+/// the step, Euler's rule has at most 1.41 and 2.41, at z = 1.6 and 1.5, the trapezoidal rule 1/2 and 4/3, and the explicit one of
+/// passes 1 and 2 (derived here). Halves have the bound of whole steps, too: cells at the edge, whose pressures are no sums of few
+/// waves, err by up to 2.2.
+const ERROR: f64 = 3.0;
+
+/// Error of a pressure, relative to the peak, over the tolerance of its solve: solves of the same contact from other starts differ by
+/// no more where nothing is worn.
+const OF_SOLVES: f64 = 100.0;
 
 /// Correlation of two changes of the pressure below which it rings, and the least change relative to the peak that counts.
 const RINGING: f64 = -0.3;
@@ -75,18 +87,32 @@ pub struct WearSession<S> {
     start: Option<Array2<f64>>,
     /// Change of the pressure in the step before, and its length.
     change: Option<(Array2<f64>, f64)>,
+    /// End of the same history in steps of another length, which tells the error: whole ones where the history is that of their
+    /// halves, and halves where lengths are given. `None` where it is the same.
+    twin: Option<Trial>,
+    /// Largest pressure of the history.
+    peak: f64,
+    /// Convolutions since the last state.
+    convolutions: Mutex<f64>,
 }
 
 /// Where a step begins.
+#[derive(Clone)]
 struct Start<'a> {
-    state: &'a WearState,
+    depth: &'a [Array2<f64>; 2],
+    /// [`Trial::reach`] before.
+    reach: &'a [Array2<f64>; 2],
+    solution: &'a Solution,
     /// Pressure that wears there.
     pressure: &'a Array2<f64>,
     slipping: Slipping,
     idle: Option<Idle>,
+    /// Weight θ of the ends of steps; `None` where the scheme and the step choose it.
+    weight: Option<f64>,
 }
 
 /// Where surfaces slip in a step.
+#[derive(Clone)]
 enum Slipping {
     /// Slip of each cell per unit of the distance.
     Cells(Array2<f64>),
@@ -95,27 +121,29 @@ enum Slipping {
 }
 
 /// The end of one step.
+#[derive(Debug)]
 struct Trial {
     length: f64,
     depth: [Array2<f64>; 2],
+    /// Depths if all that is below the next layer wore at the rate of this layer: they pass its bottom whatever lies there.
+    reach: [Array2<f64>; 2],
     solution: Solution,
     /// Pressure that wears at the end, where it is not that of the solution: [`worn_by`].
     pressure: Option<Array2<f64>>,
-    error: Option<f64>,
+    /// Weight θ of the end; of two halves the larger.
+    weight: f64,
     /// Whether the search for the distance at which a layer is through came to its end.
     settled: bool,
-    idle: Option<Idle>,
 }
 
 impl Trial {
-    /// A step whose error is not known.
-    fn new(
-        length: f64,
-        depth: [Array2<f64>; 2],
-        solution: Solution,
-        pressure: Option<Array2<f64>>,
-    ) -> Self {
-        Self { length, depth, solution, pressure, error: None, settled: true, idle: None }
+    /// A step in which nothing wears.
+    fn at_rest(length: f64, [depth, reach]: [[Array2<f64>; 2]; 2], solution: Solution) -> Self {
+        Self { length, depth, reach, solution, pressure: None, weight: 1.0, settled: true }
+    }
+
+    fn wearing(&self) -> &Array2<f64> {
+        self.pressure.as_ref().unwrap_or(&self.solution.pressure)
     }
 }
 
@@ -161,13 +189,9 @@ impl<S: Surface> WearSession<S> {
             none_negative("slip", slip)?;
             refuse_if(slip.iter().all(|slip| *slip <= 0.0), "slip must be above 0 somewhere")?;
         }
-        let mut through = [0; 2];
-        for (k, depth) in wear.initial.iter().flatten().enumerate() {
+        for depth in wear.initial.iter().flatten() {
             same_shape("initial", depth, grid.shape())?;
             none_negative("initial", depth)?;
-            let deepest = depth.fold(0.0_f64, |most, d| most.max(*d));
-            let bottoms = rates[k].bottoms.iter();
-            through[k] = bottoms.filter(|bottom| deepest >= **bottom * (1.0 - THROUGH)).count();
         }
         let layers = match wear.thickness {
             Thickness::Frozen => None,
@@ -185,11 +209,14 @@ impl<S: Surface> WearSession<S> {
             layers,
             most_cells,
             length: None,
-            through,
+            through: [0; 2],
             ended: false,
             last: None,
             start: None,
             change: None,
+            twin: None,
+            peak: 0.0,
+            convolutions: Mutex::new(0.0),
         })
     }
 
@@ -211,21 +238,29 @@ impl<S: Surface> WearSession<S> {
         self.ended = next.is_none()
             || self.wear.until_through
                 && next.as_ref().is_some_and(|state| !state.through.is_empty());
+        let peak = next.as_ref().map_or(0.0, |state| state.solution.peak_pressure());
+        self.peak = self.peak.max(peak);
         self.last = next.clone().or(last);
         Ok(next)
     }
 
     /// The contact before any sliding.
-    fn first(&self, progress: &mut Progress) -> Result<Option<WearState>> {
+    fn first(&mut self, progress: &mut Progress) -> Result<Option<WearState>> {
         let zeros = || Array2::zeros(self.plan.grid().shape());
         let depth = self.wear.initial.clone().unwrap_or_else(|| [zeros(), zeros()]);
         let solution = self.solved(&depth[0] + &depth[1], Some(&depth), None, None, progress)?;
+        let mut through = self.through_at(0.0, 0.0, [&depth, &depth]);
+        if self.wear.goes_on {
+            through.clear();
+        }
+        self.spent();
         Ok(solution.map(|solution| WearState {
             distance: 0.0,
             depth,
             solution,
-            through: Vec::new(),
-            step_error: None,
+            through,
+            step_error: 0.0,
+            peak_error: 0.0,
             rings: false,
             settled: true,
             regrids: 0,
@@ -233,7 +268,7 @@ impl<S: Surface> WearSession<S> {
         }))
     }
 
-    /// Error of the last pressure by the thickness of the layers: the root of its mean square within the contact, relative to the
+    /// Error of the last pressure by the thickness of the layers, the largest within the contact and of the peak, relative to the
     /// peak. It is the difference from the pressure on layers that are thinner by the mean of their depths, weighted by the
     /// pressure; to first order, that between two pressures on layers that are thinner by this mean, to first order and
     /// exactly. Given influence coefficients change by what exact ones do. `None` where no layer wears, where nothing would be
@@ -286,7 +321,7 @@ impl<S: Surface> WearSession<S> {
             plan => plan?,
         };
         let options = Options { initial: Some(pressure.clone()), ..self.wear.options.clone() };
-        let worn = self.worn(last);
+        let worn = self.worn(&last.depth);
         let other = plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress))?;
         let even = means.map(|mean| Array2::from_elem(pressure.dim(), mean));
         let even = self
@@ -297,9 +332,14 @@ impl<S: Surface> WearSession<S> {
             return Ok(None);
         }
         let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
-        let peak = last.solution.peak_pressure();
-        let apart = difference([pressure, pressure, &other.pressure]);
-        Ok((peak > 0.0).then_some(apart / peak))
+        let both = [pressure, pressure, &other.pressure];
+        let apart = Zip::indexed(pressure).and(&other.pressure);
+        let apart = apart.fold(0.0_f64, |most, at, p, other| {
+            if is_within(both, at) { most.max((p - other).abs()) } else { most }
+        });
+        let peaks = [pressure, &other.pressure].map(|p| p.fold(0.0_f64, |most, p| most.max(*p)));
+        let peak = peaks[0].min(peaks[1]);
+        Ok((peak > 0.0).then_some(apart.max((peaks[0] - peaks[1]).abs()) / peak))
     }
 
     /// The plan of bodies whose layers are thinner by these depths; `None` where that changes nothing.
@@ -335,6 +375,8 @@ impl<S: Surface> WearSession<S> {
             }
             None => plan.solve_alone(shape, &self.motion, &options, progress)?,
         };
+        *self.convolutions.lock().unwrap_or_else(PoisonError::into_inner) +=
+            solution.report.convolutions;
         if solution.report.termination == Termination::Stopped {
             return Ok(None);
         }
@@ -345,22 +387,29 @@ impl<S: Surface> WearSession<S> {
         solution.require_converged(options.tolerance).map(Some)
     }
 
+    /// Convolutions since this was asked the last time.
+    fn spent(&self) -> f64 {
+        std::mem::take(&mut *self.convolutions.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     /// The state after `last`, which is on the grid of the plan then.
     fn step(&mut self, last: &mut WearState, progress: &mut Progress) -> Result<Option<WearState>> {
         loop {
             let Some(left) = self.left(last.distance) else {
                 return Ok(None);
             };
-            let Some(trial) = self.controlled(last, left, progress)? else {
-                return Ok(None);
-            };
+            let (start, before) = (self.start.take(), self.twin.take());
+            let pressure = start.as_ref().unwrap_or(&last.solution.pressure);
+            let begun = self.begun([&last.depth; 2], &last.solution, pressure, progress)?;
+            let Some(begun) = begun else { return Ok(None) };
+            let pair = self.controlled(&begun, before.as_ref(), left, progress)?;
+            let Some((mut trial, twin)) = pair else { return Ok(None) };
             if let Some(most) = self.most_cells
                 && let grow = self.touched(&trial.solution)
                 && grow != [false; 2]
             {
-                let Some(wider) = self.regrid(last, grow, most, progress)? else {
-                    return Ok(None);
-                };
+                let wider = self.regrid(last, before.as_ref(), grow, most, progress)?;
+                let Some(wider) = wider else { return Ok(None) };
                 *last = wider;
                 continue;
             }
@@ -370,25 +419,34 @@ impl<S: Surface> WearSession<S> {
                 (WearSteps::Ends(_), true) => last.distance + left,
                 _ => last.distance + trial.length,
             };
-            let through = self.through_at(distance, &trial.depth);
+            let error = ERROR * self.apart_in_distance(&begun, [&trial, &twin]);
+            let idle = begun.idle;
+            let through = self.through_at(distance, error, [&trial.reach, &trial.depth]);
             let change = &trial.solution.pressure - &last.solution.pressure;
+            let peak = trial.solution.peak_pressure();
             let rings = self.wear.scheme == WearScheme::Trapezoidal
                 && self.change.as_ref().is_some_and(|(before, _)| {
-                    correlation(&change, before, LEAST_CHANGE * trial.solution.peak_pressure())
-                        < RINGING
+                    correlation(&change, before, LEAST_CHANGE * peak) < RINGING
                 });
             self.change = through.is_empty().then_some((change, trial.length));
+            let pressures = Zip::from(&trial.solution.pressure).and(&twin.solution.pressure);
+            let apart = pressures.fold(0.0_f64, |most, p, other| most.max((p - other).abs()));
+            let peak_error = ERROR * (peak - twin.solution.peak_pressure()).abs();
             self.start = trial.pressure;
+            self.twin = Some(twin);
+            trial.solution.report.convolutions = self.spent();
             return Ok(Some(WearState {
                 distance,
                 depth: trial.depth,
                 solution: trial.solution,
                 through,
-                step_error: trial.error,
+                peak_error: if peak > 0.0 { peak_error / peak } else { 0.0 },
+                step_error: if apart > 0.0 { ERROR * apart / peak } else { 0.0 }
+                    .max(OF_SOLVES * self.wear.options.tolerance),
                 rings,
                 settled: trial.settled,
                 regrids: last.regrids,
-                idle: trial.idle,
+                idle,
             }));
         }
     }
@@ -403,39 +461,73 @@ impl<S: Surface> WearSession<S> {
         end.map(|end| end - distance)
     }
 
-    /// A step of a length that the error permits, which ends where a layer is through.
+    /// A step of a length that the error permits, which ends where a layer is through, and its twin, after that `before`.
     fn controlled(
         &mut self,
-        last: &WearState,
+        begun: &Start,
+        before: Option<&Trial>,
         left: f64,
         progress: &mut Progress,
-    ) -> Result<Option<Trial>> {
-        let start = self.start.clone();
-        let Some(begun) = self.begun(last, start.as_ref(), progress)? else {
-            return Ok(None);
-        };
-        let WearSteps::Auto { tolerance, .. } = self.wear.steps else {
-            let trial = self.trial(&begun, left, self.expected(&begun, left), progress)?;
-            return trial.map_or(Ok(None), |trial| self.until_through(&begun, trial, progress));
-        };
-        if self.rates.iter().all(Rates::vanish) {
-            return self.trial(&begun, left, begun.pressure.clone(), progress);
+    ) -> Result<Option<(Trial, Trial)>> {
+        let mut beside = begun.clone();
+        if let Some(twin) = before {
+            (beside.depth, beside.reach) = (&twin.depth, &twin.depth);
+            beside.solution = &twin.solution;
         }
-        let mut length = self.length.unwrap_or_else(|| self.first_length(&begun)).min(left);
-        loop {
-            let Some(trial) = self.halved(&begun, length, progress)? else {
+        let WearSteps::Auto { tolerance, .. } = self.wear.steps else {
+            let trial = self.trial(begun, left, self.expected(begun, left), progress)?;
+            let Some(trial) = trial else { return Ok(None) };
+            let Some(trial) = self.until_through(begun, trial, progress)? else {
                 return Ok(None);
             };
-            let error = trial.error.unwrap_or(0.0);
+            beside.pressure = before.map_or(begun.pressure, Trial::wearing);
+            let twin = self.halved(&beside, trial.length, &trial.solution.pressure, progress)?;
+            return Ok(twin.map(|twin| (trial, twin)));
+        };
+        // By the pressure that wears the halves, whole steps keep no wave that changes its sign: errors fade at half their rate
+        // or faster.
+        let mut length = self.length.unwrap_or_else(|| self.first_length(begun)).min(left);
+        loop {
+            let expected = self.expected(&beside, length);
+            let Some(whole) = self.trial(&beside, length, expected, progress)? else {
+                return Ok(None);
+            };
+            let Some(halves) = self.halved(begun, length, &whole.solution.pressure, progress)?
+            else {
+                return Ok(None);
+            };
+            let error = self.added_error([begun, &beside], [&halves, &whole]);
             let order = if self.is_second_order() { 3.0 } else { 2.0 };
             let factor = SAFETY * (tolerance / error.max(1e-9 * tolerance)).powf(1.0 / order);
-            let next = length * factor.clamp(CHANGE[0], CHANGE[1]);
+            let is_idle = error <= OF_SOLVES * self.wear.options.tolerance;
+            let most = if is_idle { IDLE_CHANGE } else { CHANGE[1] };
+            let next = length * factor.clamp(CHANGE[0], most);
             if error <= tolerance {
                 self.length = Some(if length < left { next } else { next.max(length) });
-                return self.until_through(&begun, trial, progress);
+                let Some(trial) = self.until_through(begun, halves, progress)? else {
+                    return Ok(None);
+                };
+                if trial.length >= length {
+                    return Ok(Some((trial, whole)));
+                }
+                let expected = trial.solution.pressure.clone();
+                let twin = self.trial(&beside, trial.length, expected, progress)?;
+                return Ok(twin.map(|twin| (trial, twin)));
             }
             length = next.min(0.8 * length);
         }
+    }
+
+    /// Error that a step adds to the pressure: what the ends of its halves and of the whole step differ by more than their
+    /// `starts` did, relative to the largest pressure of the history: at a given approach, hardly any may be left.
+    fn added_error(&self, starts: [&Start; 2], ends: [&Trial; 2]) -> f64 {
+        let [start, whole_start] = starts.map(|start| &start.solution.pressure);
+        let [end, whole_end] = ends.map(|end| &end.solution.pressure);
+        let apart = Zip::from(end).and(whole_end).and(start).and(whole_start);
+        let apart = apart.map_collect(|end, whole, start, before| (whole - before) - (end - start));
+        let error = mean_within([start, whole_end, end], &apart);
+        let orders = if self.is_second_order() { 3.0 } else { 1.0 };
+        if error > 0.0 { error / (orders * self.peak) } else { 0.0 }
     }
 
     fn is_second_order(&self) -> bool {
@@ -444,7 +536,7 @@ impl<S: Surface> WearSession<S> {
 
     /// Length of the first step.
     fn first_length(&self, begun: &Start) -> f64 {
-        let solution = &begun.state.solution;
+        let solution = begun.solution;
         let deepest = solution.displacement.iter().zip(&solution.pressure);
         let deepest = deepest.filter(|(_, p)| **p > 0.0).fold(0.0_f64, |a, (u, _)| a.max(u.abs()));
         let rate: f64 = self.rates.iter().map(|rates| rates.at(0.0)).sum();
@@ -456,22 +548,31 @@ impl<S: Surface> WearSession<S> {
         if length.is_finite() && length > 0.0 { length } else { f64::MAX }
     }
 
-    /// Where a step from a state begins; `pressure` wears there, if it is not that of its solution. `None` where it was stopped.
+    /// Where a step begins at a depth, and with what reach; `pressure` wears there. `None` where it was stopped.
     fn begun<'a>(
         &self,
-        state: &'a WearState,
-        pressure: Option<&'a Array2<f64>>,
+        [depth, reach]: [&'a [Array2<f64>; 2]; 2],
+        solution: &'a Solution,
+        pressure: &'a Array2<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Start<'a>>> {
-        let slipping = self.slipping(state, progress)?;
-        let pressure = pressure.unwrap_or(&state.solution.pressure);
-        Ok(slipping.map(|(slipping, idle)| Start { state, pressure, slipping, idle }))
+        let slipping = self.slipping(depth, solution, progress)?;
+        Ok(slipping.map(|(slipping, idle)| Start {
+            depth,
+            reach,
+            solution,
+            pressure,
+            slipping,
+            idle,
+            weight: None,
+        }))
     }
 
     /// Where worn bodies slip, and why nowhere; `None` where it was stopped.
     fn slipping(
         &self,
-        state: &WearState,
+        depth: &[Array2<f64>; 2],
+        solution: &Solution,
         progress: &mut Progress,
     ) -> Result<Option<(Slipping, Option<Idle>)>> {
         let shape = self.plan.grid().shape();
@@ -487,7 +588,7 @@ impl<S: Surface> WearSession<S> {
                     first.motion = Some(self.motion);
                 }
                 let moves = twice.iter().map(Move::Slide);
-                let solutions = self.moved(state, moves, options, progress)?;
+                let solutions = self.moved(depth, solution, moves, options, progress)?;
                 solutions.map(|solutions| {
                     let mut slip = Array2::zeros(shape);
                     for pair in solutions.windows(2).skip(steps.len().saturating_sub(1)) {
@@ -499,12 +600,11 @@ impl<S: Surface> WearSession<S> {
             }
             Slip::Pass(rolling, options) => {
                 let moves = std::iter::once(Move::RollSteadily(rolling));
-                let solutions = self.moved(state, moves, options, progress)?;
+                let solutions = self.moved(depth, solution, moves, options, progress)?;
                 let axis = ndarray::Axis(rolling.direction.axis());
-                let width = self.plan.grid().spacing()[axis.index()];
                 let track = solutions.into_iter().flatten().next().and_then(|pass| {
-                    let line = (magnitude(&pass) * &pass.normal.pressure).sum_axis(axis) * width;
-                    line.insert_axis(axis).broadcast(shape).map(|track| track.to_owned())
+                    let line = pass.track(rolling.direction).insert_axis(axis);
+                    line.broadcast(shape).map(|track| track.to_owned())
                 });
                 track.map(|track| (Slipping::Track(track), None))
             }
@@ -515,13 +615,14 @@ impl<S: Surface> WearSession<S> {
     /// breaks.
     fn moved<'m>(
         &self,
-        state: &WearState,
+        depth: &[Array2<f64>; 2],
+        solution: &Solution,
         moves: impl Iterator<Item = Move<'m>>,
         options: &FrictionOptions,
         progress: &mut Progress,
     ) -> Result<Option<Vec<FrictionSolution>>> {
-        let worn = self.worn(state);
-        let tell = &mut |_: &FrictionReport| progress(&state.solution.report);
+        let worn = self.worn(depth);
+        let tell = &mut |_: &FrictionReport| progress(&solution.report);
         let mut solutions: Vec<FrictionSolution> = Vec::new();
         for next in moves {
             let last = solutions.last().map(|solution| Last { solution, is_own: true });
@@ -538,7 +639,7 @@ impl<S: Surface> WearSession<S> {
     /// is longer, as pressures fall ever more slowly. That takes a fifth of the iterations less than from the last pressure; a
     /// parabola through three takes half as many more than the line, as cells at the edge jump.
     fn expected(&self, begun: &Start, length: f64) -> Array2<f64> {
-        let now = &begun.state.solution.pressure;
+        let now = &begun.solution.pressure;
         match &self.change {
             Some((change, over)) if change.dim() == now.dim() => {
                 let part = (length / over).min(1.0);
@@ -548,30 +649,25 @@ impl<S: Surface> WearSession<S> {
         }
     }
 
-    /// A step in two halves, with the error that the whole one shows.
-    fn halved(&self, begun: &Start, length: f64, progress: &mut Progress) -> Result<Option<Trial>> {
-        let Some(whole) = self.trial(begun, length, self.expected(begun, length), progress)? else {
-            return Ok(None);
-        };
-        let middle = 0.5 * (&begun.state.solution.pressure + &whole.solution.pressure);
+    /// A step in two halves, whose end is `expected` at this pressure.
+    fn halved(
+        &self,
+        begun: &Start,
+        length: f64,
+        expected: &Array2<f64>,
+        progress: &mut Progress,
+    ) -> Result<Option<Trial>> {
+        let middle = 0.5 * (&begun.solution.pressure + expected);
         let Some(half) = self.trial(begun, 0.5 * length, middle, progress)? else {
             return Ok(None);
         };
-        let middle =
-            WearState { depth: half.depth, solution: half.solution, ..begun.state.clone() };
-        let Some(middle) = self.begun(&middle, half.pressure.as_ref(), progress)? else {
+        let from = [&half.depth, &half.reach];
+        let Some(middle) = self.begun(from, &half.solution, half.wearing(), progress)? else {
             return Ok(None);
         };
-        let expected = whole.solution.pressure.clone();
-        let Some(end) = self.trial(&middle, 0.5 * length, expected, progress)? else {
-            return Ok(None);
-        };
-        let [before, after] = [&begun.state.solution, &whole.solution].map(|one| &one.pressure);
-        let error = difference([before, after, &end.solution.pressure]);
-        let orders = if self.is_second_order() { 3.0 } else { 1.0 };
-        let peak = end.solution.peak_pressure();
-        let error = if peak > 0.0 { error / (orders * peak) } else { 0.0 };
-        Ok(Some(Trial { length, error: Some(error), idle: begun.idle, ..end }))
+        let middle = Start { weight: begun.weight, ..middle };
+        let end = self.trial(&middle, 0.5 * length, expected.clone(), progress)?;
+        Ok(end.map(|end| Trial { length, weight: end.weight.max(half.weight), ..end }))
     }
 
     /// The step, or the shorter one at whose end the first cell of a layer is through.
@@ -581,12 +677,31 @@ impl<S: Surface> WearSession<S> {
         trial: Trial,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        let part = self.part_of_layer(&trial.depth);
-        if part <= 1.0 + MOMENT {
+        let is_before = |depth: &[Array2<f64>; 2]| self.part_of_layer(depth) <= 1.0 + MOMENT;
+        if is_before(&trial.reach) && is_before(&trial.depth) {
             return Ok(Some(trial));
         }
+        // The depth is continuous in the length by one rule.
+        let begun = &Start { weight: Some(trial.weight), ..begun.clone() };
+        let is_halved = matches!(self.wear.steps, WearSteps::Auto { .. });
+        let mut step = |length: f64, expected: &Array2<f64>| match is_halved {
+            true => self.halved(begun, length, expected, progress),
+            false => self.trial(begun, length, expected.clone(), progress),
+        };
+        let mut trial = trial;
+        if is_before(&trial.reach) {
+            // Rates of what lies below did not settle: it takes no part before the layer is through.
+            let Some(settled) = step(trial.length, &trial.solution.pressure)? else {
+                return Ok(None);
+            };
+            trial = settled;
+            if is_before(&trial.reach) {
+                return Ok(Some(trial));
+            }
+        }
+        let part = self.part_of_layer(&trial.reach);
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
-        let mut least = [0.0, 1.0 - self.part_of_layer(&begun.state.depth)];
+        let mut least = [0.0, 1.0 - self.part_of_layer(begun.depth)];
         let mut most = [trial.length, part - 1.0];
         let mut was_beyond = true;
         // The depth jumps, by what a pressure is known to: the nearest trial counts.
@@ -594,12 +709,8 @@ impl<S: Surface> WearSession<S> {
         for _ in 0..TRIALS {
             let [[a, lacks], [b, beyond]] = [least, most];
             let length = a + (b - a) * lacks / (lacks + beyond);
-            let next = match nearest.error {
-                Some(_) => self.halved(begun, length, progress)?,
-                None => self.trial(begun, length, nearest.solution.pressure.clone(), progress)?,
-            };
-            let Some(next) = next else { return Ok(None) };
-            let part = self.part_of_layer(&next.depth);
+            let Some(next) = step(length, &nearest.solution.pressure)? else { return Ok(None) };
+            let part = self.part_of_layer(&next.reach);
             let is_beyond = part > 1.0;
             let [own, other] =
                 if is_beyond { [&mut most, &mut least] } else { [&mut least, &mut most] };
@@ -618,42 +729,70 @@ impl<S: Surface> WearSession<S> {
         Ok(Some(Trial { settled: off <= THROUGH, ..nearest }))
     }
 
-    /// Largest depth of a cell over that of the bottom of the next layer; 1 where it is just through.
-    fn part_of_layer(&self, depth: &[Array2<f64>; 2]) -> f64 {
-        let mut most = 0.0_f64;
-        for (k, depth) in depth.iter().enumerate() {
-            let Some(bottom) = self.rates[k].bottoms.get(self.through[k]) else {
-                continue;
-            };
-            most = depth.fold(most, |most, depth| most.max(depth / bottom));
-        }
-        most
+    /// Cell whose depth is the largest part of that of the bottom of the next layer of its body, and this part; 1 where it is just
+    /// through. `None` where no layer is left.
+    fn furthest(&self, reach: &[Array2<f64>; 2]) -> Option<(f64, usize, (usize, usize))> {
+        let bodies = (0..2).filter_map(|k| Some((k, *self.rates[k].bottoms.get(self.through[k])?)));
+        let cells = bodies.flat_map(|(k, bottom)| {
+            reach[k].indexed_iter().map(move |(at, depth)| (depth / bottom, k, at))
+        });
+        cells.max_by(|one, other| one.0.total_cmp(&other.0))
     }
 
-    /// Layers that are through at these depths, and were not before.
-    fn through_at(&mut self, distance: f64, depth: &[Array2<f64>; 2]) -> Vec<WearThrough> {
+    /// Part of [`Self::furthest`].
+    fn part_of_layer(&self, reach: &[Array2<f64>; 2]) -> f64 {
+        self.furthest(reach).map_or(0.0, |(part, ..)| part)
+    }
+
+    /// Difference of the distances at which a layer is through where a step ends at it, and its twin does before or after; 0 where
+    /// none is. Depths go on as they grow at the end of the step: of the two ends, that at which more is worn, and where neither
+    /// wears, as in the step.
+    fn apart_in_distance(&self, begun: &Start, ends: [&Trial; 2]) -> f64 {
+        let (part, k, at) = match self.furthest(&ends[0].reach) {
+            Some(furthest) if furthest.0 >= 1.0 - THROUGH => furthest,
+            _ => return 0.0,
+        };
+        let (rates, layer) = (&self.rates[k], self.through[k]);
+        let growth = ends.map(|end| match &begun.slipping {
+            Slipping::Cells(slip) => rates.of(layer) * slip[at] * end.wearing()[at],
+            Slipping::Track(track) => rates.of(layer) * track[at],
+        });
+        let mut growth = growth[0].max(growth[1]);
+        if growth <= 0.0 {
+            growth = (ends[0].reach[k][at] - begun.depth[k][at]) / ends[0].length;
+        }
+        let apart = (part - self.part_of_layer(&ends[1].reach)).abs().max(THROUGH);
+        apart * rates.bottoms[layer] / growth
+    }
+
+    /// Layers that are through with this reach and at this depth, and were not before; the distance errs by `error`.
+    fn through_at(
+        &mut self,
+        distance: f64,
+        error: f64,
+        [reach, depth]: [&[Array2<f64>; 2]; 2],
+    ) -> Vec<WearThrough> {
         let grid = self.plan.grid();
         let mut events = Vec::new();
         for (k, member) in [Member::Body, Member::Counterbody].into_iter().enumerate() {
-            if self.through[k] >= self.rates[k].bottoms.len() {
-                continue;
-            }
-            let cells = depth[k].indexed_iter();
-            let Some(((i, j), deepest)) = cells.max_by(|a, b| a.1.total_cmp(b.1)) else {
-                continue;
-            };
+            let cells = reach[k].indexed_iter().max_by(|a, b| a.1.total_cmp(b.1));
+            let Some(((i, j), mut deepest)) = cells else { continue };
             while let Some(bottom) = self.rates[k].bottoms.get(self.through[k])
                 && *deepest >= bottom * (1.0 - THROUGH)
             {
                 let (layer, position) = (self.through[k], [grid.x()[i], grid.y()[j]]);
-                events.push(WearThrough { distance, position, layer, member });
+                events.push(WearThrough { distance, error, position, layer, member });
                 self.through[k] += 1;
+                // Its rate does not hold below it.
+                deepest = &depth[k][[i, j]];
             }
         }
         events
     }
 
-    /// One step of this `length`, whose end is `expected` at this pressure.
+    /// One step of this `length`, whose end is `expected` at this pressure. Cells that have just come into contact would carry too
+    /// much by the trapezoidal rule, as their start counts without them or with a part of the step: where one of them then wears
+    /// faster than any cell did, or that opens a cell which wore, the step is Euler's.
     fn trial(
         &self,
         begun: &Start,
@@ -661,23 +800,56 @@ impl<S: Surface> WearSession<S> {
         expected: Array2<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Trial>> {
-        let last = begun.state;
-        if self.rates.iter().all(Rates::vanish) {
-            let (depth, solution) = (last.depth.clone(), last.solution.clone());
-            return Ok(Some(Trial::new(length, depth, solution, None)));
+        let weight = begun.weight.unwrap_or(if self.is_second_order() { 0.5 } else { 1.0 });
+        let is_free = begun.weight.is_none() && weight < 1.0;
+        match self.trial_by(weight, begun, length, expected, progress)? {
+            Some(trial) if is_free && self.overshoots(begun, &trial) => {
+                self.trial_by(1.0, begun, length, trial.solution.pressure, progress)
+            }
+            trial => Ok(trial),
         }
-        let end_weight = if self.is_second_order() { 0.5 } else { 1.0 };
+    }
+
+    /// Whether a cell that owes most of its depth to the step wears faster at its end than any did at its start, or one that wore is
+    /// out of contact.
+    fn overshoots(&self, begun: &Start, end: &Trial) -> bool {
+        let Slipping::Cells(slip) = &begun.slipping else { return false };
+        let work = Zip::from(slip).and(begun.pressure);
+        let most = work.fold(0.0_f64, |most, slip, p| most.max(slip * p));
+        let [before, after] = [begun.depth, &end.depth].map(|depth| &depth[0] + &depth[1]);
+        let ends = Zip::from(slip).and(end.wearing());
+        let is_new_peak = ends.and(&before).and(&after).any(|slip, p, before, after| {
+            slip * p > most * (1.0 + LEAST_CHANGE) && after - before > *before
+        });
+        let ends = Zip::from(slip).and(end.wearing()).and(begun.pressure);
+        is_new_peak || ends.any(|slip, p, before| *p <= 0.0 && slip * before > most * LEAST_CHANGE)
+    }
+
+    /// One step of this `length`, whose end has a weight and is `expected` at this pressure.
+    fn trial_by(
+        &self,
+        weight: f64,
+        begun: &Start,
+        length: f64,
+        expected: Array2<f64>,
+        progress: &mut Progress,
+    ) -> Result<Option<Trial>> {
+        if self.rates.iter().all(Rates::vanish) {
+            let (depth, reach) = (begun.depth.clone(), begun.reach.clone());
+            let solution = begun.solution.clone();
+            let trial = Trial::at_rest(length, [depth, reach], solution);
+            return Ok(Some(trial));
+        }
         // Work \[N/m\] of the start of the step, and what its end adds per pressure.
         let (first, per_pressure) = match &begun.slipping {
             Slipping::Track(track) => (track * length, Array2::zeros(track.dim())),
-            Slipping::Cells(slip) => (
-                slip * begun.pressure * (length * (1.0 - end_weight)),
-                slip * (length * end_weight),
-            ),
+            Slipping::Cells(slip) => {
+                (slip * begun.pressure * (length * (1.0 - weight)), slip * (length * weight))
+            }
         };
         let mut rates = [0, 1].map(|k| match self.rates[k].uniform() {
-            Some(rate) => Array2::from_elem(last.depth[k].dim(), rate),
-            None => last.depth[k].mapv(|depth| self.rates[k].at(depth)),
+            Some(rate) => Array2::from_elem(begun.depth[k].dim(), rate),
+            None => begun.depth[k].mapv(|depth| self.rates[k].at(depth)),
         });
         let work = |pressure: &Array2<f64>| {
             let cells = Zip::from(&per_pressure).and(pressure).and(&first);
@@ -686,13 +858,19 @@ impl<S: Surface> WearSession<S> {
         // Depths by which layers are thinner.
         let mut missing = self.layers.as_ref().map(|_| {
             let work = work(&expected);
-            [0, 1].map(|k| &last.depth[k] + &(&rates[k] * &work))
+            [0, 1].map(|k| &begun.depth[k] + &(&rates[k] * &work))
+        });
+        // Where a step is to end as a layer is through, nothing below it wears.
+        let last = [0, 1].map(|k| match begun.weight {
+            Some(_) => self.through[k],
+            None => self.rates[k].bottoms.len(),
         });
         let mut initial = expected;
         for round in 1.. {
             let cells = Zip::from(&rates[0]).and(&rates[1]);
             let springs = cells.and(&per_pressure).map_collect(|a, b, work| (a + b) * work);
-            let cells = Zip::from(&last.depth[0]).and(&last.depth[1]).and(&rates[0]).and(&rates[1]);
+            let cells =
+                Zip::from(&begun.depth[0]).and(&begun.depth[1]).and(&rates[0]).and(&rates[1]);
             let worn = cells.and(&first).map_collect(|v, w, a, b, work| v + w + (a + b) * work);
             let solution =
                 self.solved(worn, missing.as_ref(), Some(&springs), Some(initial), progress)?;
@@ -704,14 +882,14 @@ impl<S: Surface> WearSession<S> {
             // What springs gave is worn off.
             solution.release_springs(pressure.as_ref().map(|pressure| springs * pressure));
             let work = work(pressure.as_ref().unwrap_or(&solution.pressure));
-            let mut reached = last.depth.clone();
+            let mut reached = begun.depth.clone();
             let mut changed = 0.0_f64;
             for (k, (rates, depth)) in rates.iter_mut().zip(&mut reached).enumerate() {
                 match self.rates[k].uniform() {
                     Some(rate) if rate > 0.0 => depth.scaled_add(rate, &work),
                     Some(_) => (),
                     None => Zip::from(rates).and(depth).and(&work).for_each(|rate, depth, work| {
-                        let mean = self.rates[k].mean(*depth, *work);
+                        let mean = self.rates[k].mean_above(last[k], *depth, *work);
                         changed = changed
                             .max((mean - *rate).abs() / mean.max(*rate).max(f64::MIN_POSITIVE));
                         *depth += *rate * work;
@@ -722,8 +900,16 @@ impl<S: Surface> WearSession<S> {
             let lag = self.layers.as_ref().zip(missing.as_ref());
             let lag = lag.map_or(0.0, |(layers, missing)| layers.apart(&reached, missing));
             if changed <= SETTLED && lag <= LAG || round == ROUNDS {
-                let idle = begun.idle;
-                return Ok(Some(Trial { idle, ..Trial::new(length, reached, solution, pressure) }));
+                let reach = [0, 1].map(|k| {
+                    let cells = Zip::from(&begun.reach[k]).and(&work);
+                    cells.map_collect(|from, work| {
+                        from + self.rates[k].mean_above(self.through[k], *from, *work) * work
+                    })
+                });
+                let depth = reached;
+                let trial =
+                    Trial { length, depth, reach, solution, pressure, weight, settled: true };
+                return Ok(Some(trial));
             }
             missing = self.layers.as_ref().map(|_| reached);
             initial = solution.pressure;
@@ -732,8 +918,8 @@ impl<S: Surface> WearSession<S> {
     }
 
     /// The shape on the worn bodies.
-    fn worn(&self, state: &WearState) -> OffsetShape<&dyn Surface> {
-        let worn = &state.depth[0] + &state.depth[1];
+    fn worn(&self, depth: &[Array2<f64>; 2]) -> OffsetShape<&dyn Surface> {
+        let worn = &depth[0] + &depth[1];
         OffsetShape::new(&self.shape as &dyn Surface, self.plan.grid(), worn)
     }
 
@@ -757,6 +943,7 @@ impl<S: Surface> WearSession<S> {
     fn regrid(
         &mut self,
         last: &WearState,
+        twin: Option<&Trial>,
         axes: [bool; 2],
         most: usize,
         progress: &mut Progress,
@@ -772,16 +959,21 @@ impl<S: Surface> WearSession<S> {
         if self.layers.is_some() {
             self.layers = Some(TopLayers::plan(&self.plan, wears(&self.rates, Some(&last.depth)))?);
         }
-        let depth = [0, 1].map(|k| regridded(&last.depth[k], &from, &grid));
-        let worn = &depth[0] + &depth[1];
-        let solution = self.solved(worn, Some(&depth), None, None, progress)?;
         (self.change, self.start) = (None, None);
-        Ok(solution.map(|solution| WearState {
-            depth,
-            solution,
-            regrids: last.regrids + 1,
-            ..last.clone()
-        }))
+        let mut solved = |depth: &[Array2<f64>; 2]| {
+            let depth = depth.each_ref().map(|depth| regridded(depth, &from, &grid));
+            let solution =
+                self.solved(&depth[0] + &depth[1], Some(&depth), None, None, progress)?;
+            Ok::<_, Error>(solution.map(|solution| (depth, solution)))
+        };
+        let Some((depth, solution)) = solved(&last.depth)? else { return Ok(None) };
+        if let Some(twin) = twin {
+            let Some((depth, solution)) = solved(&twin.depth)? else { return Ok(None) };
+            let (length, reach) = (0.0, depth.clone());
+            let twin = Trial::at_rest(length, [depth, reach], solution);
+            self.twin = Some(twin);
+        }
+        Ok(Some(WearState { depth, solution, regrids: last.regrids + 1, ..last.clone() }))
     }
 }
 
@@ -822,23 +1014,26 @@ fn worn_by(solution: &Solution, springs: &Array2<f64>, one_cell: f64) -> Option<
     }))
 }
 
-/// Difference of the last two pressures: the root of its mean square over the cells that are in contact with all their
-/// neighbours under all three, over all cells where there are none. At the edge, pressures differ by which cells the contact
-/// covers, however short a step is.
-fn difference([before, one, other]: [&Array2<f64>; 3]) -> f64 {
-    let carries = |i: usize, j: usize| [before, one, other].iter().all(|p| p[[i, j]] > 0.0);
-    let (nx, ny) = before.dim();
+/// Whether a cell is in contact with all its neighbours under all pressures. At the edge, pressures differ by which cells the
+/// contact covers, however short a step is.
+fn is_within(pressures: [&Array2<f64>; 3], (i, j): (usize, usize)) -> bool {
+    let carries = |i: usize, j: usize| pressures.iter().all(|p| p[[i, j]] > 0.0);
+    let (nx, ny) = pressures[0].dim();
     let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
-    let inside = |i: usize, j: usize| around(i, nx).all(|k| around(j, ny).all(|l| carries(k, l)));
-    let squares = |member: &dyn Fn(usize, usize) -> bool| {
+    around(i, nx).all(|k| around(j, ny).all(|l| carries(k, l)))
+}
+
+/// Root of the mean square of `apart` within the contact under all `pressures`, over all cells where there are none.
+fn mean_within(pressures: [&Array2<f64>; 3], apart: &Array2<f64>) -> f64 {
+    let squares = |member: &dyn Fn((usize, usize)) -> bool| {
         let (mut sum, mut cells) = (0.0, 0.0);
-        for ((i, j), p) in one.indexed_iter().filter(|((i, j), _)| member(*i, *j)) {
-            sum += (p - other[[i, j]]).powi(2);
+        for (_, apart) in apart.indexed_iter().filter(|(at, _)| member(*at)) {
+            sum += apart * apart;
             cells += 1.0;
         }
         (cells > 0.0).then(|| f64::sqrt(sum / cells))
     };
-    squares(&inside).or_else(|| squares(&|_, _| true)).unwrap_or(0.0)
+    squares(&|at| is_within(pressures, at)).or_else(|| squares(&|_| true)).unwrap_or(0.0)
 }
 
 /// Size of the slip of each cell.

@@ -152,11 +152,12 @@ fn hard_layers_thinner_than_cells_are_seen_not_to_be_resolved() -> Result<()> {
     let error = fine.peak_pressure() - coarse.peak_pressure();
     assert!(error > 0.1 * coarse.peak_pressure());
     assert!(error < 3.0 * peak_error(found));
-    // A layer of twice the substrate's modulus does nothing of the kind.
+    // A layer of twice the substrate's modulus does nothing of the kind. Of the peak, 3 % are the changes of a contact 11 cells
+    // wide, and up to 0.8 % what lies between the centres of its cells: ½ (δ/a)² half a diagonal δ beside the middle.
     let body = stack(Elastic::new(1.0, 0.3)?, [[2.0, 0.3, 0.1 * cell]])?;
     let mild = solved(&body, Grid::new([80; 2], [2.0; 2])?, &shape, &motion)?;
     let found = estimate(&mild)?;
-    below!(peak_error(found), 0.03 * mild.peak_pressure(), found);
+    below!(peak_error(found), 0.038 * mild.peak_pressure(), found);
     Ok(())
 }
 
@@ -211,11 +212,18 @@ fn fuzz_estimates_hold_for_99_of_100_random_contacts() -> Result<()> {
     Ok(())
 }
 
+/// Sides below 64 cells are solved on half of their cells for it; below eight there are none.
 #[test]
 fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
     let shape = Sphere::new(100.0)?;
     let body = Elastic::new(1.0, 0.0)?;
-    for (cells, initial) in [([40, 40], false), ([100, 40], false), ([128, 128], true)] {
+    for (cells, initial, is_known) in [
+        ([40, 40], false, true),
+        ([100, 40], false, true),
+        ([8, 9], false, true),
+        ([40, 7], false, false),
+        ([128, 128], true, false),
+    ] {
         let contact = plan(body, Grid::new(cells, [2.0, 2.0])?)?;
         let motion = Motion::load(5e-4);
         let mut solution = contact.solve(&shape, &motion, &Options::default())?;
@@ -223,7 +231,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
             let options = Options { initial: Some(solution.pressure), ..Options::default() };
             solution = contact.solve(&shape, &motion, &options)?;
         }
-        assert_eq!(solution.report.discretisation, None, "{cells:?}");
+        assert_eq!(solution.report.discretisation.is_some(), is_known, "{cells:?}");
     }
     Ok(())
 }

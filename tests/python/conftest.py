@@ -19,6 +19,8 @@ studies typing
 """
 # Jobs that shells start in the background ignore Ctrl-C, and so do their processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+# That of pytest, 1e-12, is more than many areas and works in SI units: a test says its own.
+type(pytest.approx(0.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
 
 

@@ -85,9 +85,9 @@ def assert_close(
     largest: where small numbers matter. With `atol`, to this part and `atol`, as in NumPy.
     """
     if atol is None:
-        sizes = np.abs(expected)
+        sizes = np.abs(np.asarray(expected))
         scale = float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
-        assert scale > 0, "zeros have no scale: atol= says what is as good as zero"
+        assert scale > 0 or not sizes.size, "zeros have no scale: atol= says what is zero"
         rtol, atol = (rtol, ROUNDING * scale) if each else (0.0, rtol * scale)
     np.testing.assert_allclose(actual, expected, rtol=rtol, atol=atol)
 

@@ -8,8 +8,8 @@ use nacre::contact::choose_grid;
 use nacre::influence::influence_coefficients;
 use nacre::wear::{Slip, Thickness, Wear, WearScheme, WearSession, WearState, WearSteps};
 use nacre::{
-    Contact, Cylinder, Elastic, Grid, HalfSpace, Hardness, Layer, Member, Method, Motion, Options,
-    Paraboloid, Result, Setup,
+    Contact, Cylinder, Elastic, Grid, HalfSpace, Hardness, HeightMap, Layer, Member, Method,
+    Motion, Options, Paraboloid, Result, Setup,
 };
 use ndarray::Array2;
 
@@ -100,7 +100,8 @@ fn worn_contacts_are_contacts_of_the_worn_shape() -> Result<()> {
 /// Chosen steps against ten times as many: half-width and peak within 2e-3 of the start's, which is twice the tolerance of a step.
 /// The edge of a worn contact lies on a cell's: those of the cylinder are so small that one of them is no more than that.
 /// At a given load, the mean pressure p̄ and the half-width a change together, by W = 2a p̄ in line: relative to a, Euler's
-/// half-widths err by what the pressure may err relative to p̄, which has fallen.
+/// half-widths err by what the pressure may err relative to p̄, which has fallen: 2e-3 of the first peak, and half of that for the
+/// cells, of which they are whole numbers.
 #[test]
 fn chosen_steps_keep_their_error() -> Result<()> {
     let end = 0.1;
@@ -137,12 +138,14 @@ fn chosen_steps_keep_their_error() -> Result<()> {
                 );
                 let [width, due] = [&state.solution, other].map(|s| s.contact_extent()[1][1]);
                 let mean = motion.load.expect("given") / other.contact_area();
-                let bar = 2e-3 * if scheme == WearScheme::Euler { peak / mean } else { 1.0 };
+                let bar = if scheme == WearScheme::Euler { 3e-3 * peak / mean } else { 2e-3 };
                 below!((width - due).abs(), bar * due, k, scheme);
             }
             let last = chosen.last().expect("a state");
-            let bound: f64 = chosen.iter().filter_map(|state| state.step_error).fold(0.0, f64::max);
-            below!(bound, 1e-3 + 1e-15);
+            // The steps that are ten times shorter err by a hundredth of it, or a tenth, as the solves do.
+            let due =
+                apart(&last.solution.pressure, &fine.last().expect("a state").solution.pressure);
+            below!(due, 1.1 * last.step_error * last.solution.peak_pressure(), scheme);
             near!(last.distance, end, 1e-15);
         }
     }
@@ -204,7 +207,8 @@ fn coats_are_through_where_finer_steps_say() -> Result<()> {
     let event = states.iter().find(|state| !state.through.is_empty()).expect("it is through");
     near!(event.distance, due.distance, 0.02);
     let last = states.last().expect("a state");
-    assert_eq!(states.len(), 8);
+    let distances: Vec<f64> = states.iter().map(|state| state.distance / due.distance).collect();
+    assert_eq!(states.len(), 8, "{distances:?}");
     let volume = last.depth[0].sum() * plan.grid().cell_area();
     let force = load().load.unwrap_or(0.0);
     assert!(volume > 1.2 * force * last.distance, "the substrate wears faster: {volume}");
@@ -242,7 +246,7 @@ fn grids_grow_with_the_contact() -> Result<()> {
     Ok(())
 }
 
-/// Root of the mean square of the difference of two pressures over the cells that are in contact with all their neighbours.
+/// Largest difference of two pressures, over the cells that are in contact with all their neighbours, and of their peaks.
 pub(crate) fn apart_within(one: &Array2<f64>, other: &Array2<f64>) -> f64 {
     let (nx, ny) = one.dim();
     let carries = |i: usize, j: usize| one[[i, j]] > 0.0 && other[[i, j]] > 0.0;
@@ -250,8 +254,8 @@ pub(crate) fn apart_within(one: &Array2<f64>, other: &Array2<f64>) -> f64 {
     let within = one
         .indexed_iter()
         .filter(|((i, j), _)| around(*i, nx).all(|i| around(*j, ny).all(|j| carries(i, j))));
-    let squares: Vec<f64> = within.map(|(at, p)| (p - other[at]).powi(2)).collect();
-    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    let peaks = (largest(one) - largest(other)).abs();
+    within.fold(peaks, |most, (at, p)| most.max((p - other[at]).abs()))
 }
 
 /// Thinner layers change the pressure; the estimate is that of the contact with a coat that is thinner by the depth.
@@ -259,9 +263,12 @@ pub(crate) fn apart_within(one: &Array2<f64>, other: &Array2<f64>) -> f64 {
 fn frozen_thickness_has_its_estimate() -> Result<()> {
     let plan = line()?;
     let even = Array2::from_elem([1, 96], 2e-5);
+    // Of the coat, the pressure feels 1e-5: solves must be finer.
+    let options = Options { tolerance: 1e-14, ..Options::default() };
     let wear = Wear {
         initial: Some([even, Array2::zeros([1, 96])]),
         steps: WearSteps::Ends(Vec::new()),
+        options: options.clone(),
         ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
     };
     let mut session =
@@ -272,10 +279,9 @@ fn frozen_thickness_has_its_estimate() -> Result<()> {
     let thin =
         HalfSpace::new(Elastic::new(1.0, 0.3)?, [Layer::new(Elastic::new(3.0, 0.3)?, 8e-5)?])?;
     let thin = Contact::plan(thin, *plan.grid(), Setup::default())?;
-    let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &Options::default())?;
+    let exact = thin.solve(&Cylinder::new(RADIUS)?, &load(), &options)?;
     let due = apart_within(&state.solution.pressure, &exact.pressure);
-    // Both solves to 1e-8, of whose pressure the root counts.
-    near!(error, due / state.solution.peak_pressure(), 0.01);
+    near!(error, due / exact.peak_pressure().min(state.solution.peak_pressure()), 0.01);
     Ok(())
 }
 
@@ -306,6 +312,131 @@ fn given_coefficients_have_the_estimate_of_the_thickness() -> Result<()> {
         }
         near!(errors[1], errors[0], 1e-6, thickness);
     }
+    Ok(())
+}
+
+/// Under even pressure p, a layer of thickness h is through after h/κp more, whatever wears below it, or does not.
+#[test]
+fn layers_are_through_where_even_pressure_says() -> Result<()> {
+    let grid = Grid::new([2, 8], [0.5, 2.0])?.periodic([true; 2])?;
+    let layer = |thickness| Layer::new(Elastic::new(3.0, 0.3)?, thickness);
+    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer(2e-4)?, layer(1e-4)?])?;
+    let plan = Arc::new(Contact::plan(body, grid, Setup::default())?);
+    let flat = HeightMap::new(Array2::zeros([2, 8]), grid.spacing())?;
+    let pressure = 1e-3;
+    // 2e-4/(1 · 1e-3) = 0.2, and 1e-4/(0.5 · 1e-3) = 0.2 after it; the stop layer never.
+    for (rates, due) in [
+        (vec![1.0, 0.5, 0.0], vec![0.2, 0.4]),
+        (vec![1.0, 0.5, 10.0], vec![0.2, 0.4]),
+        (vec![1.0, 0.0, 1.0], vec![0.2]),
+        (vec![0.0, 0.5, 1.0], vec![]),
+    ] {
+        for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
+            let auto = WearSteps::Auto { end: 0.7, tolerance: 1e-3 };
+            for steps in [ends(1, 0.7), ends(5, 0.7), auto] {
+                let rates = [rates.clone(), vec![0.0]];
+                let wear = Wear { steps, scheme, ..Wear::sliding(rates, 0.7) };
+                let motion = Motion::load(pressure);
+                let session =
+                    WearSession::new(Arc::clone(&plan), flat.clone(), motion, wear, false)?;
+                let states = states(session)?;
+                let events: Vec<_> = states.iter().flat_map(|state| &state.through).collect();
+                assert_eq!(events.len(), due.len());
+                for (event, due) in events.iter().zip(&due) {
+                    // A layer counts as through 1e-5 before.
+                    near!(event.distance, *due, 1e-5);
+                    below!((event.distance - due).abs(), event.error);
+                    below!(event.error, 1e-4 * due);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A depth that is given beyond a layer is an event at once, and the end of a history until then; a history that goes on knows it.
+#[test]
+fn layers_below_which_a_history_begins_are_through_at_once() -> Result<()> {
+    let plan = line()?;
+    for (goes_on, count, through) in [(false, 1, 1), (true, 2, 0)] {
+        let initial = Some([Array2::from_elem([1, 96], 1.5e-4), Array2::zeros([1, 96])]);
+        let wear = Wear {
+            initial,
+            goes_on,
+            until_through: true,
+            steps: ends(1, 1e-3),
+            ..Wear::sliding([vec![1.0], vec![0.0]], 1e-3)
+        };
+        let states = run(&plan, wear)?;
+        assert_eq!((states.len(), states[0].through.len()), (count, through));
+        assert!(states[0].through.iter().all(|event| event.distance <= 0.0 && event.layer == 0));
+    }
+    Ok(())
+}
+
+/// At a given approach, wear takes the load away, and steps get longer: the error counts relative to the largest pressure.
+#[test]
+fn histories_at_an_approach_end() -> Result<()> {
+    let grid = Grid::new([16, 16], [4.0, 4.0])?;
+    let plan = Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, grid, Setup::default())?);
+    let motion = Motion::approach(1.0 / RADIUS);
+    for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
+        let wear = Wear { scheme, ..Wear::sliding([vec![1.0], vec![0.0]], 1e12) };
+        let shape = Paraboloid::new(RADIUS, RADIUS)?;
+        let states = states(WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?)?;
+        let last = states.last().expect("a state");
+        near!(last.distance, 1e12, 1e-15);
+        assert!(states.len() < 200, "{}", states.len());
+        below!(last.solution.load(), 1e-6 * states[0].solution.load());
+        // What the ball overlaps is worn off: π δ² R, on cells of a quarter.
+        let volume = last.depth[0].sum() * grid.cell_area();
+        near!(volume, PI / RADIUS, 0.02);
+    }
+    Ok(())
+}
+
+/// A ball that is worn flat carries F/2πRh everywhere, h = √(κsF/πR): no ring of new cells carries more.
+#[test]
+#[ignore = "slow"]
+fn worn_balls_have_even_pressure() -> Result<()> {
+    let grid = Grid::new([40, 40], [14.0, 14.0])?;
+    let plan = Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, grid, Setup::default())?);
+    let force = 4.0 / (3.0 * 0.91 * RADIUS);
+    let distance = 500.0;
+    let shape = Paraboloid::new(RADIUS, RADIUS)?;
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], distance);
+    let states = states(WearSession::new(plan, shape, Motion::load(force), wear, false)?)?;
+    assert!(states.len() < 100, "{}", states.len());
+    for state in states.iter().filter(|state| state.distance > 0.1 * distance) {
+        let even = (force / (4.0 * PI * RADIUS * state.distance)).sqrt();
+        // Elasticity adds 1/κsE*, some 2 %, and a cell of 40 is 5 % of the area.
+        near!(state.solution.peak_pressure(), even, 0.1, state.distance);
+    }
+    Ok(())
+}
+
+/// The work of a state is that of all solves of its step.
+#[test]
+fn states_count_the_convolutions_of_their_step() -> Result<()> {
+    let plan = line()?;
+    let wear = Wear { steps: ends(2, 0.01), ..Wear::sliding([vec![1.0], vec![0.0]], 0.01) };
+    let mut session = WearSession::new(plan, Cylinder::new(RADIUS)?, load(), wear, false)?;
+    session.advance(&mut |_| ControlFlow::Continue(()))?;
+    let mut told: Vec<f64> = Vec::new();
+    let state = session.advance(&mut |report: &nacre::Report| {
+        if report.iterations == 0 {
+            told.push(0.0);
+        }
+        if let Some(last) = told.last_mut() {
+            *last = report.convolutions;
+        }
+        ControlFlow::Continue(())
+    })?;
+    let count = state.expect("a step").solution.report.convolutions;
+    // The step and its halves; after the last iteration of a solve come four convolutions at most.
+    assert_eq!(told.len(), 3);
+    let told: f64 = told.iter().sum();
+    assert!(count >= told && count <= told + 12.0, "{count} {told}");
     Ok(())
 }
 

@@ -89,8 +89,8 @@ fn even_wear_is_a_thinner_coat() -> Result<()> {
             for (solution, estimate) in [(frozen, of_frozen), (first, of_first)] {
                 let due = apart_within(&solution.pressure, &exact.pressure);
                 // Solves to 1e-8, of whose pressure the root counts.
-                let rest =
-                    (estimate.expect("a layer wears") - due / solution.peak_pressure()).abs();
+                let peak = solution.peak_pressure().min(exact.peak_pressure());
+                let rest = (estimate.expect("a layer wears") - due / peak).abs();
                 below!(rest, 3e-4, part);
             }
         }
@@ -184,7 +184,7 @@ fn steps_of_thinner_layers_are_solved_once() -> Result<()> {
         }
         solves.push(count);
     }
-    // Before the second step, nothing tells how the pressure changes.
-    assert_eq!(solves[3..], [1; 18], "{solves:?}");
+    // Before the second step, nothing tells how the pressure changes. Two halves tell the error of each.
+    assert_eq!(solves[3..], [3; 18], "{solves:?}");
     Ok(())
 }

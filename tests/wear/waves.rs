@@ -13,6 +13,7 @@ use nacre::{
 use ndarray::Array2;
 use serde_json::Value;
 
+use crate::support::checks::{apart, largest};
 use crate::support::reference::{list, number, read};
 
 /// Mean pressure of the waves on stacks.
@@ -95,6 +96,44 @@ fn orders_of_the_rules_are_one_and_two() -> Result<()> {
     // The next power is a tenth of it: 1/(8 c11).
     near!((a / c).log2(), 1.0, 0.05);
     near!((b / d).log2(), 2.0, 0.01);
+    Ok(())
+}
+
+/// The stated error of the pressure holds, and is at most 20 times the true one: of a wave that fades by exp(−κs/c11), between a
+/// hundredth of the amplitude and e⁻³ of it.
+#[test]
+fn stated_errors_are_those_of_waves() -> Result<()> {
+    let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
+    let grid = Grid::new([4, 16], [PI, TAU])?.periodic([true; 2])?;
+    let coefficients = influence_coefficients(&body, &grid, Method::Spectral)?.into_shared();
+    let setup = Setup { coefficients: Some(coefficients), ..Setup::default() };
+    let plan = Arc::new(Contact::plan(&body, grid, setup)?);
+    let wave = Array2::from_shape_fn([4, 16], |(_, j)| (TAU * (j as f64 + 0.5) / 16.0).cos());
+    let c11 = 1.82;
+    let shape = HeightMap::new(&wave * (0.2 * c11), grid.spacing())?;
+    let motion = Motion::load(grid.cell_area() * 64.0);
+    for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
+        for end in [0.1, 1.0, 3.0] {
+            for count in [0, 1, 2, 3, 5, 8, 20] {
+                let distance = end * c11;
+                let mut wear = Wear::sliding([vec![1.0], vec![0.0]], distance);
+                (wear.scheme, wear.options.tolerance) = (scheme, 1e-13);
+                if count > 0 {
+                    let part = |k: i32| distance * f64::from(k) / f64::from(count);
+                    wear.steps = WearSteps::Ends((1..=count).map(part).collect());
+                }
+                let session =
+                    WearSession::new(Arc::clone(&plan), shape.clone(), motion, wear, false)?;
+                let states = states(session)?;
+                let last = states.last().expect("a state");
+                let due = &wave * (0.2 * (-end).exp()) + 1.0;
+                let error = apart(&last.solution.pressure, &due) / largest(&due);
+                let stated = last.step_error;
+                assert!(error < stated, "{scheme:?} {end} {count}: {error:e} {stated:e}");
+                assert!(stated < 20.0 * error, "{scheme:?} {end} {count}: {error:e} {stated:e}");
+            }
+        }
+    }
     Ok(())
 }
 

@@ -214,6 +214,7 @@ def edge_factors(count: int) -> Array:
     count = core.integer("count", count)
     if count < 2:
         raise ValueError(f"count must be a number of laminae of at least 2, got {count!r}")
+    core.check_memory("count", count, 48)
     away = np.abs(2 * np.arange(1, count + 1) - count - 1)
     factors = np.ones(count)  # of the lamina in the middle, the limit
     factors[away > 0] -= 0.01 / np.log(1.985 * away[away > 0] / (2 * count - 2))

@@ -30,8 +30,8 @@ TEXTS = {
     "counter_rate": RATE.format("counterbody, or of the rigid shape"),
     "cycles": "Number of fretting cycles; the steps of `[slide]` are one.",
     "passes": "Number of passes of a wheel, which rolls as `[roll]` says.",
-    "store": "File `.nc` in the folder of the case, in which the history is kept after each step. "
-    "Where it exists, the calculation goes on from it.",
+    "store": "File `.nc` in the folder of the case for the history in the end. Each state is added "
+    "to a `.journal` beside it; where there is one, the calculation goes on from it.",
 }
 """Descriptions of keys that are not those of the keywords."""
 

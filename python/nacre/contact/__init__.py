@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copyreg
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, Self, Unpack, overload
 
 import nacre._core as core
@@ -222,7 +221,8 @@ def slide(
         Coefficient of friction, at least 0: one number, or one for each cell ``(nx, ny)``.
     shift : tuple of float or None, optional
         Shift ``(d_x, d_y)`` of the counterbody over the body at the end of the step [m], since
-        the first touch. None: it stays where it is, unless there is a force.
+        the first touch. None: it stays where it is, unless there is a force. In line contact it is
+        counted from the bare substrate's surface, as `Grid.line` says.
     force : tuple of float or None, optional
         Forces ``(∬ q_x dA, ∬ q_y dA)`` of the tractions on the body [N]; the shift along an axis
         with a number is found.
@@ -432,18 +432,21 @@ def wear(
         slips of the second time count.
     passes : float, optional
         Number of passes of a wheel; `roll` says how it rolls. A pass takes ``κ ∫ p |slip|`` along
-        the rolling direction off the whole track, and steps are explicit.
+        the rolling direction off the whole track, together κ/μ times what it dissipates, and steps
+        are explicit.
     roll : mapping, optional
         Keywords of `nacre.roll`: `friction`, `creepage`, `spin`, `direction` and others.
     slip : array_like, optional
         Slip of each cell per metre of sliding ``(nx, ny)``, at least 0; 1 by default.
     steps : int or array_like, optional
         Number of equal steps, or their ends in ascending order, from above 0 to the whole distance.
-        By default as many as keep the error of each within `step_tolerance`.
+        By default as many as keep the error of each within `step_tolerance`. All are made again in
+        halves, or whole, for `WearState.step_error` and the uncertainty of the life.
     step_tolerance : float, optional
-        Largest error of the pressure that a step may add, over the peak.
+        Largest error of the pressure that a step may add, over the largest peak of the history; not
+        beside given `steps`.
     scheme : {"trapezoidal", "euler"}, optional
-        Steps of second order, which ring where they are too long and given; or of first order,
+        Steps of second order, which may ring where they are too long and given; or of first order,
         which never do.
     thickness : {"frozen", "first order"}, optional
         How thick the layers are in the elastic contact: as before wear, or, to first order in the
@@ -451,13 +454,15 @@ def wear(
         as long, 1.3 times in line contact. Slips of `slide` and `roll`, stiffness, gradients and
         stresses of the solutions are those of layers as thick as before.
     initial : WearHistory or array_like, optional
-        History to go on from, by the distance that is given; or depth removed from the body before,
-        ``(nx, ny)`` [m].
+        History of the same shape, bodies, thickness and kind of motion to go on from, by the
+        distance that is given; load, rates, slips and steps may be others. Or depth removed from
+        the body before, ``(nx, ny)`` [m].
     until : "through", optional
         Whether it ends where the first layer is through.
     store : str or os.PathLike, optional
-        File ``.nc`` in which the history is kept after each step. Where it exists, the call goes on
-        from it.
+        File ``.nc`` for the history in the end. Each state is added to a ``.journal`` beside it
+        before the next step; where there is one, the same call goes on from it, with other steps if
+        need be. `nacre.load` reads both.
     tolerance, max_iterations : optional
         How each contact is solved, as `nacre.solve` explains.
     progress : callable, optional
@@ -472,7 +477,9 @@ def wear(
     ------
     ValueError
         If an argument is out of range, a layer is unknown or has no rate, or not exactly one of
-        `sliding`, `cycles` and `passes` is given.
+        `sliding`, `cycles` and `passes` is given; or if the history to go on from is another.
+    BlockingIOError
+        If another process writes the store.
     ConvergenceError
         If a contact did not converge. This and every other exception carries what is finished as
         `history`.
@@ -499,8 +506,8 @@ def wear(
     True
     """
     control = WearControl.of(keywords)
-    setup = Setup.of(keywords, body, counterbody)
-    setup = replace(setup, grid=setup.grid or control.grid).checked(shape, keywords)
+    before = control.initial if isinstance(control.initial, WearHistory) else None
+    setup = Setup.of(keywords, body, counterbody).checked(shape, {**keywords, "initial": before})
     bodies = Wearing(body, counterbody, Rates.of(keywords), grows=keywords.get("grid") is None)
     return wear_history(shape, Motion.of(keywords), bodies, Sliding.of(keywords), control, setup)
 

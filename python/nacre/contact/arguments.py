@@ -63,7 +63,8 @@ class Setup(Group):
     def checked(self, shape: object, keywords: Mapping[str, Any]) -> Self:
         """Return the setup, or raise a `ValueError` that names a grid if a cylinder has none."""
         load, initial = keywords.get("load"), keywords.get("initial")
-        if not isinstance(shape, core.Cylinder) or self.grid or initial is not None:
+        given = self.grid is not None or initial is not None
+        if given or not isinstance(shape, core.Cylinder):
             return self
         compliance = _compliance(self.body) + _compliance(self.counterbody)
         if compliance > 0 and isinstance(load, int | float) and 0 < load < math.inf:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.normal import NormalContact
-from nacre.contact.solution import NOT_COUNTED, Solution
+from nacre.contact.solution import NOT_COUNTED, Solution, datum_words
 from nacre.contact.stresses import DepthOptions, depth_pictures
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
@@ -157,7 +157,10 @@ class FrictionSolution(NormalContact, Result):
     torque: float
     """Torque of the tractions on the body about the origin [N m]."""
     shift: tuple[float, float] | None
-    """Shift of the counterbody over the body since the first touch [m]; `None` in rolling."""
+    """Shift of the counterbody over the body since the first touch [m]; `None` in rolling.
+
+    In line contact it is counted from the bare substrate's surface, as `Grid.line` says.
+    """
     twist: float | None
     """Twist of the counterbody over the body since the first touch [rad]; `None` in rolling."""
     creepage: tuple[float, float] | None
@@ -171,12 +174,13 @@ class FrictionSolution(NormalContact, Result):
 
     In rolling it is that of the distance rolled [N], the power over the speed.
     """
-    tangential_energy: float
+    tangential_energy: float | None
     """What the tractions add to the elastic energy of the bodies [J].
 
     It is ``½ sum (q · u + p v) dA`` with the normal displacement v that the tractions make, which
     is 0 without coupling. The energy of the pressure alone is that of `normal`. With coupling, what
-    the tractions add may be below 0.
+    the tractions add may be below 0. `None` in line contact below stiff layers that move less than
+    the bare substrate's surface from which `shift` is counted.
     """
     report: FrictionReport
     """Course of the solve, and how well the laws hold."""
@@ -198,11 +202,14 @@ class FrictionSolution(NormalContact, Result):
         return Solution._of(self._solved.normal())
 
     @property
-    def elastic_energy(self) -> float:
+    def elastic_energy(self) -> float | None:
         """Elastic energy of both bodies [J], of pressure and tractions together.
 
-        It changes by the work of the forces less the energy `dissipated`.
+        It changes by the work of the forces less the energy `dissipated`. `None` as
+        `tangential_energy`.
         """
+        if self.tangential_energy is None:
+            return None
         return self.normal.elastic_energy + self.tangential_energy
 
     @functools.cached_property
@@ -762,7 +769,8 @@ def _shift(solution: FrictionSolution) -> str | None:
     if (shift := solution.shift) is None:
         return None
     text = display.pair(display.without_rounding(shift), "m")
-    return _with_error(solution, "shift", text, float(np.hypot(*shift)), "m")
+    text = _with_error(solution, "shift", text, float(np.hypot(*shift)), "m")
+    return text + datum_words(solution.normal.report)
 
 
 def _twist(solution: FrictionSolution) -> str | None:

@@ -117,15 +117,17 @@ class Report(Result):
     balance: tuple[float, float, float]
     """Mismatch of the force, relative to W, and of the moments along x and y, to W × half a side.
     """
-    discretisation: dict[str, float | None] | None
+    discretisation: dict[str, Any] | None
     """Errors due to the size of the cells, estimated from coarser grids.
 
-    The keys are ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; a prescribed quantity
-    has the error 0. The peak pressure has none, `None`, where the pressure is singular: at a sharp
-    edge of the shape, or where the grid cuts the contact; a warning says so. `None` altogether
-    where no coarser grid was solved: on small grids, from a given pressure, by another algorithm,
-    where surfaces yield, or without convergence. An error above 1 % of the peak from what lies
-    between the stations of a sampled profile is then a warning.
+    The keys are ``peak_pressure`` [Pa], ``approach`` [m], ``load`` [N], ``contact_area`` [m²],
+    ``contact_extent`` [m], of the ends along x and of those along y, and ``tilt``, of both slopes.
+    A prescribed quantity has the error 0. The peak pressure has none, `None`, where the pressure is
+    singular: at a sharp edge of the shape, or where the grid cuts the contact; a warning says so.
+    An axis along which the contact has no ends has none. `None` altogether where no coarser grid
+    was solved: with fewer than eight cells along a side, from a given pressure, by another
+    algorithm, or without convergence. An error above 1 % of the peak from what lies between the
+    stations of a sampled profile is then a warning. Files of earlier versions lack the last three.
     """
     free_ends: dict[str, bool | float | None] | None
     """How free ends of the bodies are counted; `None` where there are none.
@@ -284,14 +286,17 @@ class Solution(NormalContact, Result):
 
     @property
     def elastic_energy(self) -> float:
-        """Elastic energy of the normal displacement of both bodies [J], ``½ sum p u dA``.
+        """Elastic energy of both bodies and of springs between them [J], ``½ sum p (u + c p) dA``.
 
-        Where the approach has a datum, as in line contact, the displacement and the energy have it,
-        too.
+        u is the normal displacement of the bodies and c the `compliance` of the springs. Where the
+        surfaces do not yield, its derivative by the approach is the load. Where the approach has a
+        datum, as in line contact, the displacement and the energy have it, too: the bare
+        substrate's surface, as `Grid.line` says.
         """
         size, shape = self.grid.size, self.grid.shape
         cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
-        return 0.5 * cell * float(np.vdot(self.pressure, self.displacement))
+        springs = 0.0 if self.compliance is None else self.compliance * self.pressure
+        return 0.5 * cell * float(np.vdot(self.pressure, self.displacement + springs))
 
     @cached_property
     def report(self) -> Report:
@@ -857,7 +862,10 @@ def _tilt(solution: Solution) -> str:
     """Return the slopes; a side that they move by rounding of the displacements is not tilted."""
     least = display.NOISE * float(np.abs(solution.displacement).max())
     sides = zip(solution.tilt, solution.report.grid.size, strict=True)
-    return "({:.4g}, {:.4g})".format(*(s if abs(s) * side > least else 0.0 for s, side in sides))
+    slopes = [s if abs(s) * side > least else 0.0 for s, side in sides]
+    errors = (solution.report.discretisation or {}).get("tilt") or (0.0, 0.0)
+    text = "({:.4g}, {:.4g})".format(*slopes)
+    return text + (" ± ({:.1g}, {:.1g})".format(*errors) if any(errors) else "")
 
 
 def _place(solution: Solution) -> str | None:
@@ -867,8 +875,20 @@ def _place(solution: Solution) -> str | None:
 
 def _extent(solution: Solution) -> str | None:
     widths = [high - low for low, high in solution.contact_extent]
-    sides = [None if math.isnan(width) else written(width, "m") for width in widths]
+    ends = (solution.report.discretisation or {}).get("contact_extent") or (None, None)
+    sides = [
+        None
+        if math.isnan(width)
+        else written(width, "m") + display.error_share(2 * (end or 0.0), width)
+        for width, end in zip(widths, ends, strict=True)
+    ]
     return sides[1] if solution.report.grid.is_line else display.along(sides, " × ", "{}")
+
+
+def _area(solution: Solution) -> str:
+    unit = "m" if solution.report.grid.is_line else "m²"
+    error = (solution.report.discretisation or {}).get("contact_area") or 0.0
+    return written(solution.contact_area, unit) + display.error_share(error, solution.contact_area)
 
 
 def _contact_share(solution: Solution) -> str | None:
@@ -899,12 +919,21 @@ def _indentation(solution: Solution) -> str | None:
 
 def _approach(solution: Solution) -> str:
     """Return the approach with its error, or with the datum that it depends on and no error."""
-    report = solution.report
+    if datum := datum_words(solution.report):
+        return written(solution.approach, "m") + datum
+    return display.estimated(solution, "approach", "m")
+
+
+def datum_words(report: Report) -> str:
+    """Return from where displacements of a line contact are counted, in words; else nothing."""
     repeats = (True, False) if report.grid.is_line else report.grid.periodic
-    if sum(repeats) != 1 or all(map(_is_held, (report.body, report.counterbody))):
-        return display.estimated(solution, "approach", "m")
-    datum = report.grid.size[repeats.index(False)]
-    return f"{written(solution.approach, 'm')}, from the surface {written(datum, 'm')} away"
+    free = [body for body in (report.body, report.counterbody) if not _is_held(body)]
+    if sum(repeats) != 1 or not free:
+        return ""
+    bare = all(isinstance(body, core.HalfSpace) and not body.layers for body in free)
+    surface = "surface" if bare else "surface of the bare substrate"
+    width = report.grid.size[repeats.index(False)]
+    return f", from the {surface} {written(width, 'm')} away"
 
 
 def _is_held(body: Planned | None) -> bool:
@@ -942,6 +971,7 @@ TEXTS: dict[str, Callable[[Solution], str | None]] = {
     "peak_pressure": lambda s: display.estimated(s, "peak_pressure", "Pa"),
     "peak_position": _peak_place,
     "contact_extent": _extent,
+    "contact_area": _area,
     "contact_share": _contact_share,
     "hardness": lambda s: _range(s.hardness, "Pa"),
     "compliance": lambda s: _range(s.compliance, "m/Pa"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import dataclasses
 import json
 import math
@@ -17,11 +18,12 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.disk import check_folder
 from nacre._tools.groups import Group, keyword
 from nacre._tools.notices import warn
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Field, Matrix
-from nacre._tools.units import symbol, travelled, written
+from nacre._tools.units import Scale, rounded, symbol, system, travelled, written
 from nacre.contact.arguments import (
     MOTION,
     STEP,
@@ -37,6 +39,7 @@ from nacre.contact.arguments import (
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
+from nacre.results.journal import Journal, Record
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import WEAR
 from nacre.results.report import Picture, Sections, contact_pictures, table, writer
@@ -57,6 +60,16 @@ MODEL = (
     "wear by Archard's law, with a rate that is known; no third body, no running-in of the rate, "
     "no change of friction, and layers {}: `thickness_error` says what that costs"
 )
+DISTANCES = ("sliding", "cycles", "passes")
+"""Keywords of the distance, one of which is given."""
+STEP_TOLERANCE = 1e-3
+"""Error that a step may add by default."""
+SAME = ("shape", "body", "counterbody", "thickness")
+"""Inputs that stay where a history goes on; so do the kind of distance, and load or approach."""
+MOST_ENDS = 1_000_000
+"""Largest number of equal steps: some days of line contacts on coarse grids."""
+ROUNDING = 1e-12
+"""Part of a distance below which another is none."""
 THICKNESSES: dict[str, str] = {
     "frozen": "as thick as before",
     "first order": "thinner to first order in the depth",
@@ -96,8 +109,7 @@ class Sliding(Group):
 
     def __post_init__(self) -> None:
         """Raise a `ValueError` unless one distance is given, with what belongs to it."""
-        names = ("sliding", "cycles", "passes")
-        if len(known := [name for name in names if getattr(self, name) is not None]) != 1:
+        if len(known := [name for name in DISTANCES if getattr(self, name) is not None]) != 1:
             several = " and ".join(known) or "none"
             raise ValueError(f"one of sliding, cycles and passes must be given, got {several}")
         distance = core.real(known[0], getattr(self, known[0]))
@@ -106,6 +118,8 @@ class Sliding(Group):
         for name, one in (("slide", "cycles"), ("roll", "passes")):
             if (getattr(self, name) is None) != (getattr(self, one) is None):
                 raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
+            if not isinstance(keywords := getattr(self, name), Mapping | None):
+                raise TypeError(f"{name} must be a mapping of keywords, got {keywords!r}")
         if self.slip is not None and self.sliding is None:
             raise ValueError("slip must be given with sliding: slide and roll have their own")
         if self.slip is not None:
@@ -117,10 +131,14 @@ class Sliding(Group):
         return "cycles" if self.cycles is not None else "m" if self.passes is None else "passes"
 
     @property
+    def name(self) -> str:
+        """Keyword of the distance."""
+        return "sliding" if self.unit == "m" else self.unit
+
+    @property
     def distance(self) -> float:
         """The distance."""
-        known = (self.sliding, self.cycles, self.passes)
-        return next(one for one in known if one is not None)
+        return core.real(self.name, getattr(self, self.name))
 
     @property
     def friction(self) -> FrictionOptions | None:
@@ -134,13 +152,16 @@ class Sliding(Group):
         if self.slide is None:
             return None
         rest = self._rest(self.slide, ("steps", "friction"))
-        steps = [{**step} for step in rest.get("steps", ())]
+        given = rest.get("steps", ())
+        if not isinstance(given, Sequence) or not all(isinstance(one, Mapping) for one in given):
+            raise TypeError(f"steps of slide must be a list of mappings, got {given!r}")
+        steps = [{**step} for step in given]
         if not steps or rest.get("friction") is None:
             raise ValueError("slide must have friction, and steps of one cycle")
         if wrong := {key for step in steps for key in step} - {*STEP} | {
             key for step in steps for key in step if key in MOTION
         }:
-            raise ValueError(f"steps of slide must not have {', '.join(sorted(wrong))}")
+            raise ValueError(f"steps of slide must not have {', '.join(sorted(map(str, wrong)))}")
         steps[0].setdefault("friction", rest["friction"])
         return [FrictionStep.of(step) for step in steps]
 
@@ -162,7 +183,7 @@ class Sliding(Group):
         options = ("tolerance", "max_convolutions", "coupling")
         rest = {key: value for key, value in keywords.items() if key not in options}
         if wrong := set(rest) - set(names):
-            raise ValueError(f"slide and roll must not have {', '.join(sorted(wrong))}")
+            raise ValueError(f"slide and roll must not have {', '.join(sorted(map(str, wrong)))}")
         return rest
 
 
@@ -171,7 +192,7 @@ class WearControl(Group):
     """Steps of a history of wear, and where it begins and ends."""
 
     steps: int | npt.ArrayLike | Literal["auto"] = keyword(default="auto")
-    step_tolerance: float = keyword(default=1e-3)
+    step_tolerance: float = keyword(default=STEP_TOLERANCE)
     scheme: Scheme = keyword(default="trapezoidal")
     thickness: Thickness = keyword(default="frozen")
     initial: WearHistory | Matrix | None = keyword("m")
@@ -182,26 +203,33 @@ class WearControl(Group):
     progress: WearProgress | None = keyword()
 
     def __post_init__(self) -> None:
-        """Raise a `ValueError` unless it ends in one of the ways that there are."""
-        if self.until not in (None, "through"):
+        """Raise an error unless it ends in one of the ways that there are, and can be stored."""
+        if not (self.until is None or (isinstance(self.until, str) and self.until == "through")):
             raise ValueError(f'until must be None or "through", got {self.until!r}')
         if not isinstance(self.store, str | os.PathLike | None):
             raise TypeError(f"store must be a path, got {self.store!r}")
+        if self.store is not None and Path(self.store).suffix.lower() != ".nc":
+            raise ValueError(f"store must end in .nc, got {str(self.store)!r}")
+        tolerance = core.real("step_tolerance", self.step_tolerance)
+        if not isinstance(self.steps, str) and tolerance != STEP_TOLERANCE:
+            raise ValueError(
+                "step_tolerance must not be given beside steps, whose lengths it would choose, "
+                f"got {tolerance:g}"
+            )
         check_progress(self.progress)
 
     @property
-    def history(self) -> WearHistory | None:
-        """History to go on from: that of the store, if there is one."""
-        if self.store is not None and Path(self.store).is_file():
-            if not isinstance(stored := files.load(self.store), WearHistory):
-                raise ValueError(f"store must be a history of wear, got a {type(stored).__name__}")
-            return stored
-        return self.initial if isinstance(self.initial, WearHistory) else None
+    def journal(self) -> Path | None:
+        """File beside the store to which each state is added."""
+        return None if self.store is None else Path(self.store).with_suffix(".journal")
 
-    @property
-    def grid(self) -> core.Grid | None:
-        """Grid of the history to go on from."""
-        return history.states[-1].solution.grid if (history := self.history) else None
+    def stored(self) -> WearHistory | None:
+        """Return the history of the store; None where there is none."""
+        if self.store is None or not Path(self.store).is_file():
+            return None
+        if not isinstance(stored := files.load(self.store), WearHistory):
+            raise ValueError(f"store must be a history of wear, got a {type(stored).__name__}")
+        return stored
 
     def depths(self, history: WearHistory | None) -> tuple[Any, Any] | None:
         """Return the depths removed from both bodies before."""
@@ -221,12 +249,16 @@ class WearControl(Group):
                 )
             return None
         ends = core.real_array("steps", self.steps)
+        if ends.ndim > 1 or ends.size == 0:
+            raise ValueError(
+                f'steps must be "auto", a number or their ends, got an array of shape {ends.shape}'
+            )
         if ends.ndim == 0:
             count = core.integer("steps", self.steps)
-            if count < 1:
-                raise ValueError(f"steps must be at least 1, got {count}")
+            if not 1 <= count <= MOST_ENDS:
+                raise ValueError(f"steps must be at least 1 and at most {MOST_ENDS}, got {count}")
             ends = distance * np.arange(1, count + 1) / count
-        if ends.size and not math.isclose(ends[-1], distance, rel_tol=1e-12):
+        if not math.isclose(ends[-1], distance, rel_tol=1e-12):
             raise ValueError(
                 f"steps must end at {distance:g}, the whole distance, got {ends[-1]:g}"
             )
@@ -281,6 +313,7 @@ class WearOptions:
     thickness: str
     until_through: bool
     initial: tuple[Any, Any] | None
+    goes_on: bool
     tolerance: float
     max_iterations: int | None
     grows: bool
@@ -306,6 +339,8 @@ class WearThrough(Result):
     """Number and name of the layer, "layers[0] DLC"."""
     body: Literal["body", "counterbody"]
     """Whose layer it is."""
+    uncertainty: float | None = None
+    """Estimated error of the distance by the steps [m], cycles or passes."""
 
     def __repr__(self) -> str:
         """Return layer, distance and place in a line."""
@@ -314,8 +349,15 @@ class WearThrough(Result):
     def _words(self, unit: Unit | None) -> str:
         """Return layer, distance in the unit of a history, and place."""
         at = ", ".join(written(x, "m") for x in self.position)
-        distance = travelled(self.distance, unit) if unit else f"{self.distance:.4g}"
+        distance = self._travelled(unit) if unit else f"{self.distance:.4g}"
         return f"{self.layer} of the {self.body} after {distance}, at ({at})"
+
+    def _travelled(self, unit: Unit) -> str:
+        """Return the distance and its error in the unit of a history."""
+        distance = travelled(self.distance, unit)
+        if self.uncertainty is None:
+            return distance
+        return f"{distance} ± {travelled(self.uncertainty, unit)}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -331,15 +373,15 @@ class WearReport(Result):
     steps: int
     """Number of steps."""
     step_error: float | None
-    """Sum of the estimated errors of the pressure that the steps add, relative to the peak.
+    """Estimated error of the last pressure by the steps: the largest of a cell, over the peak.
 
-    Errors of earlier steps fade; None where the steps were given.
+    It is found with steps of another length. Where a history goes on, that before is added.
     """
     thickness_error: float | None
     """Estimated error of the last pressure by the thickness of the layers, relative to the peak.
 
-    That of layers as thick as before, or of thinner ones to first order: the root of its mean
-    square within the contact, found with layers that are thinner by the mean of the depths. None
+    That of layers as thick as before, or of thinner ones to first order: the largest within the
+    contact and of the peak, found with layers that are thinner by the mean of the depths. None
     without a layer that wears.
     """
     regrids: int
@@ -379,7 +421,7 @@ class WearState(Result):
     solution: Solution
     """The contact; its gap has the wear in it."""
     step_error: float | None
-    """Estimated error of the pressure that the step has added, relative to the peak."""
+    """Estimated error of the pressure by the steps, the largest of a cell relative to the peak."""
     rings: bool
     """Whether pressures rise and fall from step to step, since the steps are too long."""
 
@@ -510,7 +552,7 @@ class WearHistory(Result):
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
         words = (
-            f"{life.layer} of the {life.body}: through after {travelled(life.distance, self.unit)} "
+            f"{life.layer} of the {life.body}: through after {life._travelled(self.unit)} "
             f"at {', '.join(places)}."
         )
         return Verdict("bad", words, (), None, life.layer, None)
@@ -604,6 +646,25 @@ class WearHistory(Result):
             if not parts["states"]:
                 raise ValueError("states must hold one at least")
             return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **parts)  # type: ignore[arg-type]
+
+    @classmethod
+    def _kept(cls, records: Mapping[str, Record]) -> Self:
+        """Return the history that a journal keeps."""
+        with values.refusing(cls.__name__):
+            states = []
+            for record in records.values():
+                numbers = np.frombuffer(base64.b64decode(record["numbers"]))
+                states += _filled(record["states"], _arrays(numbers))
+            rest = {key: record[key] for key in ("events", "unit", "report", "inputs")}
+        return cls._restored({"states": states, **rest})
+
+    def _keep(self, journal: Journal, first: int = 0) -> None:
+        """Add states to a journal, each with all that is known beside it."""
+        for place in range(first, len(self)) if journal.path else ():
+            one = dataclasses.replace(self, states=(self.states[place],))
+            plain, numbers = _packed(one._state())
+            text = base64.b64encode(numbers.tobytes()).decode()
+            journal.append({"key": str(place), "numbers": text, **plain})
 
     def _state(self) -> dict[str, object]:
         return {
@@ -768,7 +829,7 @@ class WearHistory(Result):
         """Return names and values of the main numbers, with units."""
         line = self.states[0].solution.grid.is_line
         report, last = self.report, self.states[-1]
-        volumes = [written(volume, "m²" if line else "m³") for volume in self.volume[-1]]
+        volumes = _alike(self.volume[-1], "m²" if line else "m³")
         error = report.step_error
         rows = [
             ("distance", travelled(last.distance, self.unit)),
@@ -779,7 +840,8 @@ class WearHistory(Result):
             *[("through", event._words(self.unit)) for event in self.events],
             (
                 "steps",
-                f"{report.steps}" + ("" if error is None else f", error {error:.1g} of the peak"),
+                f"{report.steps}"
+                + ("" if error is None else f", error of a cell {error:.1g} of the peak"),
             ),
         ]
         if report.thickness_error is not None:
@@ -847,7 +909,13 @@ def _filled(value: Any, take: Callable[[Sequence[int]], Field]) -> Any:
 
 
 def _fromto(numbers: Field, unit: str) -> str:
-    return f"{written(float(numbers[0]), unit)} to {written(float(numbers[-1]), unit)}"
+    return " to ".join(_alike(numbers[[0, -1]], unit))
+
+
+def _alike(numbers: Field, unit: str) -> list[str]:
+    """Return numbers in the unit of the largest one."""
+    scale = Scale.of(float(np.abs(numbers).max()), unit)
+    return [f"{rounded(scale.factor * number, 4)} {scale.unit}" for number in numbers]
 
 
 def rates(name: str, rate: Any, body: Body | None) -> list[float]:
@@ -884,36 +952,59 @@ def wear_history(
     on: Setup | core.Plan,
 ) -> WearHistory:
     """Return the history of wear of a shape, after that to go on from."""
-    start = time.perf_counter()
-    before = control.history
-    stored = control.store is not None and before is not None and before is not control.initial
     sliding = dataclasses.replace(sliding, motion=motion)
-    inputs = _inputs(shape, motion, bodies, sliding) | {
-        "scheme": control.scheme,
-        "thickness": control.thickness,
-    }
-    if before and (before.unit, before.inputs["body"]) != (sliding.unit, inputs["body"]):
-        raise ValueError("initial must be a history of the same body, in the same unit of distance")
+    stored = control.stored()
+    if control.journal is not None:
+        check_folder(control.journal)
+    with Journal(control.journal, "history of wear") as journal:
+        kept = WearHistory._kept(journal.records) if journal.records else None
+        journal.records.clear()
+        if kept and len(kept) >= len(stored or ()):
+            stored = kept
+        elif stored:
+            stored._keep(journal)
+        return _gone_on(shape, motion, bodies, sliding, control, on, journal, stored)
+
+
+def _gone_on(
+    shape: core.Shape,
+    motion: Motion,
+    bodies: Wearing,
+    sliding: Sliding,
+    control: WearControl,
+    on: Setup | core.Plan,
+    journal: Journal,
+    stored: WearHistory | None,
+) -> WearHistory:
+    """Return the history of wear after a stored one, or after that to go on from."""
+    start = time.perf_counter()
+    initial = control.initial if isinstance(control.initial, WearHistory) else None
+    if initial and stored and len(stored) < len(initial):  # killed before it began
+        stored = None
+    before = stored or initial
+    inputs = _inputs(shape, motion, bodies, sliding, control)
+    base = 0.0
+    if initial is not None:
+        inputs, base = _joined(initial, inputs, sliding), float(initial.distance[-1])
+    if stored and (other := _other(stored.inputs, inputs)):
+        was, now = (one.get(other, "none") for one in (stored.inputs, inputs))
+        raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
+    if isinstance(on, Setup) and on.grid is None and before:
+        on = dataclasses.replace(on, grid=before.states[-1].solution.grid, max_cells=None)
     own = on.grid if isinstance(on, Setup) else on.grid()
-    if before and not bodies.grows and own != (grid := before.states[-1].solution.grid):
+    if before and own != (grid := before.states[-1].solution.grid):
         name = "store" if stored else "initial"
         raise ValueError(f"{name} must be a history on the same grid, {own!r}, got {grid!r}")
-    if before and not stored and before.inputs["thickness"] != control.thickness:
-        was = before.inputs["thickness"]
-        raise ValueError(
-            f'initial must be a history of the same thickness, "{control.thickness}", got "{was}"'
-        )
-    if stored and before and (other := _other(before.inputs, inputs)):
-        was, now = (one.get(other, "none") for one in (before.inputs, inputs))
-        raise ValueError(f"store must be a history of the same {other}, {now}, got {was}")
+    if initial and not stored:
+        dataclasses.replace(initial, inputs=inputs)._keep(journal)
     states = list(before.states) if before else []
     events = list(before.events) if before else []
     offset = states[-1].distance if states else 0.0
     ends = control.ends(sliding.distance)
-    distance = sliding.distance
-    if stored:
-        distance = max(distance - offset, 0.0)
-        ends = None if ends is None else [end - offset for end in ends if end > offset]
+    distance = base + sliding.distance - offset
+    if ends is not None:
+        ends = [base + end - offset for end in ends if base + end - offset > ROUNDING * offset]
+    distance = distance if distance > ROUNDING * offset else 0.0
     options = WearOptions(
         rate=rates("rate", bodies.rates.rate, bodies.body),
         counter_rate=rates("counter_rate", bodies.rates.counter_rate, bodies.counterbody),
@@ -928,11 +1019,14 @@ def wear_history(
         thickness=control.thickness,
         until_through=control.until is not None,
         initial=control.depths(before),
+        # A store that ends where it was to end does not go on.
+        goes_on=before is not None and not stored,
         tolerance=control.tolerance,
         max_iterations=control.max_iterations,
         grows=bodies.grows,
     )
     regrids, earlier = 0, before.report if before else None
+    wrong, peak_error = (earlier.step_error if earlier else None) or 0.0, 0.0
     settled = earlier is None or NOT_SETTLED not in earlier.warnings
     members = (bodies.body, bodies.counterbody)
     first_notes = _rate_notes(options)
@@ -943,17 +1037,23 @@ def wear_history(
         idle = {reason for reason, note in NOTHING_WORN.items() if note in earlier.warnings}
 
     def history(*, converged: bool, thickness: float | None = None) -> WearHistory:
-        known = [state.step_error for state in states if state.step_error is not None]
         report = WearReport(
             steps=len(states) - 1,
-            step_error=sum(known) if known else None,
+            step_error=states[-1].step_error,
             thickness_error=thickness,
             regrids=regrids + (earlier.regrids if earlier else 0),
             converged=converged,
             warnings=(
                 *first_notes,
                 *(NOTHING_WORN[reason] for reason in sorted(idle)),
-                *_notes(states, events, control.thickness, thickness, settled=settled),
+                *_notes(
+                    states,
+                    events,
+                    control.thickness,
+                    thickness,
+                    peak_error=peak_error if options.steps is not None else 0.0,
+                    settled=settled,
+                ),
             ),
             seconds=time.perf_counter() - start + (earlier.seconds if earlier else 0.0),
         )
@@ -963,7 +1063,8 @@ def wear_history(
     try:
         steps = core.wear(shape, motion, options, on)
         with lasting("wear", control.progress) as tell:
-            for distance, depths, solved, through, error, why_idle, signs, grown in steps:
+            for distance, depths, solved, through, step_errors, why_idle, signs, grown in steps:
+                error, peak_error = step_errors
                 rings, at_event = signs
                 if why_idle is not None:
                     idle.add(why_idle)
@@ -971,12 +1072,11 @@ def wear_history(
                 if before and distance == 0.0:
                     continue
                 state = WearState(
-                    offset + distance, *depths, Solution._of(solved, shape), error, rings
+                    offset + distance, *depths, Solution._of(solved, shape), wrong + error, rings
                 )
                 states.append(state)
-                events += [_event(one, offset, members) for one in through]
-                if control.store is not None:
-                    history(converged=False).save(control.store)
+                events += [_event(one, offset, wrong, members) for one in through]
+                history(converged=False)._keep(journal, len(states) - 1)
                 if control.progress is not None:
                     if control.progress(state) is False:
                         break
@@ -998,25 +1098,37 @@ def wear_history(
 
 
 def _rate_notes(options: WearOptions) -> list[str]:
-    """Return what is wrong with rates that no test has measured."""
-    named = (("rate", options.rate), ("counter_rate", options.counter_rate))
-    return [
-        f"{name} is in m²/N, and {max(rates):.3g} m²/N are {1e9 * max(rates):.3g} mm³/(N m), more "
-        "than dry wear takes off: give a rate in mm³/(N m) times 1e-9"
-        for name, rates in named
-        if max(rates) > MOST_RATE
-    ]
+    """Return what is wrong with rates that no test has measured, in the units that are set."""
+    size, unit = system().unit("m²/N")
+    notes = []
+    for name, rates in (("rate", options.rate), ("counter_rate", options.counter_rate)):
+        for words, low, high in (("more", MOST_RATE, math.inf), ("less", 0.0, LEAST_RATE)):
+            notes += [
+                f"{name} is in {unit}, and {rate:.3g} {unit} are {1e9 * size * rate:.3g} "
+                f"mm³/(N m), {words} than dry wear takes off: 1 mm³/(N m) is {1e-9 / size:.3g} "
+                f"{unit}"
+                for rate in [rate for rate in rates if low < rate * size < high][:1]
+            ]
+    return notes
 
 
-def _event(event: Mapping[str, Any], offset: float, members: tuple[Any, Any]) -> WearThrough:
+def _event(
+    event: Mapping[str, Any], offset: float, wrong: float, members: tuple[Any, Any]
+) -> WearThrough:
+    """Return an event after an offset whose pressure was so wrong."""
     kind: Literal["body", "counterbody"] = "body" if event["member"] == "body" else "counterbody"
     layer = _layers(members[kind == "counterbody"])[event["layer"]]
     x, y = event["position"]
-    return WearThrough(offset + event["distance"], (x, y), event["layer"], layer, kind)
+    distance = offset + event["distance"]
+    error = event["error"] + wrong * distance
+    return WearThrough(distance, (x, y), event["layer"], layer, kind, error)
 
 
-def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) -> dict[str, str]:
+def _inputs(
+    shape: object, motion: Motion, bodies: Wearing, sliding: Sliding, control: WearControl
+) -> dict[str, str]:
     """Return the inputs in words."""
+    initial = None if isinstance(control.initial, WearHistory) else control.initial
     named = {
         "shape": shape,
         "body": bodies.body,
@@ -1027,7 +1139,10 @@ def _inputs(shape: object, motion: Motion, bodies: Wearing, sliding: Sliding) ->
         "slide": sliding.slide,
         "roll": sliding.roll,
         "slip": None if sliding.slip is None else np.asarray(sliding.slip, dtype=np.float64),
-        "sliding" if sliding.unit == "m" else sliding.unit: float(sliding.distance),
+        sliding.name: sliding.distance,
+        "initial": None if initial is None else core.real_array("initial", initial),
+        "scheme": control.scheme,
+        "thickness": control.thickness,
     }
     return {name: _words(value) for name, value in named.items() if value is not None}
 
@@ -1039,6 +1154,24 @@ def _words(value: object) -> str:
         return text
     plain = json.dumps(values.encode(value, digest=True))
     return f"{text}, CRC {zlib.crc32(plain.encode()):08x}"
+
+
+def _joined(before: WearHistory, now: Mapping[str, str], sliding: Sliding) -> dict[str, str]:
+    """Return the inputs of a history and of what follows, which has the same bodies and motion.
+
+    Others may differ, and name both and the distance at which they change.
+    """
+    was, after = before.inputs, float(before.distance[-1])
+    place = f"{after:g} {symbol('m') if before.unit == 'm' else before.unit}"
+    joined = {}
+    for name in dict.fromkeys((*was, *now)):
+        first, then = was.get(name, "none"), now.get(name, "none")
+        kind = name in (sliding.name, "load", "approach")
+        if first != then and (name in SAME or (kind and "none" in (first, then))):
+            raise ValueError(f"initial must be a history of the same {name}, {then}, got {first}")
+        alike = first == then or name == "initial" or first.endswith(f", then {then}")
+        joined[name] = first if alike else f"{first} up to {place}, then {then}"
+    return joined | {sliding.name: str(after + sliding.distance)}
 
 
 def _other(before: Mapping[str, str], now: Mapping[str, str]) -> str | None:
@@ -1053,15 +1186,22 @@ def _notes(
     model: Thickness,
     error: float | None,
     *,
+    peak_error: float,
     settled: bool,
 ) -> tuple[str, ...]:
     """Return what the user should know."""
     notes = [text for text in states[-1].solution.report.warnings]
-    # Steps that are chosen have an error that counts it.
-    if any(state.rings and state.step_error is None for state in states):
+    if peak_error > LARGEST_STEP_ERROR:
+        cure = ', or scheme="euler"' if any(state.rings for state in states) else ""
         notes.append(
-            "pressures of cells rise and fall from step to step: take shorter steps, or "
-            'scheme="euler"'
+            f"the last peak pressure errs by some {100 * peak_error:.0f} % by the length of the "
+            f"steps: take shorter steps{cure}"
+        )
+    first, last = states[0].solution.load, states[-1].solution.load
+    if last < NOTHING_PRESSES * first:
+        notes.append(
+            "nothing presses any more at this approach, and no more is worn: the load has fallen "
+            f"to {last / first:.1g} of the first"
         )
     if not settled:
         notes.append(NOT_SETTLED)
@@ -1135,6 +1275,12 @@ MOST_RATE = 1e-9
 Archard's K = κH is at most some 0.1, that of abrasion (NPTEL, course 112104122, lecture 7.5), and
 the hardness of soft metals some 0.3 GPa: κ is at most 3e-10 m²/N.
 """
+LEAST_RATE = 1e-18
+"""Rate [m²/N] below which there is a warning: 1e-9 mm³/(N m), that of the least worn diamond."""
+LARGEST_STEP_ERROR = 0.1
+"""Error of the peak by the length of given steps from which on there is a warning."""
+NOTHING_PRESSES = 1e-3
+"""Part of the first load, at a given approach, that is as good as none: a step's usual error."""
 MOST_THINNING = 0.05
 """Error of the pressure by the thickness of layers from which on there is a warning."""
 FIRST_ORDER = 0.4

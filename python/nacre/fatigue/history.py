@@ -181,7 +181,10 @@ class Rolling:
         return levels
 
     def stress(self, depths: Sequence[float], side: Side, friction: bool) -> tuple[States, Array]:
-        """Return the history along y at some depths, and the uncertainty of the stress at each.
+        """Return the history along y at some depths, and errors of its extremes.
+
+        These are ``(depths, 2)``, without friction and what a coefficient of 1 adds: an upper bound
+        up to it, as errors are the largest of sums in proportion to it.
 
         The pressure within cells counts on the grid of the contact; further away it is uniform
         over cells, which are ever wider.
@@ -203,12 +206,16 @@ class Rolling:
             stresses[1] - stresses[0] if len(stresses) == 2 else np.zeros((len(depths), y.size, 6))
         )
         states = States(y[order], stresses[0], added)
-        errors = own[0].uncertainty
-        none = np.zeros(len(depths))
-        uncertain = none if errors is None else np.nan_to_num(errors)
+        fields = StressFields(side, self.x, None, displacement=False)
+        errors = np.zeros((len(depths), 2))
+        for k, slide in enumerate(slides):
+            options = StressOptions("body", slide, self.direction, None, None, None)
+            errors[:, k] = self.plan._plan.extreme_errors(depths, fields, options)
+        if len(slides) == 2:
+            errors[:, 1] -= errors[:, 0]
         if list(depths) == [0.0]:
             states = self._with_edges(states, slides)
-        return self._unloaded(states), uncertain
+        return self._unloaded(states), errors
 
     def _own(
         self,
@@ -254,6 +261,8 @@ class Rolling:
         if not len(points):
             return states
         ends = points[[points[:, 1].argmin(), points[:, 1].argmax()]]
+        if np.diff(ends[:, 1])[0] < self.grid.spacing[1]:
+            ends = ends[:1]  # the other end has no point
         # Beside the edge tractions are means over cells, and the other stresses those of points.
         apart = np.abs(states.y[:, None] - ends[:, 1]).min(axis=1)
         inside = apart >= self.grid.spacing[1]

@@ -49,6 +49,8 @@ ROUNDS = 3
 """How many times the depths of maxima are refined by parabolas."""
 CLOSEST = 1e-3
 """Distance of depths in half-widths below which a refined one is no other: maxima are flat."""
+SINGLE = ("shakedown", "first_yield")
+"""Values with the error of one stress; others, ranges or sums of two, have it twice."""
 JUMP = 0.01
 """Part by which another maximum of the shear amplitude may be less for Matake's plane to jump."""
 DUST = 1e-9
@@ -110,7 +112,8 @@ class LayerFatigue(Result):
     uncertainty: dict[str, float] = field(default_factory=dict)
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
-    Each is that of the stresses at the depth of the value. Empty in files of earlier versions.
+    They are what the largest sum of a value and its error over all depths exceeds the largest value
+    by, as for summaries of stresses. Empty in files of earlier versions.
     """
 
     _LATER = ("uncertainty",)
@@ -535,7 +538,8 @@ class Row(NamedTuple):
     residual: tuple[float, float]
     gap: float
     """Part by which the next maximum of the shear amplitude is less, for Matake."""
-    uncertainty: float
+    uncertainty: dict[str, float]
+    """Errors of the values."""
     shear_range: float
     tension: float
 
@@ -590,12 +594,14 @@ class Assessment:
         for chosen, side in parts:
             if not chosen:
                 continue
-            history, uncertain = self.rolling.stress(chosen, side, any(frictions))
+            history, errors = self.rolling.stress(chosen, side, any(frictions))
             for k, friction in enumerate(frictions):
                 if at := np.flatnonzero(np.isin(chosen, depths[k])).tolist():
                     own = [chosen[n] for n in at]
                     states = history.only(at)
-                    rows[k] += self._rows_of(region, own, states, uncertain[at], friction)
+                    rows[k] += self._rows_of(
+                        region, own, states, errors[at] @ [1.0, friction], friction
+                    )
         return rows
 
     def _rows_of(
@@ -603,7 +609,7 @@ class Assessment:
         region: Region,
         depths: list[float],
         history: States,
-        uncertain: Array,
+        errors: Array,
         friction: float,
     ) -> list[Row]:
         states = history.at(friction).copy()
@@ -632,7 +638,9 @@ class Assessment:
                     at={name: float(place[k]) for name, (_, place) in stresses.items()},
                     residual=(float(shaken[k, 1]), float(shaken[k, 2])),
                     gap=float(gaps[k]),
-                    uncertainty=float(uncertain[k]),
+                    uncertainty={
+                        name: (1 if name in SINGLE else 2) * float(errors[k]) for name in stresses
+                    },
                     shear_range=_range(states[k, :, 4:])
                     if z in (region.top, region.bottom)
                     else 0.0,
@@ -925,7 +933,9 @@ def _summarise(
 
 def unresolved(place: str, best: Mapping[str, Row]) -> list[str]:
     """Return a warning of the extremes in a layer that the cells do not resolve."""
-    names = [name for name, row in best.items() if row.uncertainty > UNRESOLVED * row.values[name]]
+    names = [
+        name for name, row in best.items() if row.uncertainty[name] > UNRESOLVED * row.values[name]
+    ]
     are = "is" if len(names) == 1 else "are"
     text = f"{', '.join(names)} {are} uncertain due to the size of the cells: take smaller cells"
     return [f"in {place}, {text}"] if names else []
@@ -964,7 +974,10 @@ def _layer(
         peaks["orthogonal_shear"],
         {name: peaks[name] for name in criteria},
         factors,
-        {name: row.uncertainty for name, row in best.items()},
+        {
+            name: max(row.values[name] + row.uncertainty[name] for row in rows) - peak
+            for name, (peak, _) in peaks.items()
+        },
     )
     place = display.part(layer)
     warning_texts = unresolved(place, best)

@@ -175,6 +175,7 @@ def information(
     test = Indentation(coated(ratio, 1.0, poisson), core.Tip.paraboloid(1e3))
     rows = []
     points = core.integer("points", points)
+    core.check_memory("points", points, 1000)
     for largest in np.atleast_1d(core.real_array("reach", reach)).tolist():
         depth = float(test.at(radius=largest).approach)
         curve = test.curve(approach=np.linspace(0.05, 1.0, points) * depth, wrt=list(values))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -23,8 +24,10 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Solution
 
 
-LETTERS = 28
+LETTERS = 22
 """Letters of a line of the table of numbers; longer ones are wrapped."""
+TOGETHER = re.compile(r"(?<=\d) (?=[A-Za-zµ%])|(?<=[=ν±]) ")
+"""Spaces within a number with its sign and its unit, at which no line ends."""
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
@@ -181,9 +184,9 @@ def _numbers(solution: Solution, axes: Axes) -> None:
     """Write the main numbers into axes of their own."""
     axes.set_axis_off()
     rows = [
-        (name if number == 0 else "", part)
+        (name if number == 0 else "", part.replace("\u00a0", " "))
         for name, value in solution._rows()
-        for number, part in enumerate(textwrap.wrap(value, LETTERS))
+        for number, part in enumerate(textwrap.wrap(TOGETHER.sub("\u00a0", value), LETTERS))
     ]
     step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import HalfSpace, integer
+from nacre._core import HalfSpace, check_memory, integer
 from nacre._tools.extras import extra
 from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
@@ -104,7 +104,7 @@ def stress_section(
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
     half_space, bottom = _reach(solution, depth, body)
-    edges = _edges(half_space, bottom, integer("rows", rows))
+    edges = _edges(half_space, bottom, "rows", rows)
     x, y = (None, at) if along == "x" else (at, None)
     middles = 0.5 * (edges[1:] + edges[:-1])
     field = solution.stress(middles, body=body, x=x, y=y, threads=threads, **options)
@@ -229,7 +229,7 @@ def stress_depth(
     for quantity in quantities:
         _check(quantity)
     half_space, bottom = _reach(solution, depth, body)
-    edges = _edges(half_space, bottom, integer("points", points))
+    edges = _edges(half_space, bottom, "points", points)
     plan = solution.stress_plan(body, threads)
     above = plan.stress(edges, x=at[0], y=at[1], side="above", **options)
     # The sides differ at interfaces alone; the curve ends above its bottom.
@@ -332,10 +332,12 @@ def _reach(solution: Solution, depth: float | None, member: Member) -> tuple[Hal
     return body, min(depth, body.interfaces[-1]) if no_base else depth
 
 
-def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
-    """Return every interface, and about `rows` depths between them."""
+def _edges(body: HalfSpace, bottom: float, name: str, count: object) -> Array:
+    """Return every interface, and about so many depths between them as the argument `name` says."""
+    rows = integer(name, count)
     if rows < 1:
         raise ValueError(f"the number of depths must be at least 1, got {rows}")
+    check_memory(name, rows, 1000)
     faces = [0.0, *(z for z in body.interfaces if z < bottom), bottom]
     if enlarged := enlarged_depth(body.interfaces, bottom):
         faces.insert(-1, enlarged)

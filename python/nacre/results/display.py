@@ -324,10 +324,13 @@ def estimated(solution: Estimated, name: str, unit: str, digits: int = 4) -> str
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
         return f"{number(value, unit, digits)} (error not known: see the warning)"
+    return number(value, unit, digits) + error_share(error, value)
+
+
+def error_share(error: float, value: float) -> str:
+    """Return what is said of an error of a value: nothing where it is rounding."""
     share = abs(error / value) if value else 0.0
-    return number(value, unit, digits) + (
-        f" ± {rounded(100 * share, 1)} %" if share > NOISE else ""
-    )
+    return f" ± {rounded(100 * share, 1)} %" if share > NOISE else ""
 
 
 def body(name: str, body: Planned | None) -> list[tuple[str, str]]:

@@ -15,6 +15,7 @@ from nacre._tools.extras import extra
 from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol, system
 from nacre.results.display import figure_of
+from nacre.results.journal import Journal
 from nacre.results.quantities import CONTACT, REMOVED, WITH_FRICTION, Quantity
 from nacre.results.tables import SOURCE, Gridded, numbers, write_cells, write_rows
 from nacre.results.values import check_format, refusing, result_class
@@ -160,7 +161,8 @@ def load(path: AnyPath) -> Any:
     Parameters
     ----------
     path : str or os.PathLike
-        File to read.
+        File to read; also the ``.journal`` beside the store of a history of wear, which has all
+        states up to a kill.
 
     Returns
     -------
@@ -192,6 +194,8 @@ def load(path: AnyPath) -> Any:
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     try:
+        if path.suffix.lower() == ".journal":
+            return result_class("WearHistory")._kept(Journal.stored(path, "history of wear"))
         return _restored(*read(path, ARRAYS))
     except ValueError as error:
         raise ValueError(f"{str(path)!r} must be a result that nacre saved: {error}") from error

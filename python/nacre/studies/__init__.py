@@ -24,9 +24,9 @@ from nacre._tools.threads import thread_pool
 from nacre.contact import roll, slide, solve, wear
 from nacre.contact.solution import Solution
 from nacre.fatigue import assess
+from nacre.results.journal import Journal, Record
 from nacre.studies.dataset import assemble, failure_lines, layout
 from nacre.studies.identity import identity_of, key_of
-from nacre.studies.journal import Journal, Record
 from nacre.studies.outputs import (
     FATIGUES,
     MARGINS,

@@ -13,13 +13,14 @@ from nacre._tools.groups import keyword_units
 from nacre._tools.units import SI, Within, symbol, system
 from nacre.contact.wear_solution import KEYWORDS
 from nacre.results import quantities
+from nacre.results.journal import Record
 from nacre.results.parameters import parameter_unit, quantity_of
 from nacre.results.quantities import ERROR
-from nacre.studies.journal import Record
 from nacre.studies.outputs import (
     AXES,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
+    ESTIMATED_OF_WEAR,
     OF_CONTACTS,
     RING_AXES,
     Output,
@@ -127,14 +128,17 @@ def assemble(
             dataset[name].attrs["units"] = own
     names = {*outputs, *map(str, dataset.coords)}
     estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
-    if kinds["indents"] or kinds["wears"]:
+    if kinds["indents"]:
         estimated = ()
+    elif kinds["wears"]:
+        estimated = ESTIMATED_OF_WEAR
     elif not kinds["bears"]:
         estimated = OF_CONTACTS
     for name, quantity in errors(outputs, names, estimated).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
-        words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
+        cause = "length of the steps" if kinds["wears"] else "size of the cells"
+        words = f"error of {name.removesuffix(ERROR)} due to the {cause}, estimated"
         dataset[name].attrs = {"long_name": words}
         if quantity in units:
             dataset[name].attrs["units"] = symbol(units[quantity])

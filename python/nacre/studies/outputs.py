@@ -104,10 +104,12 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
 }
 """Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
 
-ESTIMATED = ("peak_pressure", "approach", "load")
+ESTIMATED = ("peak_pressure", "approach", "load", "contact_area")
 """Outputs whose errors due to the size of the cells are estimated."""
 ESTIMATED_OF_RINGS = ("peak_pressure", "edge_pressure")
 """The same of a bearing."""
+ESTIMATED_OF_WEAR = ("life",)
+"""Outputs of wear whose errors due to the length of the steps are estimated."""
 OF_SLIDING = ("force", "torque", "shift", "twist", "creepage", "dissipated", "stick_share")
 """The same of sliding and of steady rolling; those of pairs are of their lengths."""
 OF_CONTACTS = (*ESTIMATED, *OF_SLIDING, *STRESSES, *FATIGUES)
@@ -185,6 +187,11 @@ def plain(
             raise ValueError(f"the output {output} is not one of {words}")
         value = number(solution, output) if isinstance(output, str) else output(solution)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
+    if kind == "wear":
+        history: Any = solution
+        for name in errors(outputs, outputs, ESTIMATED_OF_WEAR):
+            error = history.life and history.life.uncertainty
+            numbers[name] = np.nan if error is None else float(error)
     if kind == "bearing":
         report: Any = solution.report
         estimates = report.discretisation or {}

@@ -32,7 +32,7 @@ impl Compliance {
     }
 
     /// α times the compliance of what the lowest layer lies on; 0 of a rigid base, infinite where that is free.
-    pub(super) fn of_substrate(substrate: Substrate) -> Self {
+    pub(crate) fn of_substrate(substrate: Substrate) -> Self {
         let base = |c: f64| Self { c11: c, c12: 0.0, c22: c, ct: c };
         match substrate {
             Substrate::Elastic(material) => Self::homogeneous(material),

@@ -7,7 +7,8 @@ use ndarray::{Array2, Axis, Slice};
 
 use super::{TractionCoefficients, of_pair};
 use crate::compliance::convolution::MARGIN;
-use crate::compliance::response::{Body, alpha_compliance};
+use crate::compliance::datum::Datum;
+use crate::compliance::response::{Body, Compliance, alpha_compliance};
 use crate::error::Result;
 use crate::model::grid::Grid;
 use crate::numerics::fft::{PaddedTransform, ParitySpectrum, Term, TransformMemory};
@@ -19,7 +20,10 @@ use crate::numerics::recent::Recent;
 pub(crate) struct Tangential {
     grid: Grid,
     bodies: Vec<Body>,
+    /// Coefficients, with the data.
     coefficients: TractionCoefficients,
+    /// The data of line contact for tractions along x and along y.
+    data: [Datum; 2],
     threads: Arc<Threads>,
     /// Windows that were used last.
     windows: Recent<[usize; 2], TangentialWindow>,
@@ -32,15 +36,38 @@ impl Tangential {
         grid: &Grid,
         threads: &Arc<Threads>,
     ) -> Result<Self> {
-        let coefficients = of_pair(body, counterbody, grid, threads)?;
+        let mut coefficients = of_pair(body, counterbody, grid, threads)?;
         let bodies: Vec<Body> = std::iter::once(body).chain(counterbody).cloned().collect();
+        let long = bodies.iter().filter_map(|body| body.half_space());
+        let long = long.map(|body| Compliance::of_substrate(body.substrate()));
+        let [x, y] = long.fold([0.0; 2], |[x, y], long| [x + long.ct, y + long.c22]);
+        let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
+        let datum = |compliance: f64, along: &mut Array2<f64>| -> Result<Datum> {
+            let datum = Datum::of_compliance(compliance, homogeneous, grid, (along, &[]), threads)?;
+            *along = datum.moved(std::mem::take(along), grid);
+            Ok(datum)
+        };
         Ok(Self {
             grid: *grid,
             bodies,
+            data: [datum(x, &mut coefficients.xx)?, datum(y, &mut coefficients.yy)?],
             coefficients,
             threads: Arc::clone(threads),
             windows: Recent::default(),
         })
+    }
+
+    /// By how much the data of line contact raise displacements and shifts under these forces.
+    pub(crate) fn raised(&self, forces: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| self.data[axis].raise() * forces[axis])
+    }
+
+    /// An error where the `motion` along an axis, a shift or a creepage, cannot be prescribed.
+    ///
+    /// # Errors
+    /// [`Error::TangentialDatum`] where the operator is not positive definite with the datum of the grid.
+    pub(crate) fn check_prescribed(&self, motion: &'static str, axis: usize) -> Result<()> {
+        self.data[axis].check_motion(motion)
     }
 
     /// Whether tractions move the surfaces apart, and pressure moves them along each other.

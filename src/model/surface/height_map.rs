@@ -118,22 +118,11 @@ value! {
 /// whose centre lies on the rim of the map.
 const ROUNDING: f64 = 1e-9;
 
-/// Indices along an axis of the samples below and above `coordinate`, and the weight of the latter; `None` outside the map.
+/// [`Grid::around`]; `None` outside the map, which ends half a cell beyond the outermost samples unless it repeats.
 fn locate(grid: &Grid, axis: usize, coordinate: f64) -> Option<([usize; 2], f64)> {
-    let (n, spacing) = (grid.shape()[axis], grid.spacing()[axis]);
-    let position = (coordinate - grid.center()[axis]) / spacing + 0.5 * (n - 1) as f64;
-    if grid.is_periodic()[axis] {
-        let below = position.floor();
-        let index = below.rem_euclid(n as f64) as usize % n;
-        return Some(([index, (index + 1) % n], position - below));
-    }
-    // The map ends half a cell beyond the outermost samples.
-    if !(-0.5 - ROUNDING..=n as f64 - 0.5 + ROUNDING).contains(&position) {
-        return None;
-    }
-    let position = position.clamp(0.0, (n - 1) as f64);
-    let below = (position as usize).min(n - 2);
-    Some(([below, below + 1], position - below as f64))
+    let map = -0.5 - ROUNDING..=grid.shape()[axis] as f64 - 0.5 + ROUNDING;
+    let holds = grid.is_periodic()[axis] || map.contains(&grid.position(axis, coordinate));
+    holds.then(|| grid.around(axis, coordinate))
 }
 
 impl Surface for HeightMap {

@@ -28,18 +28,23 @@ const BESIDE: u64 = 40 << 20;
 ///
 /// What the system says is not all: how much it grants is tried, by a reservation that is given back at once.
 pub(crate) fn check_memory(shape: [usize; 2], needed: u64) -> Result<()> {
+    match too_little(needed) {
+        Some([needed, available]) => Err(Error::Memory { shape, needed, available }),
+        None => Ok(()),
+    }
+}
+
+/// `needed` bytes and some for what is not counted, and the bytes that are available where these are less.
+pub(crate) fn too_little(needed: u64) -> Option<[u64; 2]> {
     if needed < TRIED {
-        return Ok(());
+        return None;
     }
     let is_large = needed >= ASKED;
     let needed = needed.saturating_add(BESIDE);
     let left = is_large.then(|| left(Path::new("/"))).flatten();
     let available = left.filter(|left| *left < needed);
     let granted = || (!is_granted(needed)).then(|| largest_granted(needed));
-    match available.or_else(granted) {
-        Some(available) => Err(Error::Memory { shape, needed, available }),
-        None => Ok(()),
-    }
+    available.or_else(granted).map(|available| [needed, available])
 }
 
 /// Whether an allocation of so many bytes succeeds. Nothing is written to them, so that they cost nothing.

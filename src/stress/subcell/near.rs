@@ -5,16 +5,18 @@
 //! power of the distance. At shallow depths they are summed over some cells around each, from the
 //! stresses of pieces of a cell ([`super::reconstruction`]).
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
+use super::edge::around;
 use super::reconstruction::{
-    CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, mean_root,
+    CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, SHIFT_LIMIT, mean_root,
 };
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
-use crate::numerics::rounding::cells_within;
+use crate::numerics::rounding::{self, cells_within};
 use crate::stress::options::StressProgress;
 
 /// Number of stress components; pressure within cells adds no displacements.
@@ -435,8 +437,27 @@ impl NearPlan {
 
     /// Points of the edge, at most one in a cell.
     pub(super) fn edge(&self) -> Vec<CellPoint> {
-        let point = |root: &RootCell| Some(CellPoint { cell: root.cell, within: root.edge()? });
-        self.reconstruction.roots.iter().filter_map(point).collect()
+        let roots = &self.reconstruction.roots;
+        let own = roots.iter().filter_map(|root| Some((root.cell, root.edge(0.5)?)));
+        let mut points: BTreeMap<[usize; 2], [f64; 2]> = own.collect();
+        // Fits of two neighbours may each have the edge in the other's cell: by as much as a fit is uncertain.
+        for root in roots {
+            if around(self.shape, root.cell, 1).any(|cell| points.contains_key(&cell)) {
+                continue;
+            }
+            if let Some(at) = root.edge(0.5 + SHIFT_LIMIT)
+                && let by = at.map(|u| rounding::round(u) as isize)
+                && let Some(cell) = self.cell_at(root.cell, by)
+            {
+                points.insert(cell, [0, 1].map(|axis| at[axis] - by[axis] as f64));
+            }
+        }
+        points.into_iter().map(|(cell, within)| CellPoint { cell, within }).collect()
+    }
+
+    /// Cells near an edge that is reconstructed.
+    pub(super) fn edge_cells(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.reconstruction.roots.iter().map(|root| root.cell)
     }
 
     /// Unit vector along the edge at one of its points; none in line contact.

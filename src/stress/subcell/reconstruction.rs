@@ -12,11 +12,14 @@
 //!
 //! The stresses of the rectangles are summed ([`super::near`]): the nearer the target, the finer the cut.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::edge::{BAND, EdgeCell, RectangleSums, SquaredPressure, edge_cells, edge_distances};
+use super::edge::{
+    BAND, EdgeCell, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
+};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -69,7 +72,7 @@ const BALANCE_REACH: usize = 12;
 
 /// Largest shift of the edge in one step, in cells; a cell whose edge would have to shift more keeps its
 /// uniform pressure. Twice the largest uncertainty of a fit ([`super::edge`]).
-const SHIFT_LIMIT: f64 = 0.1;
+pub(super) const SHIFT_LIMIT: f64 = 0.1;
 
 /// Step of p² for [`RootCell::rate`], over the change of p² across a cell: the edge shifts by about a
 /// hundredth of a cell.
@@ -110,8 +113,12 @@ impl Reconstruction {
             roots = threads.run(|| raised.filter_map(root).collect());
             uniform = uniform_part(pressure, &interior, &roots, shape);
         }
-        // Cells beyond the edge hold nothing.
-        roots.retain(|root| root.mean > 0.0);
+        // Cells beyond the edge hold nothing; one that the edge just enters may hold no sampled point. It is kept where no
+        // cell beside it has the edge.
+        let with_edge = |root: &&RootCell| root.mean > 0.0 && root.edge(0.5).is_some();
+        let edges: BTreeSet<_> = roots.iter().filter(with_edge).map(|root| root.cell).collect();
+        let is_alone = |cell| !around(shape, cell, 1).any(|beside| edges.contains(&beside));
+        roots.retain(|root| root.mean > 0.0 || root.edge(0.5).is_some() && is_alone(root.cell));
         ControlFlow::Continue(Self { uniform, interior, roots })
     }
 }
@@ -204,9 +211,9 @@ impl RootCell {
         Self { cell, squared, mean, moments, rate: (higher - mean) / step }
     }
 
-    /// The point of the edge that is nearest to the cell's centre, if it is in the cell: distances from the centre, in
-    /// cells.
-    pub(super) fn edge(&self) -> Option<[f64; 2]> {
+    /// The point of the edge that is nearest to the cell's centre, if it is within `reach` of it along both axes: distances
+    /// from the centre, in cells.
+    pub(super) fn edge(&self, reach: f64) -> Option<[f64; 2]> {
         let mut at = [0.0; 2];
         for _ in 0..EDGE_STEPS {
             let [slope_u, slope_v] = self.squared.gradient(at);
@@ -214,7 +221,7 @@ impl RootCell {
             let step = self.squared.at(at[0], at[1]) / square;
             at = [at[0] - step * slope_u, at[1] - step * slope_v];
         }
-        at.iter().all(|u| u.abs() <= 0.5).then_some(at)
+        at.iter().all(|u| u.abs() <= reach).then_some(at)
     }
 
     /// The cell with p² raised; none where that shifts the edge too far.

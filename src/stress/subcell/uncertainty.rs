@@ -13,8 +13,9 @@
 //! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
 //! taken as uniform. Where an edge is reconstructed it is a thirtieth, and as much more as the bodies
 //! respond otherwise to a wave than to waves of a cell, from which the edge was found; a hundredth in the
-//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, or where the
-//! pressure is, it is a half: the surface beside a cell that the edge crosses sees the whole error. A step on cells of side d
+//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half, and three
+//! quarters where they may grow as a root within a cell: at an edge that is not located, and at the border of a zone that sticks.
+//! Steps of known tractions are their own. A step on cells of side d
 //! holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
 //! reaches a depth z with the transfer of the layered body, (1 + αz) e^{−αz} and the like:
 //!
@@ -29,8 +30,8 @@
 //! out falls off as the inverse cube of the distance from the edge, which is added.
 //!
 //! The edge is known to a part of a cell, and with it the width of the contact. Extremes at depths of up to a half-width have
-//! the error c/n² + c' of the largest pressure in a contact n cells wide; farther below, it falls as the square of the depth, at
-//! least as fast as the stress.
+//! the error c/n² + c' of the largest pressure in a contact n cells wide, and more in layers whose stress under waves as long as
+//! the contact exceeds the pressure; farther below, it falls as the square of the depth, at least as fast as the stress.
 
 use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place};
@@ -50,6 +51,11 @@ const UNIFORM_SHARE: f64 = 0.25;
 /// Share of a step that is not known where an edge is reconstructed.
 const EDGE_SHARE: f64 = 0.03;
 
+/// The same at points whose stress is summed over ever smaller pieces, as those of an edge, where the pressure is 0 and the place
+/// of the edge moves the whole curve. Of c √d under friction, the smallest piece misses 0.022 μ of the step and pieces that grow
+/// by a half make 0.009 μ too much ([`super::reconstruction`]), for 0.04 μ of this.
+const POINT_SHARE: f64 = 0.02;
+
 /// Share of a step that is not known in the interior. Below Hertz' contact of 128 cells to the half-width,
 /// stresses there err by 3.3e-4 of the peak pressure (`tests/stress/edge.rs`), and a step is a 34th of it.
 const INTERIOR_SHARE: f64 = 0.01;
@@ -60,6 +66,13 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 /// Share of a step of the tractions that is not known where they are uniform over cells. Under a sliding ball of 21 to 85
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
 const TRACTION_SHARE: f64 = 0.5;
+
+/// Share of a step of tractions that is not known where they grow as the root of the distance from a place within a cell: at an
+/// edge that is not located, and at the border of a zone that sticks, of what they differ by there from a fixed part of the
+/// pressure. With exact means of c √d over cells and the place anywhere in one, the largest tension at centres is too small
+/// by up to 2 · 0.63 steps behind an edge (less a quarter of the pressure's), and von Mises' stress at a border by up to 2 · 0.62:
+/// σ_yy falls to one side and σ_yz to the other. Computed here; with the pressure of 35 contacts of 5 to 22 cells, by up to 2 · 0.74.
+const CUSP_SHARE: f64 = 0.75;
 
 /// Stress that is left out at a distance of one cell from an edge, as a part of the step there, if it fell off as the inverse
 /// cube of the distance: that of the four cells at an edge p = √d under a strip of pressure, less their means and shares,
@@ -75,7 +88,11 @@ const WIDTH_ERROR: f64 = 0.3;
 /// Error of extremes over the largest pressure on cells however small, from the search for their depth and from loads that are
 /// followed over some cells only. Of a line contact refined to a thousand cells across, they are within 2.4e-5 of those on
 /// 1 088 cells.
-const LEAST_ERROR: f64 = 5e-5;
+const LEAST_ERROR: f64 = 3e-5;
+
+/// Wavenumbers, over the inverse of the half-width, at which stresses that exceed the pressure, as in hard layers that bend, tell
+/// how much more their error of the width is.
+const OF_WIDTH: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Wavenumber of the longest waves of a step, times the side of a cell.
 const LONGEST: f64 = 1.5;
@@ -87,7 +104,7 @@ const HIGHEST_RATIO: f64 = 100.0;
 const COUNT: u32 = 27;
 
 /// Distance in cells to which a step is felt near the surface.
-const STEP_REACH: usize = 6;
+pub(super) const STEP_REACH: usize = 6;
 
 /// What is not known of the pressure of a solved contact, at the wavenumbers that matter.
 #[derive(Debug)]
@@ -100,7 +117,11 @@ pub(super) struct Uncertainty {
     /// Error of the stress down to the depth of half the width of the contact, due to that width.
     of_width: f64,
     half_width: f64,
+    /// The body at wavenumbers of the width.
+    columns: Vec<Column>,
     known: Vec<Known>,
+    /// Known tractions along x and along y.
+    tractions: Option<[Vec<f64>; 2]>,
     /// Waves along x and along y.
     waves: [Vec<Wave>; 2],
 }
@@ -110,27 +131,36 @@ pub(super) struct Uncertainty {
 struct Wave {
     /// Its pressure over the step, by how well the pressure is known.
     shares: [f64; 3],
-    /// The same of tractions that are uniform over cells.
-    uniform: f64,
+    /// The same near an edge, at points whose stress is summed over ever smaller pieces.
+    at_point: f64,
+    /// The same of tractions that are uniform over cells, and where they may grow as a root.
+    tractions: [f64; 2],
     /// The body at its wavenumber.
     column: Column,
 }
 
-/// Largest steps of the pressure from cell to cell along one axis \[Pa\], by how well the pressure is known
-/// in the worse of the two cells.
-type AxisSteps = [f64; 3];
+/// Largest steps from cell to cell along one axis \[Pa\]: of the pressure by how well it is known in the worse of the two cells,
+/// of known tractions likewise, and of what they differ by from a fixed part of the pressure, where that is known.
+type AxisSteps = [f64; STEPS];
+
+/// Number of kinds of [`AxisSteps`].
+const STEPS: usize = 7;
+
+/// Number of the first step of known tractions.
+const OF_TRACTION: usize = 3;
+
+/// Number of the step of what tractions differ by from a fixed part of the pressure.
+const OF_RATIO: usize = 6;
 
 /// Largest steps along x and along y in a part of the grid.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
 
 /// Errors of the stress at one depth per unit of the steps around a place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::stress) struct StepErrors {
-    /// Under pressure and the friction in proportion to it.
-    pressure: [AxisSteps; 2],
-    /// Under tractions that are uniform over cells.
-    traction: [AxisSteps; 2],
+    /// Under pressure and the friction in proportion to it, and under tractions that are uniform over cells.
+    factors: [AxisSteps; 2],
     /// Error that does not depend on the steps.
     everywhere: f64,
 }
@@ -139,10 +169,13 @@ impl StepErrors {
     /// Errors \[Pa\] from waves along x and along y, where the pressure has these steps.
     pub(in crate::stress) fn by_axis(&self, LocalSteps(steps): &LocalSteps) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let largest = |factors: &AxisSteps| {
-                factors.iter().zip(&steps[axis]).map(|(f, step)| f * step).fold(0.0, f64::max)
-            };
-            largest(&self.pressure[axis]) + largest(&self.traction[axis]) + self.everywhere
+            let errors = self.factors[axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
+            let mut largest = [0.0; 2];
+            for (k, error) in errors.enumerate() {
+                let largest = &mut largest[usize::from(k >= OF_TRACTION)];
+                *largest = error.max(*largest);
+            }
+            largest[0] + largest[1] + self.everywhere
         })
     }
 
@@ -154,12 +187,9 @@ impl StepErrors {
 
     /// The larger of two errors.
     pub(in crate::stress) fn larger(self, other: Self) -> Self {
-        let larger = |a: [AxisSteps; 2], b: [AxisSteps; 2]| {
-            [0, 1].map(|axis| [0, 1, 2].map(|known| f64::max(a[axis][known], b[axis][known])))
-        };
+        let larger = |axis: usize, k: usize| self.factors[axis][k].max(other.factors[axis][k]);
         Self {
-            pressure: larger(self.pressure, other.pressure),
-            traction: larger(self.traction, other.traction),
+            factors: [0, 1].map(|axis| std::array::from_fn(|k| larger(axis, k))),
             everywhere: self.everywhere.max(other.everywhere),
         }
     }
@@ -171,16 +201,18 @@ impl StepErrors {
     }
 
     /// The errors of values in cells of the layer at the surface, whose larger values at an edge that is known are found at
-    /// points of the edge.
+    /// points of the edge. What is not in proportion to the pressure there stays uniform over cells.
     pub(in crate::stress) fn beside_points(mut self) -> Self {
-        self.traction.iter_mut().for_each(|factors| factors[Known::Edge as usize] = 0.0);
+        for factors in &mut self.factors {
+            factors[OF_TRACTION + Known::Edge as usize] = 0.0;
+        }
         self
     }
 
     /// The errors of values in cells at depths of less than a cell, where larger ones may lie between centres at an edge that is
-    /// known. Farther below, stresses are smooth enough for parabolas.
+    /// known, but has no points. Farther below, stresses are smooth enough for parabolas.
     pub(in crate::stress) fn without_points(mut self) -> Self {
-        for factors in &mut self.pressure {
+        for factors in &mut self.factors {
             factors[Known::Edge as usize] = factors[Known::Mean as usize];
         }
         self
@@ -191,7 +223,7 @@ impl Uncertainty {
     pub(super) fn new(
         (body, pair): (&HalfSpace, &BodyPair),
         grid: &Grid,
-        pressure: &[f64],
+        (pressure, tractions): (&[f64], Option<[Vec<f64>; 2]>),
         reconstruction: &Reconstruction,
     ) -> Self {
         let shape = grid.shape();
@@ -210,10 +242,12 @@ impl Uncertainty {
                 let ratio = HIGHEST_RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
                 let alpha = ratio * LONGEST / spacing;
                 let change = (pair.response(alpha) / of_cell - 1.0).abs();
-                let share = (SHARE_OF_CHANGE * change).clamp(EDGE_SHARE, UNIFORM_SHARE);
+                let [share, at_point] = [EDGE_SHARE, POINT_SHARE]
+                    .map(|least| (SHARE_OF_CHANGE * change).clamp(least, UNIFORM_SHARE));
                 Wave {
                     shares: [INTERIOR_SHARE, share, UNIFORM_SHARE].map(|share| share / ratio),
-                    uniform: TRACTION_SHARE / ratio,
+                    at_point: at_point / ratio,
+                    tractions: [TRACTION_SHARE, CUSP_SHARE].map(|share| share / ratio),
                     column: Column::new(body, alpha),
                 }
             };
@@ -223,13 +257,18 @@ impl Uncertainty {
         let spacing = grid.spacing();
         let across = cells_across(pressure, shape);
         let shorter = if grid.is_line() { spacing[1] } else { spacing[0].min(spacing[1]) };
+        let half_width = 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]);
+        let column = |alpha: f64| Column::new(body, alpha / half_width);
+        let is_wide = half_width > 0.0 && half_width.is_finite();
         Self {
             shape,
             spacing,
             followed: DEPTH_LIMIT * shorter,
             of_width: peak * (WIDTH_ERROR / across[0].min(across[1]).powi(2) + LEAST_ERROR),
-            half_width: 0.5 * f64::min(across[0] * spacing[0], across[1] * spacing[1]),
+            half_width,
+            columns: OF_WIDTH.into_iter().filter(|_| is_wide).map(column).collect(),
             known,
+            tractions,
             waves: spacing.map(waves),
         }
     }
@@ -239,10 +278,15 @@ impl Uncertainty {
         around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
     }
 
-    /// Error of the stress at a depth \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, depth: f64) -> f64 {
-        let beyond = (self.half_width / depth.max(self.half_width)).powi(2);
-        if self.of_width > 0.0 { self.of_width * beyond } else { 0.0 }
+    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
+        let beyond = (self.half_width / place.depth.max(self.half_width)).powi(2);
+        let of_column = |column: &Column| {
+            let (along, across) = column.at(body, place).pressure.lateral_stress(place.material);
+            along.abs().max(across.abs())
+        };
+        let response = self.columns.iter().map(of_column).fold(1.0, f64::max);
+        if self.of_width > 0.0 { self.of_width * beyond * response } else { 0.0 }
     }
 
     /// How well the pressure is known in the worse of two cells.
@@ -250,15 +294,31 @@ impl Uncertainty {
         self.known[a].max(self.known[b]) as usize
     }
 
-    /// Largest steps of `pressure` that are felt in the cells of `window`.
+    /// Steps of `pressure`, and of known tractions, from one cell to another.
+    fn steps_between(&self, pressure: &[f64], a: usize, b: usize) -> AxisSteps {
+        let (known, mut steps) = (self.worse(a, b), AxisSteps::default());
+        let [p, next] = [a, b].map(|cell| pressure[cell]);
+        steps[known] = (p - next).abs();
+        if let Some(tractions) = &self.tractions {
+            let length = |of: &dyn Fn(&[f64]) -> f64| of(&tractions[0]).hypot(of(&tractions[1]));
+            steps[OF_TRACTION + known] = length(&|q| q[a] - q[b]);
+            let larger = p.max(next);
+            if known != Known::Mean as usize && larger > 0.0 {
+                steps[OF_RATIO] = length(&|q| (q[a] * next - q[b] * p) / larger);
+            }
+        }
+        steps
+    }
+
+    /// Largest steps of `pressure`, and of known tractions, that are felt in the cells of `window`.
     pub(super) fn steps(&self, pressure: &[f64], window: &Window) -> LocalSteps {
         let [nx, ny] = self.shape;
         let rows = window[0].start.saturating_sub(STEP_REACH)..(window[0].end + STEP_REACH).min(nx);
         let columns =
             window[1].start.saturating_sub(STEP_REACH)..(window[1].end + STEP_REACH).min(ny);
-        let count = |steps: &mut AxisSteps, a: usize, b: usize| {
-            let largest = &mut steps[self.worse(a, b)];
-            *largest = largest.max((pressure[a] - pressure[b]).abs());
+        let count = |largest: &mut AxisSteps, a: usize, b: usize| {
+            let steps = self.steps_between(pressure, a, b);
+            largest.iter_mut().zip(steps).for_each(|(largest, step)| *largest = largest.max(step));
         };
         let [mut along, mut across] = [AxisSteps::default(); 2];
         for i in rows.clone() {
@@ -280,12 +340,12 @@ impl Uncertainty {
         let [nx, ny] = self.shape;
         let mut steps = vec![LocalSteps::default(); pressure.len()];
         for (axis, (next, count)) in [(ny, nx), (1, ny)].into_iter().enumerate() {
-            for known in [Known::Well, Known::Edge, Known::Mean] {
+            let kinds = if self.tractions.is_some() { STEPS } else { OF_TRACTION };
+            for kind in 0..kinds {
                 // The step from each cell to the next along the axis.
-                let step = |cell: usize| {
-                    let has_next = [cell / ny, cell % ny][axis] + 1 < count;
-                    let counts = has_next && self.worse(cell, cell + next) == known as usize;
-                    if counts { (pressure[cell] - pressure[cell + next]).abs() } else { 0.0 }
+                let step = |cell: usize| match [cell / ny, cell % ny][axis] + 1 < count {
+                    true => self.steps_between(pressure, cell, cell + next)[kind],
+                    false => 0.0,
                 };
                 let mut largest: Vec<f64> = (0..pressure.len()).map(step).collect();
                 for along in 0..2 {
@@ -293,22 +353,23 @@ impl Uncertainty {
                     largest = largest_around(&largest, self.shape, along, [STEP_REACH, ahead]);
                 }
                 for (steps, largest) in steps.iter_mut().zip(largest) {
-                    steps.0[axis][known as usize] = largest;
+                    steps.0[axis][kind] = largest;
                 }
             }
         }
         steps
     }
 
-    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it, and whether the
-    /// tractions of the friction are uniform over cells.
+    /// Estimated errors of the components of the stress at `place`, under pressure and `friction` times it; `within` cells at a
+    /// point, where known tractions are in proportion to the pressure, and elsewhere uniform over cells.
     pub(super) fn at(
         &self,
         body: &HalfSpace,
         place: &Place,
-        (friction, uniform): ([f64; 2], bool),
+        (friction, within): ([f64; 2], bool),
     ) -> StepErrors {
         let friction = friction[0].hypot(friction[1]);
+        let uniform = self.tractions.is_some() && !within;
         let material = place.material;
         let mut errors = StepErrors::default();
         for axis in 0..2 {
@@ -319,33 +380,34 @@ impl Uncertainty {
                     [state.p, state.tau, along, across].map(f64::abs)
                 });
                 let (q, u) = fields.twist;
-                let twisted = friction * q.abs().max((material.shear() * u).abs());
+                let twisted = q.abs().max((material.shear() * u).abs());
                 // The largest error with these shares of the pressure and of the tractions.
                 let largest = |of_pressure: f64, of_tractions: f64| {
                     let pairs = pressed.iter().zip(&sheared);
                     let sums = pairs.map(|(p, s)| of_pressure * p + of_tractions * friction * s);
-                    sums.fold(of_tractions * twisted, f64::max)
+                    sums.fold(of_tractions * friction * twisted, f64::max)
                 };
-                for (known, (error, share)) in
-                    errors.pressure[axis].iter_mut().zip(wave.shares).enumerate()
-                {
+                let factors = &mut errors.factors[axis];
+                let [well, edge, mean] = wave.shares;
+                let shares = [well, if within { wave.at_point } else { edge }, mean];
+                for (known, (error, share)) in factors.iter_mut().zip(shares).enumerate() {
                     let of_tractions = match known == Known::Mean as usize {
                         _ if uniform => 0.0,
-                        true => wave.uniform,
+                        true => wave.tractions[1],
                         false => share,
                     };
                     *error = error.max(largest(share, of_tractions));
                 }
-                if uniform {
-                    let sheared = sheared.iter().fold(0.0, |a: f64, s| a.max(friction * s));
-                    let of_traction = wave.uniform * sheared.max(twisted);
-                    let traction = &mut errors.traction[axis];
-                    traction.iter_mut().for_each(|error| *error = error.max(of_traction));
+                let sheared = sheared.into_iter().fold(twisted, f64::max);
+                let first = if uniform { OF_TRACTION } else { OF_RATIO };
+                for (k, error) in factors.iter_mut().enumerate().skip(first) {
+                    let is_cusp = k == OF_RATIO || k == OF_TRACTION + Known::Mean as usize;
+                    *error = error.max(wave.tractions[usize::from(is_cusp)] * sheared);
                 }
             }
             let distance = place.depth.max(self.followed) / self.spacing[axis];
             let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
-            let edge = &mut errors.pressure[axis][Known::Edge as usize];
+            let edge = &mut errors.factors[axis][Known::Edge as usize];
             *edge = edge.max(left_out);
         }
         errors
@@ -455,14 +517,18 @@ mod tests {
                 followed: DEPTH_LIMIT,
                 of_width: 0.0,
                 half_width: 1.0,
+                columns: Vec::new(),
                 known: cells.clone().map(|k| known[k * k % 7 % 3]).collect(),
+                tractions: Some(
+                    [3, 5].map(|n| cells.clone().map(|k| (k * n % 13) as f64).collect()),
+                ),
                 waves: [Vec::new(), Vec::new()],
             };
             let pressure: Vec<f64> = cells.clone().map(|k| (k * k % 101) as f64).collect();
             let steps = uncertainty.steps_by_cell(&pressure);
-            for (k, LocalSteps(steps)) in cells.zip(&steps) {
+            for (k, steps) in cells.zip(&steps) {
                 let window = [k / ny, k % ny].map(|at| at..at + 1);
-                let LocalSteps(expected) = uncertainty.steps(&pressure, &window);
+                let expected = uncertainty.steps(&pressure, &window);
                 // The same differences, of which the largest is chosen.
                 assert_eq!(Some(*steps), Some(expected), "{k}");
             }

@@ -242,7 +242,8 @@ def test_a_study_has_the_outputs_of_friction(tmp_path: Path) -> None:
 def test_a_study_of_rolling() -> None:
     case = CASE | {"direction": "-x", "creepage": (1e-3, None)}
     outputs = ["force", "creepage", "dissipated", "von_mises"]
-    study = nacre.sweep(case, {"spin": [0.0, 10.0]}, outputs=outputs, progress=False)
+    with pytest.warns(nacre.NacreWarning, match="unresolved stress"):  # of 32 cells
+        study = nacre.sweep(case, {"spin": [0.0, 10.0]}, outputs=outputs, progress=False)
     expected = called(nacre.roll, direction="-x", creepage=(1e-3, None), spin=10.0)
     one = study.sel(spin=10.0)
     for name in ("force", "creepage", "dissipated"):

@@ -40,13 +40,19 @@ pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 def test_lives_are_those_of_the_histories_and_nan_without_a_wear_through() -> None:
     study = nacre.sweep(CASE, {"rate.DLC": [1e-17, 2e-17], "sliding": [100.0, 250.0]})
     assert {*study.data_vars} == {
-        *("life", "worn_volume", "deepest", "peak_pressure", "contact_area", "error", "warnings")
+        *("life", "worn_volume", "deepest", "peak_pressure", "contact_area", "error", "warnings"),
+        "life_discretisation",
     }
     assert (study.error == "").all()
     assert np.isnan(study.life.values).tolist() == [[True, False], [True, False]]
     history = nacre.wear(**CASE)
     assert history.life is not None
     assert study.life[0, 1] == history.life.distance
+    assert study.life_discretisation[0, 1] == history.life.uncertainty
+    assert study.life_discretisation.attrs == {
+        "long_name": "error of life due to the length of the steps, estimated",
+        "units": "m",
+    }
     assert study.peak_pressure[0, 1] == history.peak_pressure[-1]
     assert study.worn_volume[0, 1] == history.worn_volume
     assert study.deepest[0, 1] == history.deepest[-1].max()

@@ -1,4 +1,4 @@
-"""Finished cases of a study, one line each, on the disk before the next one begins.
+"""Cases of a study or states of a history of wear, one line each, on the disk before the next.
 
 The first line names the version that began the file and its format. Each other line is a checksum
 and a record as JSON.
@@ -32,8 +32,9 @@ class Journal:
     writes at a time; a second one is refused.
     """
 
-    def __init__(self, path: Path | None) -> None:
+    def __init__(self, path: Path | None, kind: str = "study") -> None:
         self.path = path
+        self.kind = kind
         self.records: dict[str, Record] = {}
         self._file: IO[bytes] | None = None
 
@@ -41,11 +42,16 @@ class Journal:
         """Open the file, and read what it holds."""
         if self.path is not None:
             if self.path.exists() and not self.path.is_file():
-                raise ValueError(f"{str(self.path)!r} is no journal of a study: it is not a file")
+                raise ValueError(f"{self._no_journal}: it is not a file")
             self._file = self.path.open("a+b", buffering=0)
             try:
-                _lock(self._file)
-                self._read(self._file)
+                _lock(self._file, self.kind)
+                self._file.seek(0)
+                with open(self._file.fileno(), "rb", closefd=False) as lines:
+                    end = self._read(lines)
+                self._file.truncate(end)
+                if end == 0:
+                    _append(self._file, HEAD)
             except BaseException:
                 self._file.close()
                 raise
@@ -61,35 +67,46 @@ class Journal:
         if self._file is not None:
             self._file.close()
 
+    @property
+    def _no_journal(self) -> str:
+        return f"{str(self.path)!r} is no journal of a {self.kind}"
+
     def add(self, record: Record) -> None:
         """Keep a record by its ``key``; it replaces an earlier one with the same key."""
+        self.append(record)
+        self.records[record["key"]] = record
+
+    def append(self, record: Record) -> None:
+        """Write a record to the file, if there is one, and do not keep it in memory."""
         if self._file is not None:
             text = json.dumps(record).encode()
             _append(self._file, _checksum(text) + b" " + text + b"\n")
-        self.records[record["key"]] = record
 
-    def _read(self, file: IO[bytes]) -> None:
-        """Read all records, drop what a kill cut short, and begin a new file."""
-        file.seek(0)
+    @classmethod
+    def stored(cls, path: Path, kind: str) -> dict[str, Record]:
+        """Return the records of a file, which another process may be writing."""
+        journal = cls(path, kind)
+        with path.open("rb") as lines:
+            journal._read(lines)
+        return journal.records
+
+    def _read(self, lines: IO[bytes]) -> int:
+        """Read all records, and return where the last one ends that no kill cut short."""
         end = 0
-        with open(file.fileno(), "rb", closefd=False) as lines:
-            for number, line in enumerate(lines, start=1):
-                cut = not line.endswith(b"\n")
-                if cut and (number > 1 or HEAD.startswith(line)):
-                    break
-                try:
-                    if number == 1:
-                        _check_head(line)
-                    else:
-                        record = _record(line.removesuffix(b"\n"))
-                        self.records[record["key"]] = record
-                except ValueError as error:
-                    message = f"{str(self.path)!r} is no journal of a study: line {number}"
-                    raise ValueError(f"{message}: {error}") from error
-                end += len(line)
-        file.truncate(end)
-        if end == 0:
-            _append(file, HEAD)
+        for number, line in enumerate(lines, start=1):
+            cut = not line.endswith(b"\n")
+            if cut and (number > 1 or HEAD.startswith(line)):
+                break
+            try:
+                if number == 1:
+                    _check_head(line)
+                else:
+                    record = _record(line.removesuffix(b"\n"))
+                    self.records[record["key"]] = record
+            except ValueError as error:
+                raise ValueError(f"{self._no_journal}: line {number}: {error}") from error
+            end += len(line)
+        return end
 
 
 def _check_head(line: bytes) -> None:
@@ -124,7 +141,7 @@ def _append(file: IO[bytes], line: bytes) -> None:
         raise
 
 
-def _lock(file: IO[bytes]) -> None:
+def _lock(file: IO[bytes], kind: str) -> None:
     """Lock the file for this process until it is closed; children do not inherit the lock."""
     try:
         if sys.platform == "win32":
@@ -137,4 +154,4 @@ def _lock(file: IO[bytes]) -> None:
 
             fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
-        raise BlockingIOError(f"{file.name!r}: another process is running this study") from error
+        raise BlockingIOError(f"{file.name!r}: another process is running this {kind}") from error
