@@ -305,7 +305,16 @@ def test_pictures_have_labels_with_units() -> None:
         plot.distribution(rough.pressure_distribution(SOLUTION)).get_ylabel() == "density [1/mPa]"
     )
     count = rough.patches(SOLUTION).size
-    title = plot.patches(SOLUTION).get_title(loc="left")
+    axes = plot.patches(SOLUTION)
+    cells: Any = axes.collections[0].get_array()
+    labels = cells.reshape(64, 64).T  # white, patches, and the largest one
+    np.testing.assert_array_equal(labels > 0, SOLUTION.in_contact)
+    assert (labels == 2).mean() == rough.patches(SOLUTION).max()
+    shown: Any = plot.heights(SURFACE).images[0]
+    heights = SURFACE.heights - SURFACE.heights.mean()
+    assert_close(shown.get_array(), 1e3 * heights.T)
+    assert shown.origin == "lower"
+    title = axes.get_title(loc="left")
     assert title.startswith(f"{count} patches; the gap is open along")
     assert plot.spectrum(rough.spectrum(SOLUTION)).get_xlabel() == "wavenumber [rad/m]"
 
