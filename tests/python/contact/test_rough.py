@@ -292,6 +292,17 @@ def test_case_files_have_random_surfaces(tmp_path: Path) -> None:
         Case({**data, "shape": {**data["shape"], "seed": -1}})
 
 
+@pytest.mark.quick
+def test_maps_have_x_to_the_right_and_y_upwards() -> None:
+    cells: Any = plot.patches(SOLUTION).collections[0].get_array()
+    labels = cells.reshape(64, 64).T  # white, patches, and the largest one
+    np.testing.assert_array_equal(labels > 0, SOLUTION.in_contact)
+    assert (labels == 2).mean() == rough.patches(SOLUTION).max()  # areas of a square of 1
+    image: Any = plot.heights(SURFACE).images[0]
+    assert_close(image.get_array(), 1e3 * (SURFACE.heights - SURFACE.heights.mean()).T)  # mm
+    assert image.origin == "lower"
+
+
 def test_pictures_have_labels_with_units() -> None:
     curve = rough.load_curve(SURFACE, BODY, [1e-3, 3e-3])
     axes = plot.load_curve(curve)
@@ -305,16 +316,7 @@ def test_pictures_have_labels_with_units() -> None:
         plot.distribution(rough.pressure_distribution(SOLUTION)).get_ylabel() == "density [1/mPa]"
     )
     count = rough.patches(SOLUTION).size
-    axes = plot.patches(SOLUTION)
-    cells: Any = axes.collections[0].get_array()
-    labels = cells.reshape(64, 64).T  # white, patches, and the largest one
-    np.testing.assert_array_equal(labels > 0, SOLUTION.in_contact)
-    assert (labels == 2).mean() == rough.patches(SOLUTION).max()
-    shown: Any = plot.heights(SURFACE).images[0]
-    heights = SURFACE.heights - SURFACE.heights.mean()
-    assert_close(shown.get_array(), 1e3 * heights.T)
-    assert shown.origin == "lower"
-    title = axes.get_title(loc="left")
+    title = plot.patches(SOLUTION).get_title(loc="left")
     assert title.startswith(f"{count} patches; the gap is open along")
     assert plot.spectrum(rough.spectrum(SOLUTION)).get_xlabel() == "wavenumber [rad/m]"
 
