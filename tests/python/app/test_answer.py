@@ -27,6 +27,7 @@ from support import Capture, command, fuzz, written
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 
 CARDS = list(cards())
+DRAFT: dict[str, Any] = {"model": "iso16281", "cells": None}
 QUICK = [name for name in CARDS if name not in ("bearing", "roller")]
 """Cards whose full answers take less than a second or so."""
 
@@ -378,11 +379,47 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
     texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
     assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)
     assert largest[0] > 1.2 * largest[1]  # the coat is stiffer
-    # The picture has both, the coated one first, whose pressure is higher.
-    heights = [
-        min(float(pair.split(",")[1]) for pair in points.split())
-        for points in re.findall(r"<polyline[^>]* points='([^']*)'", parts["picture-1"])
+    peaks = [solution.peak_pressure for solution in solutions]
+    assert highest(parts["picture-1"], ["coated", "bare"], 1e-6 * peaks[0]) == pytest.approx(
+        [1e-6 * peak for peak in peaks], rel=3e-3
+    )
+
+
+def highest(picture: str, names: list[str], top: float) -> list[float]:
+    """Return the largest numbers of the curves of these names, of which the largest is known."""
+    assert re.findall(r"<text class='start'[^>]*>([^<]*)</text>", picture) == names
+    curves = re.findall(r"<polyline[^>]* points='([^']*)'", picture)
+    floor = float(re.findall(r"<rect class='frame paper' [^>]*y='([\d.]+)'", picture)[0])
+    height = float(re.findall(r"<rect class='frame paper' [^>]*height='([\d.]+)'", picture)[0])
+    pixels = [min(float(pair.split(",")[1]) for pair in points.split()) for points in curves]
+    above = [floor + height - pixel for pixel in pixels]  # pixels count downwards
+    return [top * one / max(above) for one in above]
+
+
+def test_the_new_contact_stands_beside_the_worn_one() -> None:
+    case = Case(tomllib.loads(templates.texts()["wear"]), "wear")
+    parts = answer(case, "draft")["parts"]
+    first, last = map(
+        float, re.findall(r"<th>peak pressure</th><td>([\d.]+).*? to ([\d.]+)", parts["rows"])[0]
+    )
+    assert first > 1.05 * last
+    assert highest(parts["picture-1"], ["worn", "new"], first) == pytest.approx(
+        [last, first], rel=3e-3
+    )
+
+
+def test_aligned_rings_stand_beside_those_that_are_tilted() -> None:
+    case = cards()["bearing"].case({"bearing.solve.tilt.y": "10"})
+    picture = answer(case, "draft")["parts"]["picture-1"]
+    tilted, aligned = (
+        case.arguments()["bearing"].solve(
+            **{k: v for k, v in (case.arguments() | own).items() if k != "bearing"}
+        )
+        for own in (DRAFT, DRAFT | {"tilt": (0.0, 0.0)})
+    )
+    peaks = [
+        solution.lamina_pressures[solution.loads[:, 0].argmax(), 0].max()
+        for solution in (tilted, aligned)
     ]
-    assert solutions[0].peak_pressure > 1.02 * solutions[1].peak_pressure
-    assert heights[0] < heights[1]  # pixels count downwards
-    assert parts["picture-1"].index(">coated<") < parts["picture-1"].index(">bare<")
+    assert peaks[0] > 1.1 * peaks[1]
+    assert highest(picture, ["as it stands", "aligned"], peaks[0]) == pytest.approx(peaks, rel=3e-3)
