@@ -203,7 +203,8 @@ def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
 @pytest.mark.slow
 def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> None:
     outputs = 'outputs = ["peak_pressure", "tilt"]'
-    path = written(tmp_path, STRESSED.replace(outputs, 'outputs = ["interface_shear"]'))
+    text = STRESSED.replace(outputs, 'outputs = ["interface_shear"]').replace("[105e9, ", "[")
+    path = written(tmp_path, text.replace("count = 3", "count = 2"))
     assert command("sweep", path) == 0
     study = xarray.load_dataset(tmp_path / "b.nc", engine="h5netcdf")
     one = study.sel({"materials.dlc.young": 420e9, "solve.load": 1000.0}, method="nearest")

@@ -244,7 +244,7 @@ def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
 
 
 @pytest.mark.slow
-def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
+def test_store_of_a_case_stays_in_its_folder(tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "cases"
     folder.mkdir()
     case = folder / "case.toml"
@@ -257,8 +257,8 @@ def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
     for name in names:
         text = SPHERE.replace("[sweep]", f'[sweep]\nstore = "{name}"')
         case.write_text(text)
-        code, _, err = run("sweep", case)
-        assert code == 2, name
+        assert command("sweep", case) == 2, name
+        err = capsys.readouterr().err
         assert "sweep.store: " in err
         assert err.count("\n") == 1
         assert sorted(tmp_path.iterdir()) == [folder]
@@ -268,7 +268,7 @@ def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["approach"]) for row in rows] == frame["approach"].tolist()
-    assert run("sweep", case, "--save", tmp_path / "x.nc")[0] == 2
+    assert command("sweep", case, "--save", tmp_path / "x.nc") == 2
     table.unlink()
     case.write_text(SPHERE.replace("[sweep]", '[sweep]\nstore = "below/x.nc"'))
     (folder / "below").mkdir()

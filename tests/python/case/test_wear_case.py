@@ -234,7 +234,6 @@ def test_the_command_goes_on_from_a_saved_history(tmp_path: Path, capsys: Captur
     assert found["distance"] == [0.0, 5e4, 1e5]
 
 
-@pytest.mark.slow
 def test_stresses_and_fatigue_are_those_of_the_last_contact() -> None:
     from nacre.case.results import results_of
 

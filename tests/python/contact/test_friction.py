@@ -381,7 +381,7 @@ def test_an_exception_of_progress_carries_the_finished_steps(error: BaseExceptio
 @pytest.mark.parametrize(
     "solve",
     [
-        "contact.slide(ball, 10**6 * [{'force': (f, None)} for f in (2.0, -2.0)], KEYWORDS)",
+        "contact.slide(ball, 10**4 * [{'force': (f, None)} for f in (2.0, -2.0)], KEYWORDS)",
         "contact.roll(ball, cells=10**4, creepage=(1e-3, None), direction='+x', KEYWORDS)",
         "contact.roll(ball, spin=30.0, direction='+x', max_convolutions=10**9, KEYWORDS)",
     ],

@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
 from matplotlib.text import Text
 
 import nacre
@@ -359,6 +360,13 @@ def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
     (mesh,) = meshes(axes)
     shear = np.hypot(field.xz, field.yz).T / 1e6
     assert_close(np.asarray(mesh.get_array()), shear, rtol=1e-9)
+    (arrows,) = (child for child in axes.collections if isinstance(child, Quiver))
+    places = [
+        np.searchsorted(1e6 * side, xy - 1e-6)
+        for side, xy in ((coated.x, arrows.X), (coated.y, arrows.Y))
+    ]
+    assert_close(arrows.U, field.xz[*places])
+    assert_close(arrows.V, field.yz[*places])
     axes = plot.interface_map(coated, quantity="normal", friction=0.1, direction=(1.0, 0.0))
     (mesh,) = meshes(axes)
     assert_close(np.asarray(mesh.get_array()), field.zz.T / 1e9, rtol=1e-9)

@@ -43,6 +43,20 @@ def test_the_table_names_bodies_modulus_motion_and_resultant() -> None:
     assert rows["ended"].startswith("converged")
 
 
+def test_the_contact_has_a_width_and_its_error_along_each_side() -> None:
+    grid = nacre.Grid((60, 24), (3e-4, 3e-4))
+    solution = nacre.solve(nacre.Paraboloid(5e-3, 1e-2), STEEL, grid=grid, load=10.0)
+    errors = (solution.report.discretisation or {})["contact_extent"]
+    sides = re.findall(r"([\d.]+) µm ± ([\d.]+) %", table(solution)["contact"])
+    widths = np.ptp(solution.contact_extent, axis=1)
+    shares = 200 * np.array(errors) / widths
+    assert widths[1] > 1.2 * widths[0]
+    assert shares[1] > 2 * shares[0]
+    for side, width, share in zip(sides, widths, shares, strict=True):
+        assert float(side[0]) == pytest.approx(1e6 * width, rel=1e-3)
+        assert float(side[1]) == pytest.approx(share, rel=0.34)  # one digit
+
+
 def test_a_rigid_counterbody_and_what_is_given_are_said() -> None:
     grid = nacre.Grid((16, 16), (1e-3, 1e-3))
     solution = nacre.solve(nacre.Sphere(5e-3), STEEL, grid=grid, approach=-1e-6, tilt=(1e-5, None))

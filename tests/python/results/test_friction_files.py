@@ -19,6 +19,7 @@ from nacre.results import values
 from results import CONTACT, solved
 
 ROLLED = ("rolled", "line rolled")
+PREFIX = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
 every = pytest.mark.parametrize("kind", results.FRICTION)
 
 
@@ -119,6 +120,13 @@ def test_a_history_is_a_table_and_a_picture(tmp_path: Path) -> None:
     head, *table = str(history).splitlines()
     assert head.split()[:3] == ["step", "force", "x"]
     assert [line.split()[1] for line in table] == ["1", "-1", "500"]
+    for line, step in zip(table, history, strict=True):
+        _, *cells = re.split(r"\s{2,}", line.strip())
+        assert step.shift is not None
+        for cell, number in zip(cells, (*step.force, *step.shift), strict=False):
+            value, unit = cell.split(" ± ")[0].split(" ")[:2]
+            size = PREFIX[unit[:-1]]
+            assert float(value) * size == pytest.approx(number, rel=5e-4, abs=1e-15)
     for word in (word for line in table for word in re.split(r"\s{2,}", line.strip())):
         assert word in history._repr_html_()
     assert repr(history).startswith("<History of 3 steps, the last <FrictionSolution on")

@@ -23,6 +23,7 @@ import nacre
 import results
 from bodies import BALL, ROD, STEEL, quiet
 from nacre import bearing, design, fatigue
+from nacre.contact import friction as friction_module
 from nacre.contact import stresses
 from nacre.results import report, svg
 from nacre.results.report import Sections, input_rows, page, table, write
@@ -526,6 +527,19 @@ def test_maps_have_x_to_the_right_and_y_upwards(tmp_path: Path) -> None:
     assert len(np.unique(loaded[np.isfinite(loaded)])) == 4  # all quarters are in it
     labels = {text.text: text for text in picture.iter("text")}
     assert {"x [µm]", "y [µm]", "p [Pa]"} <= labels.keys()
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_loop_is_along_the_axis_of_the_force(axis: int, monkeypatch: Patch) -> None:
+    pair = [(0.1, force)[:: 1 if axis else -1] for force in (1.0, -1.0)]
+    history = results.CONTACT.slide(
+        BALL, load=10.0, friction=0.3, steps=[{"force": f} for f in pair]
+    )
+    curves, axes = captured(monkeypatch, friction_module, "lines", history)
+    (curve,) = curves
+    np.testing.assert_array_equal(curve.x, [step.shift[axis] for step in history])
+    np.testing.assert_array_equal(curve.y, [step.force[axis] for step in history])
+    assert axes[0].name == f"shift along {'xy'[axis]}"
 
 
 def test_bars_and_curves_are_those_of_the_elements(monkeypatch: Patch) -> None:

@@ -884,7 +884,7 @@ def test_contacts_that_cannot_be_refined_have_their_chart(options: dict[str, Any
 def test_the_stresses_of_the_chart_are_those_of_the_summary(friction: float) -> None:
     # Compliant and stiff, thin and thick: the largest tension is at the edge of the contact, or
     # below its middle at the interface.
-    thickness, young = [1e-5, 1e-4], [52.5e9, 840e9]
+    thickness, young = [1e-5, 1e-4], [52.5e9, 840e9][friction > 0 :]
     options: dict[str, Any] = {"grid": GRID, "load": 10.0}
     chart = design.coating_chart(
         BALL,
