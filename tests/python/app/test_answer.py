@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import nacre
-from nacre.app.answer import STAGES, Stopped, answer, file_text
+from nacre.app.answer import CONTACT_ROWS, STAGES, Stopped, answer, file_text
 from nacre.app.cards import cards, check_size, own_card
 from nacre.app.fields import Field, FieldError
 from nacre.case import Case, CaseError, templates, toml
@@ -355,18 +355,34 @@ def test_readings_without_film_are_unknown() -> None:
     assert reading.substrate_verdict(None).level == "unknown"
 
 
-def test_the_extremes_of_the_bare_body_stand_beside() -> None:
-    case = cards()["contact"].case({})
-    rows = answer(case, "stress")["parts"]["rows"]
+def test_the_numbers_of_the_bare_body_stand_beside() -> None:
+    stiff = {"materials.coating.young": "800", "body.layers[0].thickness": "20"}
+    case = cards()["contact"].case(stiff)
+    parts = answer(case, "stress")["parts"]
+    rows = parts["rows"]
+    assert "<tr><th></th><th>coated</th><th>bare</th></tr>" in rows
     bare = nacre.HalfSpace(case.arguments()["body"].substrate)
     with nacre.display_units(case.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)
         arguments = case.arguments()
         keywords = case.stress() or {}
-        coated = nacre.solve(**arguments).stress_summary(**keywords)
+        solutions = [nacre.solve(**arguments), nacre.solve(**arguments | {"body": bare})]
         sliding = {name: keywords[name] for name in ("friction", "direction")}
-        other = nacre.solve(**arguments | {"body": bare}).stress_summary(**sliding)
+        coated = solutions[0].stress_summary(**keywords)
+        other = solutions[1].stress_summary(**sliding)
+        for name, text in solutions[0]._rows():
+            if name in CONTACT_ROWS:
+                pair = html.escape(text), html.escape(dict(solutions[1]._rows())[name])
+                assert "<th>{}</th><td>{}</td><td>{}</td>".format(name, *pair) in rows
     largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]
     texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
     assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)
     assert largest[0] > 1.2 * largest[1]  # the coat is stiffer
+    # The picture has both, the coated one first, whose pressure is higher.
+    heights = [
+        min(float(pair.split(",")[1]) for pair in points.split())
+        for points in re.findall(r"<polyline[^>]* points='([^']*)'", parts["picture-1"])
+    ]
+    assert solutions[0].peak_pressure > 1.02 * solutions[1].peak_pressure
+    assert heights[0] < heights[1]  # pixels count downwards
+    assert parts["picture-1"].index(">coated<") < parts["picture-1"].index(">bare<")

@@ -503,3 +503,14 @@ def test_swapped_raceways_are_refused() -> None:
     message = r"raceway_diameters must be \(inner, outer\), the inner one the smaller, got"
     with pytest.raises(ValueError, match=message):
         CylindricalRoller(**given, raceway_diameters=(83e-3, 61e-3))
+
+
+def test_pressures_at_sharp_ends_have_two_digits() -> None:
+    sharp = CylindricalRoller(**ROLLERS, profile=None)
+    solved = quiet(sharp.solve, force=(4000.0, 0.0, None), cells=(40, 24))
+    text = str(solved)
+    assert f"peak pressure  {solved.peak_pressure / 1e9:.2g} GPa" in text
+    assert "ends are sharp: their pressure has no limit" in text
+    rounded = quiet(CylindricalRoller(**ROLLERS).solve, force=(4000.0, 0.0, None), cells=(40, 24))
+    assert f"peak pressure  {rounded.peak_pressure / 1e9:.4g} GPa" in str(rounded)
+    assert "sharp" not in str(rounded) + str(sharp.solve(force=(1000.0, 0.0, None), **STANDARD))

@@ -6,10 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 from nacre import plot
-from nacre.bearing import AngularContactBall, CylindricalRoller, DeepGrooveBall, Pair
+from nacre.bearing import (
+    AngularContactBall,
+    CylindricalRoller,
+    DeepGrooveBall,
+    Pair,
+    SphericalRoller,
+)
 from support import assert_close
 
 ROLLERS = CylindricalRoller(
@@ -25,9 +32,28 @@ def test_bars_are_the_loads() -> None:
     assert_close(heights, STANDARD.loads[:, 0] / 1e3)  # kN
     fast = ROLLERS.solve(force=(4450.0, 0.0, None), speed=600.0, model="iso16281")
     both = plot.load_distribution(fast)
-    assert len(both.patches) == 28
+    bars = list(both.patches)
+    assert_close([bar.get_height() for bar in bars], fast.loads.T.ravel() / 1e3)
     texts: Any = both.get_legend()
     assert [text.get_text() for text in texts.get_texts()] == ["inner ring", "outer ring"]
+
+
+def test_each_row_and_ring_has_its_bars() -> None:
+    """Two rows, of which the second carries more; bars stand about the angle of their element."""
+    barrels = SphericalRoller(
+        **{"count": 15, "diameter": 10e-3, "length": 9e-3, "pitch_diameter": 60e-3},
+        contact_angle=0.2,
+        profile_radius=32e-3,
+    )
+    solution = barrels.solve(force=(1e4, 0.0, 1e3), speed=600.0, model="iso16281")
+    rows = solution.loads.reshape(2, 15, 2)
+    assert rows[1].sum() != pytest.approx(rows[0].sum(), rel=0.1)
+    bars: list[Any] = list(plot.load_distribution(solution).patches)
+    heights = np.reshape([bar.get_height() for bar in bars], (2, 2, 15))
+    assert_close(heights, rows.transpose(0, 2, 1) / 1e3)
+    middles = np.reshape([bar.get_x() + bar.get_width() / 2 for bar in bars], (4, 15))
+    assert_close(middles.mean(axis=0), solution.angles[:15], atol=1e-9)
+    assert_close(np.diff(middles, axis=0), bars[0].get_width(), rtol=1e-9)
 
 
 def test_curves_are_the_pressures_and_alike_elements_share_one() -> None:

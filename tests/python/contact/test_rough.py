@@ -292,6 +292,17 @@ def test_case_files_have_random_surfaces(tmp_path: Path) -> None:
         Case({**data, "shape": {**data["shape"], "seed": -1}})
 
 
+@pytest.mark.quick
+def test_maps_have_x_to_the_right_and_y_upwards() -> None:
+    cells: Any = plot.patches(SOLUTION).collections[0].get_array()
+    labels = cells.reshape(64, 64).T  # white, patches, and the largest one
+    np.testing.assert_array_equal(labels > 0, SOLUTION.in_contact)
+    assert (labels == 2).mean() == rough.patches(SOLUTION).max()  # areas of a square of 1
+    image: Any = plot.heights(SURFACE).images[0]
+    assert_close(image.get_array(), 1e3 * (SURFACE.heights - SURFACE.heights.mean()).T)  # mm
+    assert image.origin == "lower"
+
+
 def test_pictures_have_labels_with_units() -> None:
     curve = rough.load_curve(SURFACE, BODY, [1e-3, 3e-3])
     axes = plot.load_curve(curve)

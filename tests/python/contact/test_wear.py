@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -224,6 +225,58 @@ def test_printed_rows_have_one_unit() -> None:
     rows = {row.label: row.text for row in worn(sliding=50.0, steps=1)._rows()}
     assert rows["worn volume"] == "50 µm² of the body, 0 µm² of the counterbody"
     assert rows["peak pressure"].count("MPa") == 2
+
+
+class Film:
+    """What a film shows in the end, in place of the film."""
+
+    shown: ClassVar[list[Any]] = []
+
+    def __init__(self, figure: Any, draw: Any, frames: int) -> None:
+        self.figure, self.draw, self.frames = figure, draw, frames
+
+    def save(self, path: Path, writer: object) -> None:
+        path.write_bytes(b"GIF89a")
+        self.draw(self.frames - 1)
+        self.shown[:] = [
+            (axes.get_ylabel(), axes.lines[0].get_ydata()) for axes in self.figure.axes
+        ]
+
+
+def test_what_is_shown_is_of_both_bodies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The counterbody wears half as fast as the coat."""
+    history = worn(counter_rate=5e-18)
+    last = history.states[-1]
+    pressure, deepest = last.solution.pressure[0], history.deepest.sum(axis=1)
+    depth = (last.depth + last.counter_depth)[0]
+    assert_close(depth, 1.5 * last.depth[0])
+    axes = history.plot()
+    assert axes.get_ylabel() == "depth removed [nm]"
+    assert_close(axes.lines[-1].get_ydata(), 1e9 * depth)
+    assert_close(axes.lines[-1].get_xdata(), 1e6 * GRID.y)
+    monkeypatch.setattr(sys.modules["nacre.plot.wear"], "FuncAnimation", Film)
+    history.animate(tmp_path / "a.gif")
+    (force, presses), (removed, film) = Film.shown
+    assert (force, removed) == ("pressure [MPa]", "depth removed [nm]")
+    assert_close(presses, 1e-6 * pressure)
+    assert_close(film, 1e9 * depth)
+    heads, *rows = history._table()
+    for name, numbers in (("volume", history.volume), ("deepest", history.deepest)):
+        for member, which in enumerate(("body", "counterbody")):
+            (place,) = [k for k, head in enumerate(heads) if f"{name} {which} [" in str(head)]
+            assert [row[place] for row in rows] == numbers[:, member].tolist()
+    curves: list[Any] = []
+
+    def lines(drawn: Any, axes: Any) -> str:
+        curves.extend(drawn)
+        return "<svg/>"
+
+    monkeypatch.setattr("nacre.contact.wear_solution.lines", lines)
+    history._sections()
+    shown = [(curve.x, curve.y) for curve in curves]
+    due = [(history.distance, deepest), (history.distance, history.peak_pressure), (GRID.y, depth)]
+    for pair, wanted in zip(shown, due, strict=True):
+        np.testing.assert_array_equal(pair, wanted)
 
 
 @pytest.mark.filterwarnings("ignore:the contact touches the edge of the grid")

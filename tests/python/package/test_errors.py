@@ -1,5 +1,6 @@
 """Bad input is refused by a message that names the argument, what it must be and what it was."""
 
+import dataclasses
 import inspect
 import re
 from collections.abc import Callable
@@ -12,6 +13,7 @@ import pytest
 import nacre
 import support
 from bodies import BALL, COATED, HARD, HELD, NAN, STEEL, quiet
+from nacre import bearing
 from shapes import SHAPES
 from support import errors, table
 
@@ -409,6 +411,7 @@ ON_RIGID = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, 1e-5)])
 PRESSED = nacre.solve(BALL, COATED, HARD, grid=FINE, load=5.0)
 BY_RIGID = nacre.solve(BALL, COATED, grid=FINE, load=5.0)
 UNFINISHED = quiet(nacre.solve, BALL, STEEL, grid=FINE, load=5.0, max_iterations=1, check=False)
+ON_STEEL = nacre.solve(BALL, STEEL, grid=FINE, load=5.0)
 PLAN = BY_RIGID.stress_plan()
 PRESSURE = PRESSED.pressure
 
@@ -503,8 +506,68 @@ FIELD_TYPES = {
     "PRESSED.gradient(3.0)": "a word, a pair or a dict",
 }
 
+# Outside of the model.
+
+BEARING = bearing.CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
+BALLS = bearing.DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+RADIAL = {"force": (1000.0, 0.0, None), "model": "iso16281"}
+WORDS = np.array(["solved", "iso16281"])
+
+OUTSIDE = {
+    # functions
+    "BEARING.solve(**RADIAL, progress=1)": "progress must be",
+    "fatigue.assess(PRESSED, progress=1)": "progress must be callable",
+    "sweep({'load': [1.0]}, progress=1)": "progress must be True, False or None",
+    "fatigue.shakedown_map(PRESSED, friction=[0.0], progress='x')": "progress must be callable, "
+    "got 'x'",
+    "bearing.life_ratio(PRESSED, PRESSED, bearing.LundbergPalmgren(), progress=1)": "progress must "
+    "be callable, got 1",
+    # words
+    "BEARING.solve(**RADIAL | {'model': WORDS})": 'model must be "solved"',
+    "BEARING.solve(**RADIAL).life(edge=WORDS)": 'edge must be "standard"',
+    "BEARING.solve(**RADIAL).life(rotating=['inner'])": 'rotating must be "inner"',
+    "fatigue.assess(PRESSED, rule=WORDS)": "rule must be 'von_mises'",
+    "fatigue.shakedown(np.zeros((2, 6)), rule=WORDS)": 'rule must be "von_mises"',
+    "indented(branch=WORDS)": "branch must be 'stable'",
+    "indented(control=WORDS)": "control must be 'load'",
+    "replace(BEARING, profile=WORDS)": "profile must be a profile",
+    # truth values for numbers
+    "slides(friction=True, force=(0.5, 0.0))": "friction must be a number.* got True",
+    "history({'friction': np.True_, 'force': (0.5, None)})": "friction must be a number",
+    "fatigue.assess(PRESSED, friction=True)": "friction must be a real number",
+    "fatigue.shakedown_map(PRESSED, friction=[True, False])": "friction must be a real array",
+    # limits in MPa beside moduli in Pa
+    "bearing.IoannidesHarris(fatigue_limit=350.0)": "fatigue_limit must be 0, or at least 100000 "
+    r"Pa, got 350\.0",
+    "ON_STEEL.stress_summary(yield_stress={'substrate': 900.0})": "yield_stress must be in the "
+    r"units of the moduli, .* 2\.1e\+11; got 900",
+    "ON_STEEL.stress_plan().summary(strength=[1200.0])": "strength must be in the units of the "
+    "moduli",
+    "fatigue.assess(ON_STEEL, shear_yield=600.0)": "shear_yield must be in the units of the moduli",
+    "fatigue.assess(ON_STEEL, criteria=[fatigue.DangVan(520.0, 330.0)])": "bending must be in the "
+    "units of the moduli",
+    # sizes beyond any bearing
+    "BEARING.solve(force=(1e300, 0.0, None))": "force must be at most",
+    "BEARING.solve(displacement=(1e300, 0.0, None))": r"displacement must be at most 0\.01",
+    "BEARING.solve(moment=(1e300, None))": "moment must be at most",
+    "BEARING.solve(tilt=(1e300, None))": "tilt must be at most 1",
+    "BEARING.solve(**RADIAL, speed=1e300)": "speed must be lower: elements .* at most",
+    "BEARING.solve(**RADIAL, rotation=1e300)": "rotation must be at most",
+    "replace(BEARING, capacity=48.4)": r"capacity must be in N, some 4\.84e\+04",
+    "replace(BEARING, rating_factor=1e300)": "rating_factor must be from",
+    "replace(BEARING, raceway_crown=(1e-300, None))": "raceway_crown must be at least the length",
+    "replace(BALLS, osculation=(1e300, 0.53))": "osculation must be at most 100",
+    "bearing.film_thickness(BY_RIGID, speed=1e300, viscosity=0.02, pressure_viscosity=20e-9)": "spe"
+    "ed times viscosity must be between",
+    "fatigue.assess(PRESSED, friction=1e300)": "friction must be a number, finite",
+}
+
 NAMES = globals() | {
     "plot": nacre.plot,
+    "fatigue": nacre.fatigue,
+    "replace": dataclasses.replace,
+    "sweep": partial(nacre.sweep, {"shape": BALL, "body": STEEL, "grid": GRID, "load": 1.0}),
+    "indented": partial(nacre.indent.solve, STEEL, nacre.indent.Tip.sphere(1e-6), load=1e-3),
     "press": partial(CONTACT.solve, BALL),
     "coefficients": nacre.creep_coefficients,
     "curve": partial(
@@ -517,6 +580,7 @@ NAMES = globals() | {
     *errors(ValueError, VALUES | FRICTION_VALUES | FIELD_VALUES),
     *(row for shape in SHAPES.values() for row in errors(ValueError, shape.refused)),
     *errors(TypeError, TYPES | FRICTION_TYPES | FIELD_TYPES),
+    *errors((TypeError, ValueError), OUTSIDE),
     ("slides(force=(1.0, None), max_convolutions=1)", nacre.ConvergenceError, "max_convolutions"),
 )
 def test_bad_input_is_refused(call: str, kind: type[Exception], words: str) -> None:

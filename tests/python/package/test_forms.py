@@ -23,15 +23,22 @@ Array = npt.NDArray[Any]
 
 GRID = nacre.Grid((16, 20), (3e-4, 3.3e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
-SOLUTION = quiet(CONTACT.solve, BALL, load=10.0)
 TIP = indent.Tip.sphere(1e-5)
-STATE = indent.Indentation(STEEL, TIP).at(load=1e-3)
 ROLLERS = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
 ROLLER = bearing.CylindricalRoller(**ROLLERS)  # type: ignore[arg-type]
 BALLS = bearing.DeepGrooveBall(count=9, diameter=8e-3, pitch_diameter=39e-3)
-WAVENUMBERS = nacre.Response(lambda alpha: 1e-9 + 0 * alpha).wavenumbers
 ROWS, COLUMNS = np.indices(GRID.shape)
 CREEP = {"load": 10.0, "friction": 0.25, "tolerance": 1e-3}
+
+
+@cache
+def pressed_ball() -> nacre.Solution:
+    return quiet(CONTACT.solve, BALL, load=10.0)  # type: ignore[no-any-return]
+
+
+@cache
+def indented() -> indent.IndentSolution:
+    return indent.Indentation(STEEL, TIP).at(load=1e-3)
 
 
 def single(values: Any) -> Array:
@@ -78,7 +85,7 @@ def rolled(**given: Any) -> Array:
 
 def stressed(**given: Any) -> Array:
     options = {"z": [1e-5, 3e-5], "x": 0.0} | given
-    return np.asarray(quiet(SOLUTION.stress, **options).von_mises)
+    return np.asarray(quiet(pressed_ball().stress, **options).von_mises)
 
 
 def summed(**given: Any) -> Array:
@@ -88,12 +95,12 @@ def summed(**given: Any) -> Array:
 
 def assessed(**given: Any) -> Array:
     options = {"depths": [2e-5, 4e-5], "x": 0.0} | given
-    return np.asarray(quiet(fatigue.assess, SOLUTION, **options).profiles["first_yield"])
+    return np.asarray(quiet(fatigue.assess, pressed_ball(), **options).profiles["first_yield"])
 
 
 def mapped(**given: Any) -> Array:
     options = {"friction": [0.0, 0.25], "depths": [2e-5, 4e-5], "x": 0.0} | given
-    found = quiet(fatigue.shakedown_map, SOLUTION, **options)
+    found = quiet(fatigue.shakedown_map, pressed_ball(), **options)
     return np.concatenate([found.friction, found.limits.ravel()])
 
 
@@ -142,7 +149,7 @@ def crept(creepages: Any) -> Array:
 
 
 def gradient(output: Any) -> Array:
-    return quiet(SOLUTION.gradient, output).gap  # type: ignore[no-any-return]
+    return quiet(pressed_ball().gradient, output).gap  # type: ignore[no-any-return]
 
 
 MAPS: dict[str, Argument] = {
@@ -180,8 +187,8 @@ MAPS: dict[str, Argument] = {
     "stress(pressure)": Argument(
         MAP, lambda a: quiet(nacre.stress, STEEL, GRID, a, [1e-5]).von_mises
     ),
-    "Solution.jvp(gap)": Argument(MAP * 2.0**-20, lambda a: SOLUTION.jvp(gap=a).pressure),
-    "Solution.vjp": Argument(MAP, lambda a: SOLUTION.vjp(a).gap),
+    "Solution.jvp(gap)": Argument(MAP * 2.0**-20, lambda a: pressed_ball().jvp(gap=a).pressure),
+    "Solution.vjp": Argument(MAP, lambda a: pressed_ball().vjp(a).gap),
     "shakedown": Argument(HISTORY, lambda a: fatigue.shakedown(a).shear_yield),
     "DangVan.stress": Argument(HISTORY, fatigue.DangVan(5e8, 3e8).stress),
     "Roller(profile)": Argument(
@@ -205,11 +212,11 @@ MAPS: dict[str, Argument] = {
     "Ellipse.pressure(y)": Argument(
         MAP, lambda a: hertz.Ellipse(1.0, 2.0, 1.0, 1.0).pressure(MAP, a)
     ),
-    "IndentSolution.pressure": Argument(MAP * 2.0**-20, STATE.pressure),
-    "IndentSolution.displacement": Argument(MAP * 2.0**-20, STATE.displacement),
-    "IndentSolution.gap": Argument(MAP * 2.0**-20, STATE.gap),
+    "IndentSolution.pressure": Argument(MAP * 2.0**-20, lambda a: indented().pressure(a)),
+    "IndentSolution.displacement": Argument(MAP * 2.0**-20, lambda a: indented().displacement(a)),
+    "IndentSolution.gap": Argument(MAP * 2.0**-20, lambda a: indented().gap(a)),
     "IndentSolution.stress": Argument(
-        MAP[:3, :4] * 2.0**-20, lambda a: STATE.stress(a, 1e-6)["zz"]
+        MAP[:3, :4] * 2.0**-20, lambda a: indented().stress(a, 1e-6)["zz"]
     ),
     "Indentation.at(load)": Argument(
         MAP[:3, :4], lambda a: indent.Indentation(STEEL, TIP).at(load=a).approach
@@ -232,7 +239,7 @@ LISTS: dict[str, Argument] = {
         ).drop_at([-0.4, 0.3]),
     ),
     "Response": Argument(
-        single(1e-9 * (1 + 1 / (1 + WAVENUMBERS))),
+        single(1e-9 * (1 + 1 / (1 + nacre.Response(lambda alpha: 1e-9 + 0 * alpha).wavenumbers))),
         lambda a: nacre.Response(lambda _: a).values,
     ),
     "graded_layers(breakpoints)": Argument(
@@ -446,17 +453,27 @@ ANY: dict[str, Callable[[Array], Any]] = {
     "big-endian": lambda a: a.astype(a.dtype.newbyteorder(">")),
     "single precision": lambda a: a.astype({"f": "f4", "b": "?"}.get(a.dtype.kind, "i2")),
 }
+
+
+def of_file(array: Array) -> Array:
+    """Return numbers as files may have them: big-endian, single precision, steps backwards."""
+    narrow = ANY["single precision"](array)
+    return strided(reversed_twice(narrow.astype(narrow.dtype.newbyteorder(">"))))
+
+
 FORMS_OF_MAPS: dict[str, Callable[[Array], Any]] = ANY | {
     "Fortran order": np.asfortranarray,
     "transposed view": lambda a: np.ascontiguousarray(a.T).T,
     "DataFrame": pandas.DataFrame,
     "DataArray": lambda a: xarray.DataArray(a, dims=("x", "y")),
     "DataArray (y, x)": lambda a: xarray.DataArray(a.T, dims=("y", "x")),
+    "DataArray (y, x) of a file": lambda a: xarray.DataArray(of_file(a).T, dims=("y", "x")),
     "unit of a ratio": lambda a: Half(2 * a),
 }
 FORMS_OF_LISTS: dict[str, Callable[[Array], Any]] = ANY | {
     "tuple": lambda a: tuple(a.tolist()),
     "Series": pandas.Series,
+    "Series of a file": lambda a: pandas.Series(of_file(a)),
     "Series of rows": lambda a: pandas.Series(a, index=range(7, 7 + len(a))),
     "Series by name": lambda a: pandas.Series(a, index=[f"row {k}" for k in range(len(a))]),
     "Series backwards": lambda a: pandas.Series(a, index=range(len(a))[::-1]),
@@ -473,6 +490,15 @@ STUDIES = (
     "force_table(tilt_x)",
 )
 """Arguments whose items may be anything, and have no unit together."""
+IN_ALL_FORMS = (
+    *("HeightMap", "assess(shear_yield)", "CylindricalRoller.curvature"),
+    *("Grid(center)", "HeightMap(periodic)"),
+)
+"""A map, numbers of layers, a list, and pairs of numbers and of bools.
+
+All arguments have one reader, which these try. That the others have it too shows in what it alone
+understands: names of axes, and units.
+"""
 BY_LAYER = ("residual", "shear_yield", "yield_stress")
 """Arguments whose index names layers."""
 
@@ -483,15 +509,24 @@ def expected(name: str) -> Array:
     return np.asarray(table[name].call(np.array(table[name].array, order="C")), dtype=np.float64)
 
 
-@pytest.mark.parametrize("form", FORMS_OF_MAPS)
-@pytest.mark.parametrize("name", MAPS)
+def tried(arguments: dict[str, Argument], forms: dict[str, Any]) -> pytest.MarkDecorator:
+    """Parametrise a test by some arguments in all forms, and by all in those that tell readers."""
+    pairs = [
+        (name, form)
+        for name in arguments
+        for form in forms
+        if name in IN_ALL_FORMS or form.endswith((" of a file", " of a ratio"))
+    ]
+    return pytest.mark.parametrize(("name", "form"), pairs)
+
+
+@tried(MAPS, FORMS_OF_MAPS)
 def test_maps_of_any_form_are_the_same(name: str, form: str) -> None:
     formed = FORMS_OF_MAPS[form](MAPS[name].array)
     np.testing.assert_array_equal(MAPS[name].call(formed), expected(name))
 
 
-@pytest.mark.parametrize("form", FORMS_OF_LISTS)
-@pytest.mark.parametrize("name", LISTS | PAIRS)
+@tried(LISTS | PAIRS, FORMS_OF_LISTS)
 def test_lists_of_any_form_are_the_same(name: str, form: str) -> None:
     argument = (LISTS | PAIRS)[name]
     formed = FORMS_OF_LISTS[form](argument.array)
@@ -541,8 +576,13 @@ WRONG: dict[str, tuple[str, str, Callable[[Array], Any]]] = {
 
 
 @pytest.mark.parametrize("wrong", [-1.0, np.nan])
-@pytest.mark.parametrize("form", FORMS_OF_MAPS)
-@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [
+        *(("hardness", form) for form in FORMS_OF_MAPS),
+        *((name, "DataArray (y, x) of a file") for name in WRONG if name != "hardness"),
+    ],
+)
 def test_signs_and_nan_are_refused_in_any_form(name: str, form: str, wrong: float) -> None:
     word, requirement, call = WRONG[name]
     array = MAP * 2.0**31

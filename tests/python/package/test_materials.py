@@ -41,6 +41,43 @@ def test_every_number_has_a_source_and_lies_in_its_range(card: nacre.types.Card)
     assert card.source == card.numbers["young"].source
 
 
+NUMBERS = """
+100Cr6: young 203.4e9 190e9 210e9, poisson 0.285 0.27 0.3
+M50: young 214e9, poisson 0.29, conductivity 35
+440C: young 209.6e9, poisson 0.28, yield_stress 1.896e9, conductivity 22.8
+316L: young 200e9, poisson 0.28, yield_stress 190e6, conductivity 15
+Ti-6Al-4V: young 114e9, poisson 0.33, yield_stress 965e6
+Si3N4: young 310e9, poisson 0.27, flexural_strength 830e6, conductivity 30
+Si3N4-GPS: young 310e9 300e9 315e9, poisson 0.24, flexural_strength 689e6, conductivity 29
+Al2O3: young 375e9, poisson 0.22, flexural_strength 379e6, conductivity 35
+SiC: young 410e9, poisson 0.14, flexural_strength 550e6 400e6 550e6, conductivity 120
+WC: young 630e9 530e9 700e9, poisson 0.24, conductivity 85
+fused silica: young 73e9, poisson 0.17, conductivity 1.4
+borosilicate 7740: young 64e9, poisson 0.2, flexural_strength 69e6, conductivity 1.1
+diamond: young 1102e9 1059e9 1144e9, poisson 0.078 0.07 0.085
+a-C:H: young 259e9 87e9 300e9, poisson 0.2 0.1 0.3, hardness 27e9
+a-C:H soft: young 110e9 87e9 133e9, poisson 0.2 0.1 0.3
+a-C: young 287e9, poisson 0.2 0.1 0.3, hardness 24e9
+ta-C: young 572e9 493e9 625e9, poisson 0.2 0.1 0.3, hardness 66e9 51e9 78e9
+TiN: young 397e9, poisson 0.25 0.2 0.3, hardness 23.6e9
+TiAlN: young 466e9, poisson 0.25 0.2 0.3, hardness 27.3e9
+CrN: young 422e9 375e9 422e9, poisson 0.25 0.2 0.3, hardness 17.9e9
+"""
+"""Each number, its lowest and its highest, a second time: a digit that slips is found."""
+
+
+def test_digits_are_those_of_the_sources() -> None:
+    rows = dict(line.split(": ") for line in NUMBERS.strip().splitlines())
+    assert rows.keys() == nacre.materials.keys()
+    for name, row in rows.items():
+        typed = {word: [*map(float, numbers)] for word, *numbers in map(str.split, row.split(", "))}
+        stored = {
+            word: [part for part in (number.value, number.low, number.high) if part is not None]
+            for word, number in nacre.materials[name].numbers.items()
+        }
+        assert stored == typed, name
+
+
 def test_strengths_stand_with_their_treatment_and_no_fatigue_limit_stands() -> None:
     assert not any("fatigue" in name or "shear" in name for card in CARDS for name in card.numbers)
     for card in CARDS:

@@ -130,8 +130,17 @@ def test_numbers_of_shapes_have_units() -> None:
 
 
 @each
-def test_fields_are_in_plain_data_and_in_files(name: str, number: int) -> None:
+def test_a_field_is_everywhere(name: str, number: int, schema: dict[str, Any]) -> None:
     value, given = value_of(name, number)
+    is_kept_in_plain_data(name, value, given)
+    is_kept_in_pickles_and_text(name, value, given)
+    if name != "Response":  # its values are no keys, and have no paths
+        for field in given:
+            assert field in table(name, schema) or (name, field) in FROM_A_FILE
+        has_paths(value, given)
+
+
+def is_kept_in_plain_data(name: str, value: Any, given: dict[str, Any]) -> None:
     ((kind, data),) = values.encode(value).items()
     assert kind == OTHERS.get(name, name)
     for field, argument in given.items():
@@ -142,9 +151,7 @@ def test_fields_are_in_plain_data_and_in_files(name: str, number: int) -> None:
     assert values.decode(json.loads(json.dumps({kind: data}))) == value
 
 
-@each
-def test_fields_are_in_pickles_and_in_the_text_of_a_value(name: str, number: int) -> None:
-    value, given = value_of(name, number)
+def is_kept_in_pickles_and_text(name: str, value: Any, given: dict[str, Any]) -> None:
     again = pickle.loads(pickle.dumps(value))
     assert again == value
     assert values.encode(again) == values.encode(value)
@@ -153,21 +160,11 @@ def test_fields_are_in_pickles_and_in_the_text_of_a_value(name: str, number: int
         assert all(f"{field}=" in repr(value) for field in shown)
 
 
-@each
-def test_fields_are_keys_of_case_files(name: str, number: int, schema: dict[str, Any]) -> None:
-    if name == "Response":
-        return  # Its values are no keys.
-    for field in MADE[name][number]:
-        assert field in table(name, schema) or (name, field) in FROM_A_FILE
-
-
-@each
-def test_numbers_have_paths(name: str, number: int) -> None:
-    value, given = value_of(name, number)
+def has_paths(value: Any, given: dict[str, Any]) -> None:
     paths = dict(core.numbers({"it": value}))
     for field, argument in given.items():
         leaves = argument if isinstance(argument, tuple) else (argument,)
-        if not all(type(leaf) is float for leaf in leaves) or name == "Response":
+        if not all(type(leaf) is float for leaf in leaves):
             continue
         for k, leaf in enumerate(leaves):
             if not leaf:  # where profiles begin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import functools
 import hashlib
 import json
@@ -491,13 +492,41 @@ def test_the_stress_over_depth_is_that_of_the_solution(monkeypatch: Patch) -> No
     assert z[-1] == pytest.approx(1.25 * width)
 
 
-def test_sections_go_through_the_largest_pressure(monkeypatch: Patch) -> None:
+@pytest.mark.parametrize("axis", [0, 1])
+def test_sections_go_through_the_largest_pressure(axis: int) -> None:
+    """They hold the contact, and a margin of a tenth of it and a cell."""
     solution = results.solved("both coated, tilted")
-    (curve,), *_ = captured(monkeypatch, svg, "lines", solution)
-    row = np.abs(solution.y - solution.peak_position[1]).argmin()
-    due = np.interp(curve.x, solution.x, solution.pressure[:, row])
-    np.testing.assert_array_equal(curve.y, due)
-    assert max(curve.y) == solution.peak_pressure
+    places = (solution.x, solution.y)[axis]
+    x, y = report.section(solution, axis)
+    row = np.abs((solution.y, solution.x)[axis] - solution.peak_position[1 - axis]).argmin()
+    whole = np.take(solution.pressure, row, axis=1 - axis)
+    first, last = np.flatnonzero(solution.pressure.any(axis=1 - axis))[[0, -1]]
+    margin = 1 + (last - first) // 10
+    kept = slice(max(first - margin, 0), last + margin + 1)
+    np.testing.assert_array_equal(x, places[kept])
+    np.testing.assert_array_equal(y, whole[kept])
+    assert max(y) == solution.peak_pressure
+    assert "xy"[axis] in report.contact_pictures(solution)[axis].caption
+
+
+def test_maps_have_x_to_the_right_and_y_upwards(tmp_path: Path) -> None:
+    solution = results.solved("both coated, tilted")
+    values = np.where(np.arange(31) > 14, 1.0, 0.5) * np.ones((40, 1))
+    values[:20] *= 0.25
+    axis = svg.Axis("p", "Pa", (0.0, 1.0))
+    picture = drawn(report.map_picture(solution, values, axis, "a map").drawing)
+    image = next(picture.iter("image")).get("href", "").partition("base64,")[2]
+    (tmp_path / "a.png").write_bytes(base64.b64decode(image))
+    pixels = imread(tmp_path / "a.png")[..., :3]
+    cells = [np.flatnonzero(solution.pressure.any(axis=k))[[0, -1]] for k in (1, 0)]
+    (left, right), (low, high) = [(a - 1 - (b - a) // 10, b + 2 + (b - a) // 10) for a, b in cells]
+    loaded = np.where(solution.pressure > 0, values, np.nan)[left:right, low:high]
+    due = colormaps["viridis"](np.nan_to_num(loaded.T[::-1]))[..., :3]
+    due[np.isnan(loaded.T[::-1])] = 1.0
+    assert_close(pixels, due, atol=0.02)
+    assert len(np.unique(loaded[np.isfinite(loaded)])) == 4  # all quarters are in it
+    labels = {text.text: text for text in picture.iter("text")}
+    assert {"x [µm]", "y [µm]", "p [Pa]"} <= labels.keys()
 
 
 def test_bars_and_curves_are_those_of_the_elements(monkeypatch: Patch) -> None:
