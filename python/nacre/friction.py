@@ -18,7 +18,8 @@ from nacre.contact.arguments import MOTION
 from nacre.contact.friction import FrictionSolution, History
 from nacre.results.base import checked
 from nacre.results.quantities import CREEP
-from nacre.results.table_results import TableResult
+from nacre.results.rows import Row
+from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
     import xarray
@@ -57,10 +58,13 @@ class CreepCoefficients(TableResult):
     semi_axes: tuple[float, float]
     """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
 
-    def _rows(self) -> list[tuple[str, str]]:
+    def _rows(self) -> list[Row]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)
         numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
-        return [(name, f"{c:.4f} ± {error:.4f}") for name, c, error in numbers]
+        return [
+            Row(label.lower(), label, f"{c:.4f} ± {error:.4f}", c, "", error)
+            for label, c, error in numbers
+        ]
 
 
 def creep_coefficients(

@@ -23,7 +23,7 @@ from nacre.hertz import contact_modulus
 from nacre.results import display
 from nacre.results.patches import CURVE, crosses, patch_labels, surfaces
 from nacre.results.quantities import ROUGHNESS
-from nacre.results.table_results import TableResult
+from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
     import xarray
@@ -306,7 +306,7 @@ def markup(surface: core.HeightMap) -> str:
     size = " × ".join(written(side, "m") for side in grid.size)
     repeats = [name for name, is_so in zip("xy", surface.periodic, strict=True) if is_so]
     rows = [("points", points), ("size", size), ("periodic", " and ".join(repeats) or "no")]
-    table = [*rows, *roughness(surface)._rows()]
+    table = [*rows, *((row.label, row.text) for row in roughness(surface)._rows())]
     return display.markup(table, picture=display.drawn(draw))
 
 

@@ -14,7 +14,7 @@ from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre import fatigue
 from nacre.indent import Adhesion, Curve, Fit, Indentation, OliverPharr, Tip, fit, oliver_pharr
 from nacre.results.quantities import AXIS, Quantity
-from nacre.results.table_results import TableResult
+from nacre.results.shown import TableResult
 
 DLC = nacre.Elastic(420e9, 0.25)
 LAYERED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])

@@ -26,6 +26,7 @@ from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
 from nacre.results import display
 from nacre.results.report import Picture, Rows, section
+from nacre.results.rows import Row
 from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.verdict import Verdict
 from nacre.results.verdict import measured as with_error
@@ -51,16 +52,16 @@ DRAFT = {"step_tolerance": 1e-2}
 """How exact the steps of a draft of wear are, where the case says nothing."""
 EVERY = 3
 """Loads of which one is in a draft of an indentation."""
-CONTACT_ROWS = {"load", "approach", "tilt", "peak pressure", "contact", "area"}
-BEARING_ROWS = {"displacement", "tilt", "largest load", "peak pressure", "edge pressure", "loaded"}
-BEARING_ROWS |= {"first bearing", "second bearing"}
+CONTACT_ROWS = {"load", "approach", "tilt", "peak_pressure", "contact_extent", "contact_area"}
+BEARING_ROWS = {"displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure", "loaded"}
+BEARING_ROWS |= {"first_bearing", "second_bearing"}
 """Numbers that the page shows."""
 INDENT_ROWS = {
-    "largest load": "load",
-    "largest depth": "approach",
-    "contact radius there": "radius",
-    "stiffness there": "stiffness",
-    "central pressure there": "central_pressure",
+    "load": "largest load",
+    "approach": "largest depth",
+    "radius": "contact radius there",
+    "stiffness": "stiffness there",
+    "central_pressure": "central pressure there",
 }
 """Numbers of an indentation that the page shows, of its largest depth."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
@@ -214,7 +215,14 @@ def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     pictures = [_pressures(worn=worn, new=new), _figure(history._depth_picture())]
     peak = ("last peak pressure", worn.peak_pressure, "Pa")
     following = "full" if stage == "draft" else None
-    return _answer(peak, history._rows(), pictures, history.warnings, history.verdict, following)
+    return _answer(
+        peak,
+        [*history._rows(), *history._remarks()],
+        pictures,
+        history.warnings,
+        history.verdict,
+        following,
+    )
 
 
 def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
@@ -224,7 +232,9 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     keywords = arguments | draft | {"progress": wanted, "check": False}
     solution = _converged(bearing.solve(**keywords), "equilibrium")
     rows, life = _selected(solution, BEARING_ROWS), case.life()
-    rows += [] if life is None else solution.life(**life)._rows()
+    if life is not None:
+        rated = solution.life(**life)
+        rows += [*rated._rows(), *rated._remarks()]
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
         pictures = [_ring(one) for one in solution.bearings]
@@ -249,8 +259,8 @@ def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> A
     solution = solve_indentation(**arguments, progress=wanted)
     last = int(np.argmax(solution.approach))
     rows = [
-        (words, display.number(float(getattr(solution, name)[last]), UNITS[name]))
-        for words, name in INDENT_ROWS.items()
+        display.numbered(name, label, float(getattr(solution, name)[last]), UNITS[name])
+        for name, label in INDENT_ROWS.items()
     ]
     pictures, reading = [_loads(arguments, solution)], apparent_modulus(solution)
     if reading is not None:
@@ -295,28 +305,28 @@ def _answer(
     return {"parts": parts, "next": following}
 
 
-def _selected(result: Any, names: set[str]) -> list[tuple[str, str]]:
-    """Return some of the printed rows of a result, none of None."""
-    return [] if result is None else [row for row in result._rows() if row[0] in names]
+def _selected(result: Any, keys: set[str]) -> list[Row]:
+    """Return some of the rows of a result, none of None."""
+    return [] if result is None else [row for row in result._rows() if row.key in keys]
 
 
-def _extremes(summary: nacre.types.StressSummary) -> list[tuple[str, str]]:
+def _extremes(summary: nacre.types.StressSummary) -> list[Row]:
     """Return the largest stresses of all layers and the substrate."""
     rows = []
     for name, label in EXTREMES.items():
         worst = max(summary.layers, key=lambda part: getattr(part, name)[0])
-        text = with_error(getattr(worst, name)[0], worst.uncertainty.get(name))
-        rows.append((label, text))
+        value, error = getattr(worst, name)[0], worst.uncertainty.get(name)
+        rows.append(Row(name, label, with_error(value, error), value, "Pa", error))
     return rows
 
 
 def _table(rows: Rows, beside: Rows) -> str:
     """Return a table of numbers, those of a bare body beside them."""
-    lines, bare = [], dict(beside)
-    for name, text in rows:
-        cells = (text, bare.get(name, "")) if bare else (text,)
+    lines, bare = [], {row.key: row.text for row in beside}
+    for row in rows:
+        cells = (row.text, bare.get(row.key, "")) if bare else (row.text,)
         texts = "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)
-        lines.append(f"<tr><th>{html.escape(name)}</th>{texts}</tr>")
+        lines.append(f"<tr><th>{html.escape(row.label)}</th>{texts}</tr>")
     head = "<tr><th></th><th>coated</th><th>bare</th></tr>" if bare else ""
     return f"<table>{head}{''.join(lines)}</table>"
 

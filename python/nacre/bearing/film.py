@@ -20,9 +20,9 @@ from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.hertz import contact_modulus
-from nacre.results import display
 from nacre.results.quantities import FILM, Quantity
-from nacre.results.table_results import TableResult
+from nacre.results.rows import Row, remark
+from nacre.results.shown import TableResult
 
 SEPARATED = 3.0
 """Ratio λ of film and roughness from which surfaces count as separated: a convention."""
@@ -86,16 +86,9 @@ class Film(TableResult):
     def _si(self, row: Quantity) -> str:
         return row.si(line=math.isinf(self.ellipticity))
 
-    def _rows(self) -> list[tuple[str, str]]:
-        rows = [row for row in super()._rows() if not row[1].startswith("inf")]
-        return [*rows, ("regime", self.regime), ("model", self.model)]
-
-    def __str__(self) -> str:
-        """Return a table."""
-        return display.text(self._rows(), self.notes)
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.notes)
+    def _rows(self) -> list[Row]:
+        rows = [row for row in super()._rows() if math.isfinite(row.value)]
+        return [*rows, remark("regime", self.regime)]
 
 
 def _line(u: float, g: float, w: float) -> tuple[float, float]:

@@ -11,12 +11,11 @@ with the original.
 
 from __future__ import annotations
 
-import functools
 import math
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -29,9 +28,9 @@ from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution, check_unyielded
-from nacre.results import display
 from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
-from nacre.results.table_results import TableResult
+from nacre.results.rows import Row
+from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
     from nacre.contact.stresses import Stress
@@ -216,17 +215,10 @@ class _Beside(TableResult, is_base=True):
     interface_shear: float
     notes: tuple[str, ...]
 
-    def _layered(self) -> list[tuple[str, str]]:
-        """Return the rows of the table, those of layers only where there are some."""
+    def _rows(self) -> list[Row]:
+        """Return the numbers, those of layers only where there are some."""
         rows = super()._rows()
         return rows if self.interface_shear > 0 else rows[: -len(COATING)]
-
-    def __str__(self) -> str:
-        """Return a table."""
-        return display.text(self._rows(), self.notes)
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.notes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -263,24 +255,9 @@ class StressVolume(_Beside):
     notes: tuple[str, ...]
     """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
-    def _rows(self) -> list[tuple[str, str]]:
-        integral_text = (
-            f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
-        )
-        return [("integral", integral_text), *self._layered()]
-
-
-def _in_si(
-    unbound: Callable[Concatenate[LifeRatio, P], T],
-) -> Callable[Concatenate[LifeRatio, P], T]:
-    """Return a method that is in SI for lives of bearings, and in the units that are set else."""
-
-    @functools.wraps(unbound)
-    def inside(ratio: LifeRatio, /, *args: P.args, **kwargs: P.kwargs) -> T:
-        method = display.in_si(unbound) if OF_RINGS in ratio.model else unbound
-        return method(ratio, *args, **kwargs)
-
-    return inside
+    def _rows(self) -> list[Row]:
+        text = f"{self.integral:.5g}" if self.integral > 0 else "0: no stress is above the limit"
+        return [Row("integral", "integral", text, self.integral), *super()._rows()]
 
 
 @dataclass(frozen=True, repr=False)
@@ -322,16 +299,16 @@ class LifeRatio(_Beside):
     notes: tuple[str, ...]
     """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
-    to_xarray = _in_si(_Beside.to_xarray)
-    save = _in_si(_Beside.save)
+    @property
+    def _IN_SI(self) -> bool:
+        return OF_RINGS in self.model
 
-    @_in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        ratio_text = f"{self.ratio:.5g}"
+    def _rows(self) -> list[Row]:
+        text = f"{self.ratio:.5g}"
         if math.isinf(self.ratio):
-            ratio_text = "infinite: no stress is above the fatigue limit"
-        rows = self._layered()
-        return [("life over that of the reference", ratio_text), *rows, ("model", self.model)]
+            text = "infinite: no stress is above the fatigue limit"
+        label = "life over that of the reference"
+        return [Row("ratio", label, text, self.ratio), *super()._rows()]
 
 
 def _highest(values: Array) -> Array:

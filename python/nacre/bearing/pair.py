@@ -7,11 +7,9 @@ kinematics are those of the single bearings; each ring is set along the axis by 
 from __future__ import annotations
 
 import math
-import os
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
@@ -31,6 +29,7 @@ from nacre.bearing.life import LINE, POINT
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
+    VECTOR_ROWS,
     VECTORS,
     BearingReport,
     BearingSolution,
@@ -57,9 +56,10 @@ from nacre.bearing.solving import (
 )
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
-from nacre.results.quantities import BEARING, PAIR_LIFE, Quantity
-from nacre.results.report import Sections, input_rows, notebook_picture, table, writer
-from nacre.results.table_results import TableResult
+from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.rows import Row, remark
+from nacre.results.shown import TableResult
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -473,6 +473,7 @@ class PairLife(TableResult):
 
     _QUANTITIES = PAIR_LIFE
     _TITLE = "reference rating life of a pair of bearings"
+    _IN_SI = True
 
     revolutions: float
     """Life in which 10 % of such pairs lose a bearing, in revolutions."""
@@ -485,24 +486,21 @@ class PairLife(TableResult):
     model: str
     """Model in words."""
 
-    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
-    save = display.in_si(TableResult.save)
-
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        def text(life: float) -> str:
-            if math.isinf(life):
-                return "infinite: no element is loaded"
-            return f"{rounded(life / 1e6, 4)} million revolutions"
-
-        lives = {row.label: text(row.of(self)) for row in PAIR_LIFE if row.name != "hours"}
+    def _rows(self) -> list[Row]:
+        rows = []
+        for quantity in (row for row in PAIR_LIFE if row.label):
+            life = quantity.of(self)
+            text = f"{rounded(life / 1e6, 4)} million revolutions"
+            words = "infinite: no element is loaded"
+            rows.append(
+                Row(quantity.name, quantity.label, text if life < math.inf else words, life)
+            )
         if math.isfinite(self.hours):
-            lives["hours"] = rounded(self.hours, 4)
-        return [*lives.items(), ("model", self.model)]
+            rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
+        return rows
 
-    def _sections(self) -> Sections:
-        numbers = [row for row in self._rows() if row[0] != "model"]
-        return replace(super()._sections(), numbers=numbers)
+    def _report_rows(self) -> Rows:
+        return self._rows()
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -662,7 +660,6 @@ class PairSolution(Equilibrium):
         hours = both * min(first.hours, second.hours)
         return PairLife(both * shortest, hours, first.revolutions, second.revolutions, first.model)
 
-    @display.in_si
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the shaft's numbers and of both bearings'; needs ``nacre-contact[files]``.
 
@@ -673,85 +670,51 @@ class PairSolution(Equilibrium):
         """
         table, variables = [], {}
         for prefix, solution in (("", self), *zip(NAMES, self.bearings, strict=True)):
-            for row in BEARING if prefix else self._vectors():
+            for row in BEARING if prefix else VECTOR_ROWS:
                 if (value := row.of(solution)) is not None:
                     name = f"{prefix}_{row.name}".strip("_")
                     dims = [f"{prefix}_{dim}" if dim == "element" else dim for dim in row.dims]
                     table.append((replace(row, name=name), row.si()))
                     variables[name] = (dims, np.asarray(value))
-        return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
+        with self._units():
+            return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
 
-    @display.in_si
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
         values = {field.name: getattr(self.pair, field.name) for field in fields(self.pair)}
         names = ("model", "rotation", "speed", "rotating", "cells")
-        values |= {name: getattr(self.first, name) for name in names}
-        parts = {name: getattr(self, name)._sections() for name in NAMES}
-        numbers = [row for row in self._rows() if row[0] not in ("contacts", "ended")]
-        numbers += [
-            (f"{name}: {key}", text) for name, part in parts.items() for key, text in part.numbers
+        return input_rows(values | {name: getattr(self.first, name) for name in names}, PRELOAD)
+
+    def _report_rows(self) -> Rows:
+        rows = [
+            row._replace(key=f"{name}.{row.key}", label=f"{name}: {row.label}")
+            for name, bearing in zip(NAMES, self.bearings, strict=True)
+            for row in bearing._report_rows()
         ]
-        pictures = [
+        return [*self._rows(), *rows]
+
+    def _pictures(self) -> Sequence[Picture]:
+        return [
             picture._replace(caption=f"{name.capitalize()} bearing. {picture.caption}")
-            for name, part in parts.items()
-            for picture in part.pictures
+            for name, bearing in zip(NAMES, self.bearings, strict=True)
+            for picture in bearing._pictures()
         ]
-        tables = [table(STIFFNESS, stiffness_rows(self.tangent))]
-        tables += [
-            one._replace(title=f"{one.title}, {name} bearing")
-            for name, part in parts.items()
-            for one in part.tables
+
+    def _tables(self) -> Sequence[Table]:
+        tables = [
+            elements._replace(title=f"{elements.title}, {name} bearing")
+            for name, bearing in zip(NAMES, self.bearings, strict=True)
+            for elements in bearing._tables()
         ]
-        model = parts["first"].model
-        inputs = input_rows(values, PRELOAD)
-        return Sections(self._TITLE, inputs, numbers, pictures, tables, model, self.report.warnings)
+        return [table(STIFFNESS, stiffness_rows(self.tangent)), *tables]
 
-    @staticmethod
-    def _vectors() -> list[Quantity]:
-        """Return the quantities of the shaft."""
-        kinds = {row.name: row for row in BEARING}
-        return [kinds[name] for name in VECTORS]
+    def _model(self) -> Rows:
+        return self.first._model()
 
-    @display.in_si
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``, ``.csv`` for the table of elements, a picture, or ``.html``
-            for a report.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from nacre.bearing import AngularContactBall, Pair
-        >>> ball = AngularContactBall(
-        ...     count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4
-        ... )
-        >>> pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
-        >>> solution = pair.solve(model="iso16281")
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(solution.save(f"{folder}/pair.nc")) == solution
-        True
-        """
-        writers = files.tabular(self, self._file_rows(), **self._comments()) | writer(self)
-        writers |= files.pictures(lambda: next(iter(self.plot().values())))
-        return files.save(path, writers)
+    def _notebook_picture(self) -> bytes | None:
+        return self._heavier._notebook_picture()
 
     def _comments(self) -> dict[str, object]:
-        return {"model": self.first.model, **self._vector_texts(), **self._notes()}
+        return {"model": self.first.model, **self._vector_texts(), **self._numbered_warnings()}
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
         (heads, *rows), (_, *others) = (one._file_rows() for one in self.bearings)
@@ -759,35 +722,33 @@ class PairSolution(Equilibrium):
         for name, elements in zip(NAMES, (rows, others), strict=True):
             yield from ([name, *row] for row in elements)
 
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return names and values of the main numbers, with units."""
-        heavier = max(self.bearings, key=lambda one: one.largest_load)
+    @property
+    def _heavier(self) -> BearingSolution:
+        """Bearing with the larger load of an element."""
+        return max(self.bearings, key=lambda bearing: bearing.largest_load)
+
+    def _rows(self) -> list[Row]:
         rows = []
-        for row in self._vectors():
-            values = [heavier._rounded(row.name, value) for value in row.of(self)]
-            rows.append((row.label, display.pair(values, row.si())))
-        for name, one in zip(NAMES, self.bearings, strict=True):
-            forces = {"thrust": one.force[2], "radial": math.hypot(*one.force[:2])}
+        for row in VECTOR_ROWS:
+            values = [self._heavier._rounded(row.name, value) for value in row.of(self)]
+            text = display.pair(values, row.si())
+            rows.append(Row(row.name, row.label, text, values, row.si()))
+        for name, bearing in zip(NAMES, self.bearings, strict=True):
+            forces = {"thrust": bearing.force[2], "radial": math.hypot(*bearing.force[:2])}
             texts = [
-                f"{word} {display.number(heavier._rounded('force', value), 'N')}"
+                f"{word} {display.number(self._heavier._rounded('force', value), 'N')}"
                 for word, value in forces.items()
             ]
-            pressure = display.estimated(one, "peak_pressure", "Pa", one._digits("peak_pressure"))
-            texts += [f"peak pressure {pressure}", f"{one.loaded} of {one.bearing.elements} loaded"]
-            rows.append((f"{name} bearing", ", ".join(texts)))
+            digits = bearing._digits("peak_pressure")
+            pressure = display.estimated(bearing, "peak_pressure", "Pa", digits)
+            texts += [f"peak pressure {pressure}"]
+            texts += [f"{bearing.loaded} of {bearing.bearing.elements} loaded"]
+            rows.append(remark(f"{name} bearing", ", ".join(texts)))
+        return rows
+
+    def _remarks(self) -> list[Row]:
         contacts = "ISO/TS 16281, a model" if self.first.model != "solved" else "solved contacts"
-        return [*rows, ("contacts", contacts), self._ended()]
-
-    def __str__(self) -> str:
-        """Return the verdict and the main numbers."""
-        return f"{self.verdict}\n\n" + display.text(self._rows(), self.report.warnings)
-
-    def _repr_html_(self) -> str:
-        verdict = self.verdict.sentences
-        heavier = max(self.bearings, key=lambda one: one.largest_load)
-        picture = notebook_picture(heavier._pictures()[:1])
-        return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
+        return [remark("contacts", contacts), self._ended()]
 
     def _state(self) -> dict[str, object]:
         state = {name: list(getattr(self, name)) for name in VECTORS}

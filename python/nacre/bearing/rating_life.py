@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -30,10 +29,10 @@ from nacre.bearing.modified import (
     simple_fatigue_load_limit,
 )
 from nacre.bearing.verdict import life_verdict
-from nacre.results import display
 from nacre.results.quantities import BEARING_LIFE
-from nacre.results.report import Sections
-from nacre.results.table_results import TableResult
+from nacre.results.report import Rows
+from nacre.results.rows import Row
+from nacre.results.shown import TableResult
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -74,6 +73,7 @@ class BearingLife(TableResult):
 
     _QUANTITIES = BEARING_LIFE
     _TITLE = "rating life of a bearing"
+    _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
         *("viscosity_ratio", "contamination_factor"),
@@ -109,9 +109,6 @@ class BearingLife(TableResult):
     model: str
     """Model in words."""
 
-    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
-    save = display.in_si(TableResult.save)
-
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         fields = dict(state)
@@ -125,28 +122,26 @@ class BearingLife(TableResult):
         """Verdict: how long the bearing lives; no life is required of it."""
         return life_verdict(self)
 
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
+    def _rows(self) -> list[Row]:
         if math.isinf(self.l10):
-            return [("life", "infinite: no element is loaded"), *self._others()]
-        rows = [("life L10r", f"{rounded(self.l10, 4)} million revolutions")]
-        if self.modification_factor is not None or self.reliability_factor != 1:
-            name = f"life L{round(100 * (1 - self.reliability), 6):g}{'m' * self._is_modified}"
-            rows.append((name, f"{rounded(self.revolutions / 1e6, 4)} million revolutions"))
+            words = "infinite: no element is loaded"
+            return [Row("l10", "life", words, self.l10), *super()._rows()]
+        text = f"{rounded(self.l10, 4)} million revolutions"
+        rows = [Row("l10", "life L10r", text, self.l10)]
+        if self._is_modified or self.reliability_factor != 1:
+            label = f"life L{round(100 * (1 - self.reliability), 6):g}{'m' * self._is_modified}"
+            text = f"{rounded(self.revolutions / 1e6, 4)} million revolutions"
+            rows.append(Row("revolutions", label, text, self.revolutions))
         if math.isfinite(self.hours):
-            rows.append(("hours", rounded(self.hours, 4)))
-        return [*rows, *self._others()]
+            rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
+        return [*rows, *super()._rows()]
 
-    def _sections(self) -> Sections:
-        numbers = [row for row in self._rows() if row[0] != "model"]
-        return dataclasses.replace(super()._sections(), numbers=numbers)
+    def _report_rows(self) -> Rows:
+        return self._rows()
 
     @property
     def _is_modified(self) -> bool:
         return self.modification_factor is not None
-
-    def _others(self) -> list[tuple[str, str]]:
-        return [*super()._rows(), ("model", self.model)]
 
 
 class _Rate(NamedTuple):

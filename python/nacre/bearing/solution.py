@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.typing import AnyPath, among
-from nacre._tools.units import printable, rounded, symbol
+from nacre._tools.typing import among
+from nacre._tools.units import rounded, symbol
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
@@ -31,15 +29,16 @@ from nacre.results.base import Result
 from nacre.results.quantities import BEARING, PER_CONTACT, Quantity
 from nacre.results.report import (
     Picture,
-    Sections,
+    Rows,
+    Table,
     contact_pictures,
     input_rows,
     notebook_picture,
     table,
-    writer,
 )
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, bars, lines
-from nacre.results.table_results import Tabular
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -75,6 +74,8 @@ ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": (
 """Units in which angles are printed, and how many there are in a radian."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
+VECTOR_ROWS = [row for row in BEARING if row.name in VECTORS]
+"""Quantities of the ring, in this order."""
 STIFFNESS = "Stiffness in N, N m, m and rad"
 """Title of the table of a stiffness."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
@@ -150,8 +151,10 @@ def stiffness_rows(tangent: Array) -> list[list[object]]:
     return [head, *([name, *row] for name, row in zip(names, tangent.tolist(), strict=True))]
 
 
-class Equilibrium(Tabular, is_base=True):
+class Equilibrium(Shown, Result, is_base=True):
     """Base of equilibria: displacements, forces and stiffness of a ring or of a shaft."""
+
+    _IN_SI = True
 
     displacement: tuple[float, float, float]
     tilt: tuple[float, float]
@@ -160,23 +163,19 @@ class Equilibrium(Tabular, is_base=True):
     tangent: Array
     report: BearingReport
 
-    @abstractmethod
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return names and values of the main numbers, with units."""
+    @property
+    def _warnings(self) -> Sequence[str]:
+        return self.report.warnings
 
-    def _ended(self) -> tuple[str, str]:
-        """Return the row that says how the iteration ended."""
+    def _ended(self) -> Row:
+        """Return how the iteration ended."""
         report = self.report
         ended = f"{report.termination} after {report.iterations} steps"
-        return "ended", f"{ended}, balance {report.balance:.0e}"
+        return remark("ended", f"{ended}, balance {report.balance:.0e}")
 
     def _vector_texts(self) -> dict[str, str]:
         """Return the displacements and forces to the bit, by name."""
         return {name: " ".join(f"{v:.17g}" for v in getattr(self, name)) for name in VECTORS}
-
-    def _notes(self) -> dict[str, str]:
-        """Return the warnings, numbered."""
-        return {f"warning {k}": text for k, text in enumerate(self.report.warnings, start=1)}
 
     def _check_vectors(self) -> None:
         """Raise a `ValueError` unless displacements, forces and stiffness have their lengths."""
@@ -185,11 +184,6 @@ class Equilibrium(Tabular, is_base=True):
             raise ValueError("displacement, tilt, force and moment must have 3, 2, 3 and 2 numbers")
         if self.tangent.shape != (5, 5):
             raise ValueError(f"tangent must have the shape (5, 5), got {self.tangent.shape}")
-
-    def __repr__(self) -> str:
-        """Return the main numbers in a line."""
-        rows = ", ".join(" ".join(row) for row in self._rows())
-        return printable(f"<{type(self).__name__}: {rows}>")
 
     def __eq__(self, other: object) -> bool:
         """Return whether all numbers are equal; NaN is equal to NaN."""
@@ -565,7 +559,6 @@ class BearingSolution(Equilibrium):
 
         return plot.bearing(self, axes)
 
-    @display.in_si
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of all numbers over elements, rings and laminae; needs ``nacre-contact[files]``.
 
@@ -580,43 +573,8 @@ class BearingSolution(Equilibrium):
                 variables[row.name] = (row.dims, np.asarray(value))
         coordinates = {"ring": list(RINGS)}
         table = [(row, row.si()) for row in BEARING]
-        return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
-
-    @display.in_si
-    def save(self, path: AnyPath) -> Path:
-        """Write a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.nc`` for NetCDF, which `nacre.load` reads and which needs
-            ``nacre-contact[files]``; ``.csv`` for the table of the elements; ``.png``, ``.pdf`` and
-            ``.svg`` for the picture that `plot` draws; ``.html`` for a report on a page to print
-            and to sign.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from nacre.bearing import DeepGrooveBall
-        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
-        >>> solution = bearing.solve(force=(1000.0, 0.0, None), model="iso16281")
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(solution.save(f"{folder}/bearing.nc")) == solution
-        True
-        """
-        writers = files.tabular(self, self._file_rows(), **self._comments())
-        writers |= files.pictures(lambda: next(iter(self.plot().values()))) | writer(self)
-        return files.save(path, writers)
+        with self._units():
+            return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
 
     def _comments(self) -> dict[str, object]:
         errors = self.report.discretisation or {}
@@ -627,7 +585,7 @@ class BearingSolution(Equilibrium):
             "model": self.model,
             **self._vector_texts(),
             **error_columns,
-            **self._notes(),
+            **self._numbered_warnings(),
         }
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
@@ -641,9 +599,9 @@ class BearingSolution(Equilibrium):
         return columns
 
     def _file_rows(self) -> list[list[object]]:
-        return self._table(lambda _, value: value)
+        return self._elements(lambda _, value: value)
 
-    def _table(self, shown: Callable[[str, float], float]) -> list[list[object]]:
+    def _elements(self, shown: Callable[[str, float], float]) -> list[list[object]]:
         """Return the table of the elements, with numbers as they are shown."""
         columns = self._columns()
         units = [(name, symbol(row.si())) for row, name, _ in columns]
@@ -654,27 +612,37 @@ class BearingSolution(Equilibrium):
         ]
         return [["element", *heads], *rows]
 
-    @display.in_si
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
         names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
-        inputs = input_rows({name: getattr(self, name) for name in names})
-        rows = self._rows()
-        model = [row for row in rows if row[0] in ("contacts", "ended")]
-        numbers = [*(row for row in rows if row not in model), *self._geometry()]
-        tables = [
-            table("Elements and rings", self._table(self._rounded)),  # rounding is 0
+        return input_rows({name: getattr(self, name) for name in names})
+
+    def _report_rows(self) -> Rows:
+        """Return the numbers, the dimensions that follow from others, and the rating."""
+        bearing, unit = self.bearing, "m"
+        dimensions = {
+            "pitch_diameter": (bearing.pitch, unit),
+            "clearance": (bearing.play, unit),
+            "rating": (float(bearing.capacity or 0.0), "N"),
+        }
+        rows = [
+            display.numbered(name, name.replace("_", " "), *number)
+            for name, number in dimensions.items()
+        ]
+        return [*self._rows(), *rows]
+
+    def _tables(self) -> Sequence[Table]:
+        elements = self._elements(self._rounded)  # rounding is 0
+        return [
+            table("Elements and rings", elements),
             table(STIFFNESS, stiffness_rows(self.tangent)),
         ]
-        errors = [("±", SIZE_ERRORS)] if self.report.discretisation else []
-        limits = [*model, *errors, ("not counted", NOT_COUNTED)]
-        warnings = self.report.warnings
-        return Sections(self._TITLE, inputs, numbers, self._pictures(), tables, limits, warnings)
 
-    def _geometry(self) -> list[tuple[str, str]]:
-        """Return the dimensions that follow from others, and the rating."""
-        dimensions = {"pitch diameter": self.bearing.pitch, "clearance": self.bearing.play}
-        rows = [(name, display.number(value, "m")) for name, value in dimensions.items()]
-        return [*rows, ("rating", display.number(float(self.bearing.capacity or 0.0), "N"))]
+    def _model(self) -> Rows:
+        errors = [remark("±", SIZE_ERRORS)] if self.report.discretisation else []
+        return [*self._remarks(), *errors, remark("not counted", NOT_COUNTED)]
+
+    def _notebook_picture(self) -> bytes | None:
+        return notebook_picture(self._pictures()[:1])
 
     def _pictures(self) -> list[Picture]:
         """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
@@ -700,30 +668,27 @@ class BearingSolution(Equilibrium):
         drawing = lines(curves, (Axis("x along the element", "m"), Axis("pressure", "Pa")))
         return [*pictures, Picture(f"Largest pressure along element {heaviest}.", drawing)]
 
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return names and values of the main numbers, with units."""
-        kinds = {row.name: row for row in BEARING}
-        rows = []
-        for row in (kinds[name] for name in VECTORS):
+    def _rows(self) -> list[Row]:
+        kinds, rows = {row.name: row for row in BEARING}, []
+        for row in VECTOR_ROWS:
             values = [self._rounded(row.name, value) for value in row.of(self)]
             angles = f"({', '.join(_angles(row.name, values))}) mrad" if row.name == "tilt" else ""
-            rows.append((row.label, angles or display.pair(values, row.si())))
+            text = angles or display.pair(values, row.si())
+            rows.append(Row(row.name, row.label, text, values, row.si()))
         for name in ("largest_load", "peak_pressure", "edge_pressure"):
             if not math.isnan(getattr(self, name)):
-                unit, digits = kinds[name].si(), self._digits(name)
-                rows.append((kinds[name].label, display.estimated(self, name, unit, digits)))
+                rows.append(display.estimated_row(self, kinds[name], self._digits(name)))
         if self.speed:
-            rows.append((kinds["cage_speed"].label, display.number(self.cage_speed, "rad/s")))
+            row = kinds["cage_speed"]
+            rows.append(display.numbered(row.name, row.label, self.cage_speed, row.si()))
+        loaded = f"{self.loaded} of {self.bearing.elements} elements"
+        return [*rows, Row("loaded", "loaded", loaded, self.loaded)]
+
+    def _remarks(self) -> list[Row]:
         contacts = "solved contacts" if self.model == "solved" else "ISO/TS 16281, a model"
         if self._sharp:
             contacts += "; ends are sharp: their pressure has no limit, and grows with the cells"
-        return [
-            *rows,
-            ("loaded", f"{self.loaded} of {self.bearing.elements} elements"),
-            ("contacts", contacts),
-            self._ended(),
-        ]
+        return [remark("contacts", contacts), self._ended()]
 
     def _printed(self, row: Quantity, name: str, values: Array) -> list[str]:
         """Return heading and cells of a column of the table of elements, in one unit."""
@@ -750,25 +715,16 @@ class BearingSolution(Equilibrium):
         straight = getattr(self.bearing, "profile", "") is None
         return straight and self.model == "solved" and bool(np.nanmax(self.edge_pressures) > 0)
 
-    @display.in_si
-    def __str__(self) -> str:
-        """Return the verdict, the main numbers, and a table of the loaded elements."""
+    def _table(self) -> Printed | None:
+        """Return the table of the loaded elements."""
         columns = [(r, n, v) for r, n, v in self._columns() if not np.isnan(v).all()]
         loaded = np.flatnonzero(carrying(self.loads).any(axis=1))
+        if not loaded.size:
+            return None
         cells = [["element", *map(str, loaded)]]
         cells += [self._printed(row, name, values[loaded]) for row, name, values in columns]
-        lines = [*zip(*cells, strict=True)]
-        table = "\n".join(["", "", *display.aligned(lines)] if len(lines) > 1 else [])
-        return (
-            f"{self.verdict}\n\n"
-            + display.text(self._rows(), self.report.warnings)
-            + printable(table)
-        )
-
-    def _repr_html_(self) -> str:
-        verdict = self.verdict.sentences
-        picture = notebook_picture(self._pictures()[:1])
-        return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
+        head, *rows = zip(*cells, strict=True)
+        return Printed(head, rows, side=">")
 
     @classmethod
     def _names(cls) -> list[str]:

@@ -18,9 +18,8 @@ from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import GROOVES, is_thrust
 from nacre.bearing.kinds import BallBearing, CurvedRaceways, RollerBearing, checked_bearing
 from nacre.hertz import Ellipse, contact_modulus
-from nacre.results import display
 from nacre.results.quantities import STATIC_LOAD
-from nacre.results.table_results import TableResult
+from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
     from nacre.bearing.solution import BearingSolution
@@ -167,6 +166,7 @@ class StaticLoad(TableResult):
 
     _QUANTITIES = STATIC_LOAD
     _TITLE = "static load of a bearing"
+    _IN_SI = True
 
     rating: float
     """Static load rating C_0 [N]."""
@@ -176,13 +176,6 @@ class StaticLoad(TableResult):
     """Static safety factor ``s_0 = C_0/P_0``; infinite without load."""
     model: str
     """Model in words."""
-
-    to_xarray = display.in_si(TableResult.to_xarray)  # type: ignore[arg-type]
-    save = display.in_si(TableResult.save)
-
-    @display.in_si
-    def _rows(self) -> list[tuple[str, str]]:
-        return [*super()._rows(), ("model", self.model)]
 
 
 def static_load_of(solution: BearingSolution) -> StaticLoad:

@@ -26,7 +26,7 @@ from nacre.indent.solution import IndentSolution
 from nacre.results import files, tables
 from nacre.results.display import SLIGHT, aligned, column, shown_in
 from nacre.results.quantities import BEARING, ERROR, WEAR
-from nacre.results.table_results import TableResult
+from nacre.results.shown import TableResult
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
 from nacre.studies.report import save_report
@@ -330,7 +330,10 @@ def sweep(
                 dataset,
                 path,
                 case=text,
-                inputs=[("units of the case", case_file.units), *files_of(case_file)],
+                inputs=[
+                    ("units of the case", case_file.units),
+                    *((row.label, row.text) for row in files_of(case_file)),
+                ],
             )
             continue
         with replacing(path) as temporary:

@@ -13,6 +13,7 @@ from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import report
+from nacre.results.rows import Row, remark
 
 Results = dict[str, Any]
 Options = Mapping[str, Any]
@@ -119,17 +120,18 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
     of_stress = {} if case.kind == "wear" else tables["stress"] or {}
     sliding = {k: v for k, v in of_stress.items() if k in DEPTH_OPTIONS}
     cards = [
-        (f"{card.name}, {words}", text)
+        remark(f"{card.name}, {words}", text)
         for card in case.cards()
         for words, text in [("material", card.title), *card.numbers_in_words]
     ]
-    rows = [("units of the case", case.units), *files, *cards, *report.input_rows(tables)]
+    units = remark("units of the case", case.units)
+    rows = [units, *files, *cards, *report.input_rows(tables)]
     return report.text(name, [*results.values()], text, rows, sliding)
 
 
-def files_of(case: Case) -> list[tuple[str, str]]:
+def files_of(case: Case) -> list[Row]:
     """Return the measured files that a case names, with their SHA-256."""
     return [
-        (str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
+        remark(str(path), f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}")
         for path in case.measured()
     ]

@@ -141,9 +141,10 @@ def signature_fields(
             default = None if types.NoneType in get_args(hint) else ...
         hint = hint | None if default is None else hint
         unit = units.get(one.name)
-        extra: Any = {"unit": unit, "unit_of_lines": line[one.name]} if unit else None
-        text = descriptions.get(one.name)
-        fields[one.name] = (hint, Field(default, description=text, json_schema_extra=extra))
+        asked: dict[str, Any] = {"description": descriptions.get(one.name)}
+        if unit:
+            asked["json_schema_extra"] = {"unit": unit, "unit_of_lines": line[one.name]}
+        fields[one.name] = (hint, Field(default, **asked))
     return fields
 
 

@@ -203,6 +203,10 @@ def slide(
         Body that it is pressed into.
     counterbody : HalfSpace or Elastic, optional
         Body that carries the shape and moves over the body; rigid where there is none.
+    steps : iterable of mapping, optional
+        Steps of a history, each a mapping of the keywords from `load` to `torque`. Motion along z
+        and friction that a step does not give stay as in the step before; at first, they are
+        those of the call.
     grid : Grid, optional
         Cells of pressure and traction; by default that of `solve` for the largest load.
     max_cells : int, optional
@@ -211,10 +215,6 @@ def slide(
         what the limit costs, and a warning too where that is more than 1 %.
     threads : int, optional
         Number of threads; by default all of the machine's, or what ``NACRE_NUM_THREADS`` says.
-    steps : iterable of mapping, optional
-        Steps of a history, each a mapping of the keywords from `load` to `torque`. Motion along z
-        and friction that a step does not give stay as in the step before; at first, they are
-        those of the call.
     load, approach, eccentricity, moment, tilt : optional
         Motion along z, as `Contact.solve` explains.
     friction : float or array_like
@@ -647,11 +647,11 @@ class Contact:
         cases : iterable of mapping
             Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
             `approach`, `eccentricity`, `moment`, `tilt`.
-        hardness, compliance, tolerance, max_iterations, algorithm : optional
-            How the solutions are found, as `nacre.solve` explains.
         progress : callable, optional
             Function that is called with the number of finished cases and of all cases, at most 50
             times a second, and at the end. Its result is ignored.
+        hardness, compliance, tolerance, max_iterations, algorithm : optional
+            How the solutions are found, as `nacre.solve` explains.
         check : bool, optional
             Whether to raise an error if the tolerance was not met.
 

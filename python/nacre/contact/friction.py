@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,15 +22,17 @@ from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
 from nacre.results.report import (
     Picture,
-    Sections,
+    Rows,
+    Table,
     contact_pictures,
     input_rows,
     map_picture,
     notebook_picture,
     other_numbers,
     table,
-    writer,
 )
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, lines
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class FrictionReport(Result):
 
 
 @dataclass(frozen=True, repr=False)
-class FrictionSolution(NormalContact, Result):
+class FrictionSolution(NormalContact, Shown, Result):
     """A contact with friction: one step of a history, or rolling.
 
     Fields are at cell centres, and read-only. Tractions act on the body, and their opposites on
@@ -308,40 +309,6 @@ class FrictionSolution(NormalContact, Result):
         """
         return files.gridded(self)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
-            `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is every cell;
-            ``.png``, ``.pdf`` and ``.svg`` are the picture that `plot` draws, which needs
-            ``nacre-contact[plot]``; ``.html`` is a report on a page to print and to sign.
-
-        Returns
-        -------
-        pathlib.Path
-            Path of the file.
-
-        Raises
-        ------
-        ValueError
-            If the ending is another.
-        OSError
-            If the file cannot be written.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
-        True
-        """
-        return files.save(path, files.writers(self, self.plot) | writer(self))
-
     def __repr__(self) -> str:
         """Return the main numbers in a line."""
         nx, ny = self.grid.shape
@@ -357,16 +324,28 @@ class FrictionSolution(NormalContact, Result):
             f"force {force}, {motion[0]} {components}, {end}>"
         )
 
-    def __str__(self) -> str:
-        """Return a table of the main numbers."""
-        return display.text(self._rows(), self._warnings)
+    def _rows(self) -> list[Row]:
+        """Return the numbers of the normal contact, and those of friction."""
+        grid = next(row for row in self.normal._remarks() if row.key == "grid")
+        return [*self.normal._rows(), grid, *_friction_rows(self)]
 
-    def _repr_html_(self) -> str:
-        picture = notebook_picture(self._pictures())
-        return display.markup(self._rows(), self._warnings, picture)
+    def _remarks(self) -> list[Row]:
+        return [remark("ended", _ending(self.report))]
 
-    def _pictures(self) -> list[Picture]:
-        """Return the pictures of a report: pressure, and where the contact sticks and slips."""
+    def _inputs(self) -> Rows:
+        friction = {"friction": self.friction, "direction": self.direction}
+        return [*self.normal._inputs(), *input_rows(friction)]
+
+    def _report_rows(self) -> Rows:
+        friction = [*_friction_rows(self), *self._remarks()]
+        return [*self.normal._report_rows(), *friction, *other_numbers(self)]
+
+    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the pictures of a report; `stress` has keywords of stresses, for their picture."""
+        return [*self._contact_pictures(), *depth_pictures(self, **stress)]
+
+    def _contact_pictures(self) -> list[Picture]:
+        """Return the pictures of pressure, and of where the contact sticks and slips."""
         pictures = contact_pictures(self)
         if self.grid.is_line or not pictures:
             return pictures
@@ -376,35 +355,20 @@ class FrictionSolution(NormalContact, Result):
         axis = Axis("traction over its bound", "", (0.0, 1.0))
         return [*pictures, map_picture(self, share, axis, caption)]
 
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return the numbers of the normal contact, and those of friction."""
-        normal = [row for row in self.normal._rows() if row[0] != "ended"]
-        return [*normal, *_rows(self)]
-
-    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
-        """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
-        normal = self.normal._sections()
-        friction = {"friction": self.friction, "direction": self.direction}
-        pictures = [*self._pictures(), *depth_pictures(self, **stress)]
-        model = [
-            *(row for row in normal.model if row[0] != "not counted"),
-            ("friction", LAW),
-            ("friction ended", dict(_rows(self))["ended"]),
-            ("not counted", NOT_COUNTED),
-        ]
-        return Sections(
-            self._TITLE,
-            [*normal.inputs, *input_rows(friction)],
-            [*normal.numbers, *_rows(self), *other_numbers(self)],
-            pictures,
-            (),
-            model,
-            self.report.warnings,
-        )
+    def _notebook_picture(self) -> bytes | None:
+        return notebook_picture(self._contact_pictures())
 
     @property
-    def _warnings(self) -> list[str]:
-        return self.normal.report.warnings
+    def _warnings(self) -> Sequence[str]:
+        return self.report.warnings
+
+    def _writers(self) -> dict[str, Callable[[Path], object]]:
+        return files.writers(self, self.plot)
+
+    def _model(self) -> Rows:
+        normal = [row for row in self.normal._model() if row.key != "not_counted"]
+        ended = remark("friction ended", _ending(self.report))
+        return [*normal, remark("friction", LAW), ended, remark("not counted", NOT_COUNTED)]
 
     def _si(self, row: Quantity) -> str:
         """Return the SI unit of a quantity of this contact."""
@@ -451,7 +415,7 @@ class FrictionSolution(NormalContact, Result):
             return cls._of(core.FrictionSolved(normal._solved, rest=text, **fields))
 
 
-class History(list[FrictionSolution], Warned):
+class History(list[FrictionSolution], Shown, Warned):
     """Steps of sliding or rolling, in their order: a list, which is printed and saved as a whole.
 
     Examples
@@ -464,6 +428,7 @@ class History(list[FrictionSolution], Warned):
     """
 
     _QUANTITIES = WITH_FRICTION
+    _TITLE = "history of a contact with friction; numbers and pressures are of the last step"
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -560,45 +525,15 @@ class History(list[FrictionSolution], Warned):
         ranges = [np.ptp([step.force[axis] for step in self]) for axis in range(2)]
         return plot.loop(self, "xy"[int(np.argmax(ranges))], axes)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
+    def _inputs(self) -> Rows:
+        return checked(self)[-1]._inputs()
 
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
-            `nacre.load` and xarray; ``.csv`` is the numbers of each step; ``.png``, ``.pdf`` and
-            ``.svg`` are the picture that `plot` draws; ``.html`` is a report on a page to print and
-            to sign.
+    def _report_rows(self) -> Rows:
+        """Return the numbers of the last step."""
+        return checked(self)[-1]._report_rows()
 
-        Returns
-        -------
-        pathlib.Path
-            Path of the file.
-
-        Raises
-        ------
-        ValueError
-            If the ending is another, or there is no step.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> steps = [{"force": (force, None)} for force in (2.0, -2.0)]
-        >>> loop = nacre.slide(
-        ...     nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps
-        ... )
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(loop.save(f"{folder}/loop.nc")) == loop
-        True
-        """
-        writers = files.tabular(self, self._table())
-        return files.save(path, writers | files.pictures(self.plot) | writer(self))
-
-    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
-        """Return what stands in a report: the last step, and the numbers of all."""
-        last = checked(self)[-1]._sections(**stress)
+    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the pictures of a report: force over shift, and those of the last step."""
         forces = np.array([step.force for step in self])
         axis = int(np.argmax(np.ptp(forces, axis=0)))
         loop = []
@@ -609,15 +544,18 @@ class History(list[FrictionSolution], Warned):
                 Axis("force", "N/m" if self[0].grid.is_line else "N"),
             )
             loop = [Picture("Force over shift, all steps.", lines([curve], axes))]
-        return dataclasses.replace(
-            last,
-            title="history of a contact with friction; numbers and pressures are of the last step",
-            pictures=[*loop, *last.pictures],
-            tables=[table("Steps", self._table())],
-            warnings=self.warnings,
-        )
+        return [*loop, *checked(self)[-1]._pictures(**stress)]
 
-    def _table(self) -> list[list[object]]:
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot) if self else None
+
+    def _tables(self) -> Sequence[Table]:
+        return [table("Steps", self._file_rows())]
+
+    def _model(self) -> Rows:
+        return checked(self)[-1]._model()
+
+    def _file_rows(self) -> list[list[object]]:
         """Return the numbers of each step, after their headings."""
         first = checked(self)[0]
         quantities = [row for row, _ in tables.numbers(first)]
@@ -696,39 +634,40 @@ class History(list[FrictionSolution], Warned):
         """Return a history of the same steps."""
         return type(self)(self)
 
-    def __str__(self) -> str:
-        """Return a table of the steps."""
-        if not self:
-            return "a history of 0 steps"
-        return printable("\n".join(display.aligned(_step_rows(self), ">")))
+    def _rows(self) -> list[Row]:
+        return [] if self else [Row("steps", "", "a history of 0 steps")]
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> Printed | None:
+        """Return the table of the steps."""
         if not self:
-            return display.markup([["a history of 0 steps"]])
+            return None
         head, *rows = _step_rows(self)
-        picture = display.drawn(self.plot)
-        return display.markup(rows, picture=picture, head=head)
+        return Printed(head, rows, side=">")
 
 
 values.RESULTS["History"] = History
 
 
-def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:
-    """Return names and values of the main numbers of friction, with units."""
+def _friction_rows(solution: FrictionSolution) -> list[Row]:
+    """Return the main numbers of friction."""
     report, rolls = solution.report, solution.shift is None
     rows = display.rows(solution, FRICTION, TEXTS, solution.grid.is_line, rolls)
     touching, sticking = int((solution.pressure > 0).sum()), int(solution.stick.sum())
     share = (report.discretisation or {}).get("stick_share", 0.0)
     error = f" ± {np.ceil(share * touching):.0f}" if share > 0 else ""
     state = "all slips" if report.full_slip else f"{sticking}{error} of {touching} cells stick"
-    coupled = f", {report.sweeps} sweeps" if report.coupled else ""
-    accuracy = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
     return [
         *rows,
-        *([("rolls", f"towards {solution.direction}")] if rolls else []),
-        ("friction", state if touching else "nothing touches"),
-        ("ended", f"{report.termination}, {accuracy}{coupled}"),
+        *([remark("rolls", f"towards {solution.direction}")] if rolls else []),
+        remark("friction", state if touching else "nothing touches"),
     ]
+
+
+def _ending(report: FrictionReport) -> str:
+    """Return how the iteration of friction ended."""
+    coupled = f", {report.sweeps} sweeps" if report.coupled else ""
+    accuracy = f"violation {report.violation:.0e}, imbalance {report.imbalance:.0e}"
+    return f"{report.termination}, {accuracy}{coupled}"
 
 
 def _with_error(solution: FrictionSolution, name: str, text: str, size: float, unit: str) -> str:

@@ -32,14 +32,16 @@ from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
 from nacre.results.quantities import CONTACT, Quantity
 from nacre.results.report import (
+    Picture,
     Rows,
-    Sections,
     contact_pictures,
     input_rows,
     notebook_picture,
     other_numbers,
     writer,
 )
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Shown
 
 if TYPE_CHECKING:
     import xarray
@@ -241,7 +243,7 @@ def check_unyielded(solution: Solution) -> None:
 
 
 @dataclass(frozen=True, repr=False, init=False)
-class Solution(NormalContact, Result):
+class Solution(NormalContact, Shown, Result):
     """A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 
     Examples
@@ -707,24 +709,63 @@ class Solution(NormalContact, Result):
             f"{'converged' if report.converged else 'not converged'}>"
         )
 
-    def __str__(self) -> str:
-        """Return a table of the main numbers."""
-        return display.text(self._rows(), self._warnings)
+    def _rows(self) -> list[Row]:
+        rows, report = _number_rows(self), self.report
+        place = 1 + max(k for k, row in enumerate(rows) if row.key in ("approach", "tilt"))
+        rows.insert(place, remark("motion", _motion(report.motion)))
+        return [
+            *rows,
+            *display.body("body", report.body),
+            *display.body("counterbody", report.counterbody),
+            *_moduli(report),
+        ]
 
-    def _repr_html_(self) -> str:
-        picture = notebook_picture(contact_pictures(self))
-        return display.markup(self._rows(), self._warnings, picture)
+    def _remarks(self) -> list[Row]:
+        report = self.report
+        ended = f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"
+        return [remark("grid", _cells(report)), remark("ended", ended)]
 
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return names and values of the main numbers, with units."""
-        return _rows(self)
+    def _inputs(self) -> Rows:
+        report = self.report
+        units = {row.name: self._si(row) for row in CONTACT}
+        inputs = {
+            "shape": self._shape or "not kept in the solution",
+            "body": report.body,
+            "counterbody": report.counterbody or "rigid",
+            **report.motion,
+            "hardness": self.hardness,
+            "compliance": self.compliance,
+            "tolerance": report.tolerance,
+            "grid": report.grid,
+        }
+        return input_rows(inputs, units)
 
-    def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
-        """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
-        pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
-        numbers = [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]
-        inputs, model = _inputs(self), _model(self.report)
-        return Sections(self._TITLE, inputs, numbers, pictures, (), model, self._warnings)
+    def _report_rows(self) -> Rows:
+        return [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]
+
+    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the pictures of a report; `stress` has keywords of stresses, for their picture."""
+        return [*contact_pictures(self), *depth_pictures(self, **stress)]
+
+    def _notebook_picture(self) -> bytes | None:
+        return notebook_picture(contact_pictures(self))
+
+    def _model(self) -> Rows:
+        report = self.report
+        force, *moments = report.balance
+        balance = f"force {force:.0e}, moments {moments[0]:.0e} and {moments[1]:.0e}, relative"
+        ending = f"{report.termination}{_fallback(report)} after {report.iterations} iterations"
+        words = {
+            "theory": THEORY,
+            "not counted": NOT_COUNTED,
+            "motion": _motion(report.motion),
+            "grid": _cells(report),
+            "ended": ending,
+            "residual": f"{report.residual:.0e}; overlap {report.overlap:.0e}",
+            "balance": balance,
+            "±": "errors due to the size of the cells, estimated from coarser grids",
+        }
+        return [remark(*item) for item in words.items()]
 
     @property
     def _warnings(self) -> list[str]:
@@ -771,22 +812,7 @@ class Solution(NormalContact, Result):
             return cls._of(core.Solved(as_text(cls.__name__, position), parts, **state))
 
 
-def _rows(solution: Solution) -> list[tuple[str, str]]:
-    """Return names and values of the main numbers, with units."""
-    rows, report = _number_rows(solution), solution.report
-    place = 1 + max(k for k, (name, _) in enumerate(rows) if name in ("approach", "tilt"))
-    rows.insert(place, ("motion", _motion(report.motion)))
-    return [
-        *rows,
-        *display.body("body", report.body),
-        *display.body("counterbody", report.counterbody),
-        *_moduli(report),
-        ("grid", _cells(report)),
-        ("ended", f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"),
-    ]
-
-
-def _moduli(report: Report) -> list[tuple[str, str]]:
+def _moduli(report: Report) -> list[Row]:
     return display.moduli(report.body, report.counterbody)
 
 
@@ -797,35 +823,7 @@ def _cells(report: Report) -> str:
     return f"{report.grid.shape[0]} × {report.grid.shape[1]} cells{period}"
 
 
-def _inputs(solution: Solution) -> Rows:
-    """Return the inputs of a contact."""
-    report, hardness = solution.report, solution.hardness
-    units = {row.name: solution._si(row) for row in CONTACT}
-    inputs = {"body": report.body, "counterbody": report.counterbody or "rigid", **report.motion}
-    inputs |= {"hardness": hardness, "compliance": solution.compliance}
-    inputs |= {"tolerance": report.tolerance}
-    shape = solution._shape or "not kept in the solution"
-    return input_rows({"shape": shape, **inputs, "grid": report.grid}, units)
-
-
-def _model(report: Report) -> Rows:
-    """Return on what a solution stands, and what is not counted."""
-    force, *moments = report.balance
-    balance = f"force {force:.0e}, moments {moments[0]:.0e} and {moments[1]:.0e}, relative"
-    ending = f"{report.termination}{_fallback(report)} after {report.iterations} iterations"
-    return [
-        ("theory", THEORY),
-        ("not counted", NOT_COUNTED),
-        ("motion", _motion(report.motion)),
-        ("grid", _cells(report)),
-        ("ended", ending),
-        ("residual", f"{report.residual:.0e}; overlap {report.overlap:.0e}"),
-        ("balance", balance),
-        ("±", "errors due to the size of the cells, estimated from coarser grids"),
-    ]
-
-
-def _number_rows(solution: Solution) -> list[tuple[str, str]]:
+def _number_rows(solution: Solution) -> list[Row]:
     """Return names and values of the quantities that are printed, with units."""
     report, touching = solution.report, solution.contact_area > 0
     left = set() if touching else {"peak_position", "contact_extent", "contact_area"}

@@ -15,13 +15,14 @@ import nacre._core as core
 from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
-from nacre._tools.units import printable, rounded, written
+from nacre._tools.units import rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.quantities import EXTREME_UNITS, EXTREMES
-from nacre.results.report import Picture, Sections, table
+from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.rows import remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, lines
-from nacre.results.table_results import Tabular
 from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdict, judged
 
 if TYPE_CHECKING:
@@ -449,7 +450,7 @@ class InterfaceStress(_Extremes):
 
 
 @dataclass(frozen=True, repr=False)
-class StressSummary(Tabular, Warned):
+class StressSummary(Shown, Warned, Result):
     """Extremes of the stress in each layer and at each interface.
 
     Printing it shows a table, and so does a notebook. Each value comes with its point
@@ -471,6 +472,7 @@ class StressSummary(Tabular, Warned):
     _COMPILED = True
     _DERIVED = ("warnings",)
     _LATER = ("friction", "doubt")
+    _TITLE = "stresses"
 
     layers: list[LayerStress]
     """Extremes in the layers from the surface down, and in the substrate."""
@@ -538,11 +540,8 @@ class StressSummary(Tabular, Warned):
         return files.dataset(title, table, variables, {}, self.to_dict(), **attributes)
 
     def _comments(self) -> dict[str, object]:
-        """Return what stands beside the table."""
-        warnings = {f"warning {k}": text for k, text in enumerate(self.warnings, start=1)}
-        verdict = " ".join(self.verdict.sentences)
         state = {"finished": self.finished, "friction": self.friction}
-        return {"verdict": verdict, **state, **warnings}
+        return super()._comments() | state | self._numbered_warnings()
 
     def _file_rows(self) -> list[Sequence[object]]:
         return [[row.name for row in EXTREMES], *self._extremes()]
@@ -560,27 +559,23 @@ class StressSummary(Tabular, Warned):
                 limit = np.nan if factor is None else factor
                 yield display.part(part), name, value, error, *place, limit
 
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
+        return [remark("traction", text) for text in _notes(self)]
+
+    def _table(self) -> Printed:
+        head, *rows = _peak_rows(self)
+        return Printed(head, rows, _notes(self))
+
+    def _tables(self) -> Sequence[Table]:
         heads = ["±" if row.name == "uncertainty" else row.name for row in EXTREMES]
         cells = [
             (*row[:3], display.share(row[3], row[2]) if row[3] == row[3] else "", *row[4:])
             for row in self._extremes()
         ]
-        extremes = table("Extremes", [heads, *cells], EXTREMES)
-        notes = [("traction", text) for text in _notes(self)]
-        model = [("theory", STRESSES), ("±", SIZE_ERRORS)]
-        return Sections("stresses", notes, (), (), [extremes], model, self.warnings)
+        return [table("Extremes", [heads, *cells], EXTREMES)]
 
-    def __str__(self) -> str:
-        """Return the verdict and a table, in the units that are set."""
-        table = [*display.aligned(_peak_rows(self), "<"), *_notes(self)]
-        lines = [*self.verdict.sentences, "", *table]
-        return printable("\n".join([*lines, *(f"warning: {text}" for text in self.warnings)]))
-
-    def _repr_html_(self) -> str:
-        head, *rows = _peak_rows(self)
-        verdict, notes = self.verdict.sentences, _notes(self)
-        return display.markup(rows, self.warnings, head=head, notes=notes, verdict=verdict)
+    def _model(self) -> Rows:
+        return [remark("theory", STRESSES), remark("±", SIZE_ERRORS)]
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""

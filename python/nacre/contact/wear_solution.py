@@ -42,7 +42,9 @@ from nacre.results.base import Result, same
 from nacre.results.journal import Journal, Record
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import WEAR
-from nacre.results.report import Picture, Sections, contact_pictures, table, writer
+from nacre.results.report import Picture, Rows, Table, contact_pictures, table
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Shown
 from nacre.results.svg import Axis, Curve, lines
 from nacre.results.tables import heading
 from nacre.results.verdict import Level, Verdict, number
@@ -462,7 +464,7 @@ WearProgress = Callable[[WearState], object]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class WearHistory(Result):
+class WearHistory(Shown, Result):
     """A history of wear: `nacre.wear` returns it.
 
     Examples
@@ -490,37 +492,37 @@ class WearHistory(Result):
     @property
     def distance(self) -> Field:
         """Sliding distance [m], cycles or passes, from 0, ``(n + 1,)``."""
-        return self._numbers(lambda state: state.distance)
+        return self._per_state(lambda state: state.distance)
 
     @property
     def volume(self) -> Field:
         """Volume removed from body and counterbody [m³], ``(n + 1, 2)``; [m²] in line contact."""
-        return self._numbers(lambda state: state.volume)
+        return self._per_state(lambda state: state.volume)
 
     @property
     def peak_pressure(self) -> Field:
         """Largest pressure [Pa], ``(n + 1,)``."""
-        return self._numbers(lambda state: state.solution.peak_pressure)
+        return self._per_state(lambda state: state.solution.peak_pressure)
 
     @property
     def contact_area(self) -> Field:
         """Area in contact [m²], ``(n + 1,)``; [m] in line contact."""
-        return self._numbers(lambda state: state.solution.contact_area)
+        return self._per_state(lambda state: state.solution.contact_area)
 
     @property
     def approach(self) -> Field:
         """Approach of the origin [m], ``(n + 1,)``."""
-        return self._numbers(lambda state: state.solution.approach)
+        return self._per_state(lambda state: state.solution.approach)
 
     @property
     def load(self) -> Field:
         """Normal force [N], ``(n + 1,)``; [N/m] in line contact."""
-        return self._numbers(lambda state: state.solution.load)
+        return self._per_state(lambda state: state.solution.load)
 
     @property
     def deepest(self) -> Field:
         """Largest depth removed from body and counterbody [m], ``(n + 1, 2)``."""
-        return self._numbers(lambda state: (state.depth.max(), state.counter_depth.max()))
+        return self._per_state(lambda state: (state.depth.max(), state.counter_depth.max()))
 
     @property
     def life(self) -> WearThrough | None:
@@ -572,7 +574,7 @@ class WearHistory(Result):
                 )
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
-    def _numbers(self, of: Callable[[WearState], Any]) -> Field:
+    def _per_state(self, of: Callable[[WearState], Any]) -> Field:
         return np.array([of(state) for state in self.states])
 
     def __len__(self) -> int:
@@ -740,40 +742,7 @@ class WearHistory(Result):
 
         return plot.animate_wear(self, path, frames_per_second)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all; needs ``nacre-contact[files]``.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
-            `nacre.load`, ``.csv`` the numbers of each state, ``.png``, ``.pdf`` and ``.svg`` the
-            picture that `plot` draws, ``.html`` a report on a page to print and to sign.
-
-        Returns
-        -------
-        pathlib.Path
-            Path of the file.
-
-        Raises
-        ------
-        ValueError
-            If the ending is another.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> history = nacre.wear(nacre.Sphere(5e-3), steel, load=10.0, rate=1e-16, sliding=1.0)
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     nacre.load(history.save(f"{folder}/wear.nc")) == history
-        True
-        """
-        comments = {"verdict": self.verdict.words}
-        writers = files.tabular(self, self._table(), **comments)
-        return files.save(path, writers | files.pictures(self.plot) | writer(self))
-
-    def _table(self) -> list[list[object]]:
+    def _file_rows(self) -> list[list[object]]:
         """Return the numbers of each state, after their headings."""
         heads, columns = ["step"], [np.arange(len(self.states))]
         for row in (row for row in WEAR if row.dims[:1] == ("step",)):
@@ -783,8 +752,13 @@ class WearHistory(Result):
                 columns.append(numbers[:, part] if numbers.ndim == 2 else numbers)
         return [heads, *(list(row) for row in zip(*(c.tolist() for c in columns), strict=True))]
 
-    def _sections(self) -> Sections:
-        """Return what stands in a report."""
+    def _comments(self) -> dict[str, object]:
+        return {"verdict": self.verdict.words}
+
+    def _inputs(self) -> Rows:
+        return [remark(name, self._input(name, text)) for name, text in self.inputs.items()]
+
+    def _pictures(self) -> Sequence[Picture]:
         axis = Axis("distance", self.unit if self.unit == "m" else "")
         pictures = [
             Picture(
@@ -796,16 +770,16 @@ class WearHistory(Result):
                 ("Peak pressure", self.peak_pressure, "Pa"),
             )
         ]
-        pictures += [*contact_pictures(self.states[-1].solution), self._depth_picture()]
-        return Sections(
-            self._TITLE,
-            [(name, self._input(name, text)) for name, text in self.inputs.items()],
-            self._rows(),
-            pictures=pictures,
-            tables=[table("Steps", self._table())],
-            model=[("model", MODEL.format(THICKNESSES[self._thickness]))],
-            warnings=self.warnings,
-        )
+        return [*pictures, *contact_pictures(self.states[-1].solution), self._depth_picture()]
+
+    def _report_rows(self) -> Rows:
+        return [*self._rows(), *self._remarks()]
+
+    def _tables(self) -> Sequence[Table]:
+        return [table("Steps", self._file_rows())]
+
+    def _model(self) -> Rows:
+        return [remark("model", MODEL.format(THICKNESSES[self._thickness]))]
 
     def _depth_picture(self) -> Picture:
         """Return the picture of the last depth of both bodies together, through its deepest."""
@@ -825,40 +799,32 @@ class WearHistory(Result):
             unit = "N/m"
         return f"{text} {symbol(unit)}".rstrip()
 
-    def _rows(self) -> list[tuple[str, str]]:
-        """Return names and values of the main numbers, with units."""
+    def _rows(self) -> list[Row]:
         line = self.states[0].solution.grid.is_line
         report, last = self.report, self.states[-1]
         volumes = _alike(self.volume[-1], "m²" if line else "m³")
         error = report.step_error
-        rows = [
+        errors = "" if error is None else f", error of a cell {error:.1g} of the peak"
+        texts = [
             ("distance", travelled(last.distance, self.unit)),
             ("worn volume", f"{volumes[0]} of the body, {volumes[1]} of the counterbody"),
             ("deepest", written(float(self.deepest[-1].max()), "m")),
             ("peak pressure", _fromto(self.peak_pressure, "Pa")),
             ("contact area", _fromto(self.contact_area, "m" if line else "m²")),
             *[("through", event._words(self.unit)) for event in self.events],
-            (
-                "steps",
-                f"{report.steps}"
-                + ("" if error is None else f", error of a cell {error:.1g} of the peak"),
-            ),
+            ("steps", f"{report.steps}{errors}"),
         ]
         if report.thickness_error is not None:
             words = THICKNESSES[self._thickness]
-            rows.append(("layers", f"{words}, error {report.thickness_error:.1g} of the peak"))
-        return [*rows, ("ended", "at its end" if report.converged else "stopped")]
+            texts.append(("layers", f"{words}, error {report.thickness_error:.1g} of the peak"))
+        return [remark(*text) for text in texts]
+
+    def _remarks(self) -> list[Row]:
+        return [remark("ended", "at its end" if self.report.converged else "stopped")]
 
     def __repr__(self) -> str:
         """Return the verdict in a line."""
         return f"<WearHistory of {len(self.states)} states: {self.verdict.words}>"
-
-    def __str__(self) -> str:
-        """Return the verdict and a table."""
-        return f"{self.verdict}\n\n" + display.text(self._rows(), self.warnings)
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.warnings, verdict=self.verdict.sentences)
 
 
 PACKED = "packed"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -21,10 +20,14 @@ from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
 from nacre.results import display, files, report, svg, tables
-from nacre.results.base import Fields
+from nacre.results.report import Rows
+from nacre.results.rows import remark
+from nacre.results.shown import Printed, Shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    pass
 
 Limits = Sequence[tuple[Output, float]]
 
@@ -33,7 +36,7 @@ RESTARTS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum(Fields):
+class Optimum(Shown):
     """What `nacre.design.optimise` found; `print` shows a report.
 
     Attributes
@@ -59,6 +62,8 @@ class Optimum(Fields):
         Warnings of the solutions and of the gradients at the optimum.
     """
 
+    _TITLE = "optimum of a contact"
+
     values: dict[str, float]
     objective: float
     limits: tuple[tuple[object, float, tuple[float, ...]], ...]
@@ -73,84 +78,81 @@ class Optimum(Fields):
         """Largest share by which a limit is exceeded; negative where none is."""
         return max((max(v) / limit - 1.0 for _, limit, v in self.limits), default=-math.inf)
 
-    def _table(self) -> tuple[list[list[str]], list[str]]:
-        """Return the rows of the table, the heading first, and lines below."""
+    def _table(self) -> Printed:
+        """Return the table of the objective and the parameters."""
         first = {name: column[0] for name, column in self.course.items()}
         optimum = {"objective": self.objective, **self.values}
-        rows = [["", "start", "optimum", "change"]]
+        rows = []
         for name, value in optimum.items():
             start = first[name]
             change = f"{100 * (value / start - 1):+.1f} %" if start else ""
             rows.append([name, f"{start:.5g}", f"{value:.5g}", change])
-        lines = []
+        return Printed(("", "start", "optimum", "change"), rows, self._notes())
+
+    def _notes(self) -> list[str]:
+        """Return the limits with what they were given, and how the search ended."""
+        notes = []
         for output, limit, reached in self.limits:
             share = 100 * max(reached) / limit
-            lines.append(f"limit {limit:.5g} on {output}: {max(reached):.5g}, {share:.1f} % of it")
+            notes.append(f"limit {limit:.5g} on {output}: {max(reached):.5g}, {share:.1f} % of it")
         iterations = len(self.course["objective"]) - 1
-        lines.append(f"{self.termination}: {iterations} iterations, {self.solves} solves")
-        return rows, [*lines, *(f"warning: {line}" for line in self.warnings)]
+        return [*notes, f"{self.termination}: {iterations} iterations, {self.solves} solves"]
 
     def __str__(self) -> str:
         """Return a report."""
-        rows, lines = self._table()
-        table = [f"{row[0]:32}{row[1]:>14}{row[2]:>14}{row[3]:>10}" for row in rows]
-        return "\n".join([*table, *lines])
+        printed = self._table()
+        table = [
+            f"{name:32}{start:>14}{optimum:>14}{change:>10}"
+            for name, start, optimum, change in (printed.head, *printed.rows)
+        ]
+        return "\n".join([*table, *printed.notes, *(f"warning: {w}" for w in self.warnings)])
 
-    def _repr_html_(self) -> str:
-        (head, *rows), lines = self._table()
-        picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, lines)
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file, whole or not at all.
+    def _writers(self) -> dict[str, Callable[[Path], object]]:
+        rows = self._course_rows()
+        table: dict[str, Callable[[Path], object]] = {
+            ".csv": lambda path: tables.write_rows(path, rows, source=tables.SOURCE)
+        }
+        return table | files.pictures(self.plot)
 
-        Parameters
-        ----------
-        path : str or os.PathLike
-            File to write: ``.html`` for a report on a page to print and to sign, ``.csv`` for the
-            course, or ``.png``, ``.pdf`` or ``.svg`` for the picture that `plot` draws.
+    def _course_rows(self) -> list[Sequence[object]]:
+        """Return the table of all iterations, the heading first."""
+        columns = (column.tolist() for column in self.course.values())
+        return [[*self.course], *zip(*columns, strict=True)]
 
-        Returns
-        -------
-        pathlib.Path
-            The file.
+    def _inputs(self) -> Rows:
+        return self._of_cases("_inputs")
 
-        Raises
-        ------
-        ValueError
-            If the file has another ending.
-        """
-        rows = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
-        table = {".csv": lambda file: tables.write_rows(file, rows, source=tables.SOURCE)}
-        return files.save(path, table | files.pictures(self.plot) | report.writer(self))
+    def _report_rows(self) -> Rows:
+        return self._of_cases("_report_rows")
 
-    def _sections(self) -> report.Sections:
-        (head, *rows), lines = self._table()
+    def _of_cases(self, name: str) -> Rows:
+        """Return rows of the solution of each case."""
+        return [
+            row._replace(key=f"cases[{k}].{row.key}", label=f"case {k}: {row.label}")
+            for k, solution in enumerate(self.solutions)
+            for row in getattr(solution, name)()
+        ]
+
+    def _pictures(self) -> Sequence[report.Picture]:
         x = self.course["solves"]
         curves = [
             svg.Curve(x, self.course[name] / (self.course[name][0] or 1.0), name)
             for name in ("objective", *self.values)
         ]
         drawing = svg.lines(curves, (svg.Axis("solves"), svg.Axis("share of the start")))
-        cases = [one._sections() for one in self.solutions]
-        course = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
-        return report.Sections(
-            "optimum of a contact",
-            [
-                (f"case {k}: {name}", text)
-                for k, case in enumerate(cases)
-                for name, text in case.inputs
-            ],
-            [
-                (f"case {k}: {name}", text)
-                for k, case in enumerate(cases)
-                for name, text in case.numbers
-            ],
-            [report.Picture("Course.", drawing), *(p for case in cases for p in case.pictures)],
-            [report.Table("Optimum", head, rows), report.table("Course", course)],
-            [("minimised", text) for text in lines if not text.startswith("warning: ")],
-            self.warnings,
-        )
+        cases = [picture for solution in self.solutions for picture in solution._pictures()]
+        return [report.Picture("Course.", drawing), *cases]
+
+    def _tables(self) -> Sequence[report.Table]:
+        printed = self._table()
+        optimum = report.Table("Optimum", printed.head, printed.rows)
+        return [optimum, report.table("Course", self._course_rows())]
+
+    def _model(self) -> Rows:
+        return [remark("minimised", note) for note in self._notes()]
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the course; see `nacre.plot.course`."""

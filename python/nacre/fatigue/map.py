@@ -13,7 +13,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real
-from nacre._tools.units import printable, written
+from nacre._tools.units import written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.fatigue.criteria import Rule
@@ -31,11 +31,12 @@ from nacre.fatigue.summary import (
     word,
 )
 from nacre.results import display, files
-from nacre.results.base import Warned
+from nacre.results.base import Result, Warned
 from nacre.results.quantities import SHAKEDOWN
-from nacre.results.report import Picture, Sections, table
+from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.rows import remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, lines
-from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
     import xarray
@@ -45,7 +46,7 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ShakedownMap(Tabular, Warned):
+class ShakedownMap(Shown, Warned, Result):
     """Shakedown limits of the layers of a contact over the coefficient of friction.
 
     Printing it shows a table, and so does a notebook. `shakedown_map` makes it.
@@ -68,6 +69,8 @@ class ShakedownMap(Tabular, Warned):
     """That ratio with which nothing yields ``(layers, nf)``."""
     depths: Array
     """Depths ``(layers, nf)`` that decide the limits [m]."""
+    _TITLE = "shakedown map"
+
     names: tuple[str, ...]
     """Names of the layers, from the surface down."""
     rule: Rule
@@ -165,7 +168,13 @@ class ShakedownMap(Tabular, Warned):
             for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
                 yield [name, friction, *columns]
 
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
+        return [remark("rule", self.rule)]
+
+    def _report_rows(self) -> Rows:
+        return [display.numbered("peak_pressure", "peak pressure", self.peak_pressure, "Pa")]
+
+    def _pictures(self) -> Sequence[Picture]:
         order = np.argsort(self.friction)
         curves = [
             Curve(self.friction[order], values[order], f"{name}: {words}", look)
@@ -176,20 +185,21 @@ class ShakedownMap(Tabular, Warned):
             )
         ]
         axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
-        _, notes = self._printed()
-        return Sections(
-            "shakedown map",
-            [("rule", self.rule)],
-            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
-            [Picture("Limits over friction.", lines(curves, axes))],
-            [table("Limits", self._file_rows(), SHAKEDOWN)],
-            [("theory", note) for note in notes],
-            self.warnings,
-        )
+        return [Picture("Limits over friction.", lines(curves, axes))]
 
-    def _printed(self) -> tuple[list[list[str]], list[str]]:
-        """Return the rows of the printed table, the heading first, and notes below it."""
-        rows = [["friction", *(f"{n}: limit, first yield, z" for n in self.names)]]
+    def _tables(self) -> Sequence[Table]:
+        return [table("Limits", self._file_rows(), SHAKEDOWN)]
+
+    def _model(self) -> Rows:
+        return [remark("theory", note) for note in self._table().notes]
+
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot)
+
+    def _table(self) -> Printed:
+        """Return the table of the limits over friction."""
+        head = ["friction", *(f"{name}: limit, first yield, z" for name in self.names)]
+        rows = []
         for k, friction in enumerate(self.friction):
             cells = [
                 f"{self.limits[i, k]:.4g}, {self.first_yield[i, k]:.4g}, "
@@ -199,18 +209,8 @@ class ShakedownMap(Tabular, Warned):
             rows.append([f"{friction:g}", *cells])
         plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
         units = "limits are peak pressure over yield stress in shear"
-        return rows, [units, PLASTICITY + plane, *([ESTIMATE] if self.is_estimate else [])]
-
-    def __str__(self) -> str:
-        """Return a table."""
-        rows, notes = self._printed()
-        lines = [*display.aligned(rows, "<"), *notes]
-        return printable("\n".join(lines + [f"warning: {text}" for text in self.warnings]))
-
-    def _repr_html_(self) -> str:
-        (head, *rows), notes = self._printed()
-        picture = display.drawn(self.plot)
-        return display.markup(rows, self.warnings, picture, head, notes)
+        estimate = [ESTIMATE] if self.is_estimate else []
+        return Printed(head, rows, [units, PLASTICITY + plane, *estimate])
 
     def __repr__(self) -> str:
         """Return how much the map holds."""

@@ -23,9 +23,10 @@ from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
 from nacre.results.quantities import EXTREME_UNITS, FATIGUE, PROFILE
-from nacre.results.report import Picture, Sections, table
+from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.rows import remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, lines
-from nacre.results.table_results import Tabular
 from nacre.results.verdict import Demand, Verdict, judged, times
 
 if TYPE_CHECKING:
@@ -191,7 +192,7 @@ class InterfaceFatigue(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FatigueSummary(Tabular, Warned):
+class FatigueSummary(Shown, Warned, Result):
     """Shakedown and fatigue of a solved contact in steady rolling, by layers and interfaces.
 
     Printing it shows a table, and so does a notebook. `assess` makes it.
@@ -235,6 +236,7 @@ class FatigueSummary(Tabular, Warned):
     It has no limit at an edge, or the solution has not converged.
     """
 
+    _TITLE = "shakedown and fatigue"
     _LATER = ("doubt",)
 
     @property
@@ -343,20 +345,14 @@ class FatigueSummary(Tabular, Warned):
         profiles = {name: ("depth", column) for name, column in self.profiles.items()}
         depths = {"depth": self.depths}
         attributes = {name: str(value) for name, value in self._comments().items()}
-        title = "shakedown and fatigue"
         return files.dataset(
-            title, table, variables | profiles, depths, self.to_dict(), **attributes
+            self._TITLE, table, variables | profiles, depths, self.to_dict(), **attributes
         )
 
     def _comments(self) -> dict[str, object]:
-        """Return what stands beside the table."""
-        verdict = " ".join(self.verdict.sentences)
-        settings = {"rule": self.rule, "criteria": ", ".join(map(repr, self.criteria)) or "none"}
-        return {
-            "verdict": verdict,
-            **settings,
-            **{f"warning {k}": text for k, text in enumerate(self.warnings, start=1)},
-        }
+        criteria = ", ".join(map(repr, self.criteria)) or "none"
+        settings = {"rule": self.rule, "criteria": criteria}
+        return super()._comments() | settings | self._numbered_warnings()
 
     def _file_rows(self) -> list[Sequence[object]]:
         return [[row.name for row in FATIGUE], *self._needs()]
@@ -372,7 +368,13 @@ class FatigueSummary(Tabular, Warned):
                 value = getattr(face, name)
                 yield display.part(face), name, value, np.nan, np.nan, face.depth, np.nan
 
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
+        return [remark(name, str(self._comments()[name])) for name in ("rule", "criteria")]
+
+    def _report_rows(self) -> Rows:
+        return [display.numbered("peak_pressure", "peak pressure", self.peak_pressure, "Pa")]
+
+    def _pictures(self) -> Sequence[Picture]:
         labels = {row.name: row.label for row in PROFILE}
         curves = [
             Curve(self.depths, values, labels.get(name, name))
@@ -380,21 +382,20 @@ class FatigueSummary(Tabular, Warned):
         ]
         marks = [face.depth for face in self.interfaces]
         drawing = lines(curves, (Axis("depth", "m"), Axis("stress", "Pa")), marks)
-        _, notes = self._printed()
-        comments = ((name, str(self._comments()[name])) for name in ("rule", "criteria"))
-        return Sections(
-            "shakedown and fatigue",
-            list(comments),
-            [("peak pressure", display.number(self.peak_pressure, "Pa"))],
-            [Picture("What a material needs at each depth; dotted: interfaces.", drawing)],
-            [table("What layers and interfaces need", self._file_rows(), FATIGUE)],
-            [("theory", note) for note in notes],
-            self.warnings,
-        )
+        return [Picture("What a material needs at each depth; dotted: interfaces.", drawing)]
 
-    def _printed(self) -> tuple[list[list[str]], list[str]]:
-        """Return the rows of the printed table, the heading first, and notes below it."""
-        rows = [["", "limit needed", "value", "z", "y", "safety factor"]]
+    def _tables(self) -> Sequence[Table]:
+        return [table("What layers and interfaces need", self._file_rows(), FATIGUE)]
+
+    def _model(self) -> Rows:
+        return [remark("theory", note) for note in self._table().notes]
+
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot)
+
+    def _table(self) -> Printed:
+        """Return the table of what layers and interfaces need."""
+        rows = []
         words = {row.name: row.label for row in PROFILE}
         for layer in self.layers:
             top, bottom = (written(depth, "m") for depth in layer.depths)
@@ -414,21 +415,8 @@ class FatigueSummary(Tabular, Warned):
                 rows.append([head, label, written(stress, "Pa"), "", "", ""])
                 head = ""
         plane = ", Tresca in the plane of rolling" if self.rule == "in_plane_tresca" else ""
-        return rows, [PLASTICITY + plane]
-
-    def __str__(self) -> str:
-        """Return the verdict and a table, in the units that are set."""
-        rows, notes = self._printed()
-        lines = [*self.verdict.sentences, "", *display.aligned(rows, "<"), *notes]
-        return printable("\n".join(lines + [f"warning: {text}" for text in self.warnings]))
-
-    def _repr_html_(self) -> str:
-        (head, *rows), notes = self._printed()
-        picture = display.drawn(self.plot)
-        return display.markup(
-            *(rows, self.warnings, picture, head, notes),
-            verdict=self.verdict.sentences,
-        )
+        columns = ("", "limit needed", "value", "z", "y", "safety factor")
+        return Printed(columns, rows, [PLASTICITY + plane])
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""

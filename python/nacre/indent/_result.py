@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.units import printable, written
+from nacre._tools.units import written
 from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
 from nacre.indent._residuals import ROUNDING
 from nacre.indent._verdict import fit_verdict
@@ -22,10 +22,12 @@ from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
 from nacre.results import display
-from nacre.results.report import Picture, Sections, Table, input_rows, table
+from nacre.results.base import Result
+from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, lines
 from nacre.results.svg import Curve as Line
-from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -43,7 +45,7 @@ MOST_RATES = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Tabular):
+class Fit(Shown, Result):
     """Estimates of `fit`, how sure they are, and whether the data tell them at all."""
 
     estimates: dict[str, float]
@@ -63,6 +65,8 @@ class Fit(Tabular):
     parameters following. Numbers change by their logarithms, but Poisson's ratios by themselves,
     and contact point, drift and compliance by what shifts the deepest point by the range of depth.
     """
+
+    _TITLE = "fit of indentation curves"
     residuals: list[Array]
     """Residuals of each curve: F − P [N] for absolute noise, else ln(F/P), or for mixed noise the
     difference of arsinh(F/c), which is ln(F/P) far above the floor c."""
@@ -166,27 +170,34 @@ class Fit(Tabular):
         """SI units of the estimates."""
         return [unit_of(name) for name in self.estimates]
 
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
         inputs = {name: getattr(self, name) for name in ("body", "tip", "counterbody", "adhesion")}
         inputs["counterbody"] = self.counterbody or "rigid"
         for number, curve in enumerate(self.curves):
             measured = {"name": curve.name, "depth": curve.depth, "force": curve.force}
             inputs |= {f"curves[{number}].{name}": value for name, value in measured.items()}
-        head, rows, notes = self._table()
-        names = list(self.estimates)
+        return [remark("bodies and tip", "with the estimates in place"), *input_rows(inputs)]
+
+    def _report_rows(self) -> Rows:
+        rows = []
+        for name, value, error, interval, verdict in self._table().rows:
+            text = f"{value} ± {error}; 95 %: {interval} {verdict}".rstrip()
+            estimate, deviation = self.estimates[name], self.standard_errors[name]
+            rows.append(Row(name, name, text, estimate, unit_of(name), deviation))
+        return rows
+
+    def _tables(self) -> Sequence[Table]:
+        names, printed = list(self.estimates), self._table()
         correlations = zip(names, self.correlation.tolist(), strict=True)
-        return Sections(
-            "fit of indentation curves",
-            [("bodies and tip", "with the estimates in place"), *input_rows(inputs)],
-            [(row[0], f"{row[1]} ± {row[2]}; 95 %: {row[3]} {row[4]}".rstrip()) for row in rows],
-            self._pictures(),
-            [
-                Table("Estimates", head, rows),
-                table("Correlation", [["", *names], *([n, *row] for n, row in correlations)]),
-            ],
-            [*MODEL, *(("fit", note) for note in notes if not note.startswith("warning: "))],
-            self.warnings,
-        )
+        rows = [["", *names], *([name, *row] for name, row in correlations)]
+        return [Table("Estimates", printed.head, printed.rows), table("Correlation", rows)]
+
+    def _model(self) -> Rows:
+        notes = [note for note in self._table().notes if not note.startswith("warning: ")]
+        return [*(remark(*words) for words in MODEL), *(remark("fit", note) for note in notes)]
+
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot)
 
     def _pictures(self) -> list[Picture]:
         """Return the pictures of a report: force and residuals over depth."""
@@ -219,19 +230,8 @@ class Fit(Tabular):
         verdict = "identifiable" if self.is_identifiable else "not identifiable"
         return f"<Fit of {estimates_text}: {verdict}>"
 
-    def __str__(self) -> str:
-        """Return the verdict and the table."""
-        head, rows, notes = self._table()
-        table = display.aligned([head, *rows], "<")
-        return printable("\n".join([*self.verdict.sentences, "", *table, *notes]))
-
-    def _repr_html_(self) -> str:
-        head, rows, notes = self._table()
-        picture = display.drawn(self.plot)
-        sentences = self.verdict.sentences
-        return display.markup(rows, (), picture, head, notes, verdict=sentences)
-
-    def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
+    def _table(self) -> Printed:
+        """Return the table of the estimates."""
         rows = []
         for name in self.estimates:
             low, high = (self._with_unit(name, end) for end in self.intervals[name])
@@ -259,7 +259,7 @@ class Fit(Tabular):
             lines.append("intervals are linear, and widened by what the residuals show")
         elif not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
-        return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
+        return Printed(("parameter", "estimate", "±", "95 % interval", ""), rows, lines)
 
     def _sensitivities(self) -> list[str]:
         """Return lines on numbers of which 1 % matters beside the intervals, most first."""
@@ -291,9 +291,6 @@ class Fit(Tabular):
         from nacre.indent._files import estimates
 
         return estimates(self)
-
-    def _comments(self) -> dict[str, object]:
-        return {"verdict": " ".join(self.verdict.sentences)}
 
     def _file_rows(self) -> Iterable[list[object]]:
         from nacre.indent._files import parameter_rows

@@ -17,14 +17,15 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
-from nacre._tools.units import printable, written
+from nacre._tools.units import written
 from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
-from nacre.results.base import Fields, Warned
+from nacre.results.base import Fields, Result, Warned
 from nacre.results.quantities import INDENT, units
-from nacre.results.report import Picture, Sections, input_rows, table
+from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Printed, Shown
 from nacre.results.svg import Axis, Curve, lines
-from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -123,7 +124,7 @@ class StateDerivative(Fields, Generic[Value]):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IndentSolution(Tabular, Warned, Generic[Value]):
+class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """Contacts of an indentation, with all that they depend on.
 
     `Indentation.at` and `nacre.indent.solve` return it. Numbers have the shape of the load,
@@ -138,6 +139,7 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
     ((2,), (2, 3))
     """
 
+    _TITLE = "indentation of a coated body"
     _LATER = ("warnings",)
 
     body: core.HalfSpace
@@ -375,20 +377,21 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
 
         return contact_rows(self)
 
-    def _sections(self) -> Sections:
+    def _inputs(self) -> Rows:
         inputs = {name: getattr(self, name) for name in ARGUMENTS}
         inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
-        inputs["counterbody"] = self.counterbody or "rigid"
-        numbers = [(name, self._range(name)) for name in NUMBERS[:4]]
-        if self.adhesion is not None:
-            numbers += [(n.replace("_", " "), with_unit(v, n)) for n, v in self._pulled.items()]
+        return input_rows(inputs | {"counterbody": self.counterbody or "rigid"})
+
+    def _report_rows(self) -> Rows:
+        rows = [remark(name, self._range(name)) for name in NUMBERS[:4]]
+        for name, value in self._pulled.items() if self.adhesion is not None else ():
+            rows.append(Row(name, name.replace("_", " "), with_unit(value, name), value))
+        return rows
+
+    def _pictures(self) -> Sequence[Picture]:
         x, y = np.ravel(self.approach), np.ravel(self.load)
         axes = Axis("approach", "m"), Axis("load", "N")
-        pictures = [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
-        contacts = [table("Contacts", self._file_rows())]
-        title = "indentation of a coated body"
-        rows = input_rows(inputs)
-        return Sections(title, rows, numbers, pictures, contacts, MODEL, self.warnings)
+        return [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
 
     def verdict(self) -> Verdict:
         """Return the verdict: whether the largest depth tells the modulus of the outermost layer.
@@ -412,6 +415,15 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
         ('bad', 2.4, 'The error is below 10 % only up to 1.91 nm of depth.')
         """
         return substrate_verdict(apparent_modulus(self))
+
+    def _notebook_picture(self) -> bytes | None:
+        return display.drawn(self.plot)
+
+    def _tables(self) -> Sequence[Table]:
+        return [table("Contacts", self._file_rows())]
+
+    def _model(self) -> Rows:
+        return [remark(*words) for words in MODEL]
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the load as a function of the approach, or of one contact the pressure.
@@ -437,22 +449,13 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
         ranges = ", ".join(f"{name} {self._range(name)}" for name in NUMBERS[:3])
         return f"<IndentSolution: {count} contact{'s' if count != 1 else ''}, {ranges}>"
 
-    def __str__(self) -> str:
-        """Return the table."""
-        head, rows, notes = self._table()
-        return printable("\n".join([*display.aligned([head, *rows]), *notes]))
-
-    def _repr_html_(self) -> str:
-        head, rows, notes = self._table()
-        picture = display.drawn(self.plot)
-        return display.markup(rows, (), picture, head, notes)
-
     def _range(self, name: str) -> str:
         values = np.ravel(getattr(self, name))
         ends = dict.fromkeys(with_unit(float(f(values)), name) for f in (np.min, np.max))
         return " to ".join(ends)
 
-    def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
+    def _table(self) -> Printed:
+        """Return the table of the contacts."""
         quantities = [row for row in INDENT if row.label]
         columns = [np.ravel(row.of(self)).tolist() for row in quantities]
         rows = [
@@ -465,8 +468,7 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
         if self.adhesion is not None:
             pulled = (f"{n.rpartition('_')[2]} {with_unit(v, n)}" for n, v in self._pulled.items())
             notes.append(f"pull-off: {', '.join(pulled)}")
-        notes += [f"warning: {warning}" for warning in self.warnings]
-        return [row.label for row in quantities], rows, notes
+        return Printed([row.label for row in quantities], rows, notes, side=">")
 
 
 IndentState = IndentSolution

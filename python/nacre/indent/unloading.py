@@ -13,9 +13,8 @@ import nacre._core as core
 from nacre._tools.extras import extra
 from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
-from nacre.results import display
 from nacre.results.quantities import UNLOADING
-from nacre.results.table_results import TableResult
+from nacre.results.shown import TableResult
 
 __all__ = ["OliverPharr", "oliver_pharr", "section"]
 
@@ -84,13 +83,6 @@ class OliverPharr(TableResult):
     """Number of points of the fit."""
     notes: tuple[str, ...]
     """What limits the validity. Each but that about films was issued as a warning, too."""
-
-    def __str__(self) -> str:
-        """Return a table."""
-        return display.text(self._rows(), self.notes)
-
-    def _repr_html_(self) -> str:
-        return display.markup(self._rows(), self.notes)
 
 
 ON_FILMS = (

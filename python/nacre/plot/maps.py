@@ -184,9 +184,9 @@ def _numbers(solution: Solution, axes: Axes) -> None:
     """Write the main numbers into axes of their own."""
     axes.set_axis_off()
     rows = [
-        (name if number == 0 else "", part.replace("\u00a0", " "))
-        for name, value in solution._rows()
-        for number, part in enumerate(textwrap.wrap(TOGETHER.sub("\u00a0", value), LETTERS))
+        (row.label if number == 0 else "", line.replace("\u00a0", " "))
+        for row in (*solution._rows(), *solution._remarks())
+        for number, line in enumerate(textwrap.wrap(TOGETHER.sub("\u00a0", row.text), LETTERS))
     ]
     step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):

@@ -150,7 +150,8 @@ class Fields:
     """SI units of fields that have one, in the table of a notebook."""
 
     def _repr_html_(self) -> str:
-        return display.markup(display.fields(self, self._UNITS), getattr(self, "warnings", ()))
+        rows = [(row.label, row.text) for row in display.fields(self, self._UNITS)]
+        return display.markup(rows, getattr(self, "warnings", ()))
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None

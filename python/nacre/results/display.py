@@ -28,6 +28,7 @@ from nacre._tools.units import (
     written,
 )
 from nacre.results.quantities import Quantity
+from nacre.results.rows import Row, remark
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,6 +120,11 @@ def number(value: float, unit: str, digits: int = 4) -> str:
     return f"{rounded(scale.factor * value, digits)} {scale.unit}".rstrip()
 
 
+def numbered(key: str, label: str, value: float, unit: str, digits: int = 4) -> Row:
+    """Return the row of a number."""
+    return Row(key, label, number(value, unit, digits), value, unit)
+
+
 def column(
     heading: str, values: Sequence[float], unit: str, digits: int = 4
 ) -> tuple[str, list[str]]:
@@ -160,21 +166,22 @@ def rows(
     texts: Mapping[str, Callable[[R], str | None]],
     line: bool,
     rolls: bool = False,
-) -> list[tuple[str, str]]:
+) -> list[Row]:
     """Return the printed rows of quantities; a text in place of a number may leave one out."""
     printed = []
-    for row in table:
-        if not row.label:
+    for quantity in table:
+        if not quantity.label:
             continue
-        if (text_of := texts.get(row.name)) is not None:
+        value, unit = quantity.of(result), quantity.si(line=line, rolls=rolls)
+        if (text_of := texts.get(quantity.name)) is not None:
             text = text_of(result)
-        elif (value := row.of(result)) is None:
+        elif value is None:
             text = None
-        elif row.dims:
-            text = pair(without_rounding(value), row.si(line=line, rolls=rolls))
+        elif quantity.dims:
+            text = pair(without_rounding(value), unit)
         else:
-            text = written(value, row.si(line=line, rolls=rolls))
-        printed += [] if text is None else [(row.label, text)]
+            text = written(value, unit)
+        printed += [] if text is None else [Row(quantity.name, quantity.label, text, value, unit)]
     return printed
 
 
@@ -197,12 +204,12 @@ def pair(values: Iterable[float], unit: str) -> str:
     return f"({', '.join(number(value, unit) for value in values)})"
 
 
-def fields(instance: Any, units: Mapping[str, str]) -> list[tuple[str, str]]:
+def fields(instance: Any, units: Mapping[str, str]) -> list[Row]:
     """Return the printed rows of the public fields of a dataclass, some of which have SI units."""
-    names = [one.name for one in dataclasses.fields(instance) if one.name[0] != "_"]
+    names = [field.name for field in dataclasses.fields(instance) if field.name[0] != "_"]
     values = {name: getattr(instance, name) for name in names if name != "warnings"}
     return [
-        (name.replace("_", " "), _field(value, units.get(name, "")))
+        Row(name, name.replace("_", " "), _field(value, unit := units.get(name, "")), value, unit)
         for name, value in values.items()
         if not (value is None or (isinstance(value, Mapping | tuple | list) and not value))
     ]
@@ -224,10 +231,10 @@ def _field(value: object, unit: str) -> str:
     return str(value)
 
 
-def text(rows: Sequence[tuple[str, str]], warnings: Sequence[str]) -> str:
+def text(rows: Sequence[Row], warnings: Sequence[str]) -> str:
     """Return the table that ``print`` shows: names and values, and warnings below."""
-    width = max(len(name) for name, _ in rows)
-    lines = [f"{name:{width}}  {value}" for name, value in rows]
+    width = max(len(row.label) for row in rows)
+    lines = [f"{row.label:{width}}  {row.text}" if row.label else row.text for row in rows]
     return printable("\n".join([*lines, *(f"warning: {warning}" for warning in warnings)]))
 
 
@@ -327,20 +334,29 @@ def estimated(solution: Estimated, name: str, unit: str, digits: int = 4) -> str
     return number(value, unit, digits) + error_share(error, value)
 
 
+def estimated_row(solution: Estimated, quantity: Quantity, digits: int = 4) -> Row:
+    """Return the row of a number, with the discretisation error where it is estimated."""
+    name, unit = quantity.name, quantity.si()
+    text = estimated(solution, name, unit, digits)
+    error = (solution.report.discretisation or {}).get(name)
+    return Row(name, quantity.label, text, getattr(solution, name), unit, error)
+
+
 def error_share(error: float, value: float) -> str:
     """Return what is said of an error of a value: nothing where it is rounding."""
     share = abs(error / value) if value else 0.0
     return f" ± {rounded(100 * share, 1)} %" if share > NOISE else ""
 
 
-def body(name: str, body: Planned | None) -> list[tuple[str, str]]:
+def body(name: str, body: Planned | None) -> list[Row]:
     """Describe a body: its substrate, a row for each layer or one for many, and its free ends."""
     if body is None:
-        return [(name, "rigid")]
+        return [remark(name, "rigid")]
     if isinstance(body, Response):
-        return [(name, "a response")]
+        return [remark(name, "a response")]
     layers = [
-        (
+        Row(
+            f"{name}.layers[{number}]",
             f"  {layer_name(number, layer.name)}",
             f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}"
             f"{_spring(layer.interface)}",
@@ -349,13 +365,14 @@ def body(name: str, body: Planned | None) -> list[tuple[str, str]]:
     ]
     if len(layers) > LAYER_ROWS:
         depth = written(body.interfaces[-1], "m", 3)
-        layers = [("  layers", f"{len(layers)}, together {depth}")]
+        layers = [Row(f"{name}.layers", "  layers", f"{len(layers)}, together {depth}")]
     places = [f"x = {written(x, 'm')}" for x in body.ends if x is not None]
-    ends = [("  free end" if len(places) == 1 else "  free ends", " and ".join(places))]
-    return [(name, _material(body.substrate)), *layers, *(ends if places else [])]
+    label = "  free end" if len(places) == 1 else "  free ends"
+    ends = [Row(f"{name}.ends", label, " and ".join(places))] if places else []
+    return [remark(name, _material(body.substrate)), *layers, *ends]
 
 
-def moduli(*members: Planned | None) -> list[tuple[str, str]]:
+def moduli(*members: Planned | None) -> list[Row]:
     """Return the contact modulus of the substrates; with coatings also of the surfaces.
 
     There is none where a body is a response.
@@ -363,12 +380,14 @@ def moduli(*members: Planned | None) -> list[tuple[str, str]]:
     bodies = [body for body in members if isinstance(body, HalfSpace)]
     if any(isinstance(body, Response) for body in members):
         return []
-    bases = [one.substrate for one in bodies]
-    tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
+    bases = [body.substrate for body in bodies]
+    tops = [body.layers[0].material if body.layers else body.substrate for body in bodies]
+    of_surfaces = Row("surface_modulus", "E* (surfaces)", _modulus(tops))
     if any(isinstance(base, Free) for base in bases):
-        return [("E* (surfaces)", _modulus(tops))]
-    rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]
-    return rows + ([("E* (surfaces)", _modulus(tops))] if tops != bases else [])
+        return [of_surfaces]
+    label = "E* (substrates)" if tops != bases else "E*"
+    of_substrates = Row("contact_modulus", label, _modulus(bases))
+    return [of_substrates, of_surfaces] if tops != bases else [of_substrates]
 
 
 def _modulus(materials: Sequence[Elastic | Rigid | Free]) -> str:

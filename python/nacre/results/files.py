@@ -135,6 +135,11 @@ def tabular(
     }
 
 
+def first_axes(axes: Axes | Mapping[str, Axes]) -> Axes:
+    """Return axes, the first of several."""
+    return next(iter(axes.values())) if isinstance(axes, Mapping) else axes
+
+
 def pictures(draw: Callable[[], Axes]) -> dict[str, Callable[[Path], object]]:
     """Return the writers of a picture by their endings; `draw` returns its axes."""
 

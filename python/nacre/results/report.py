@@ -25,13 +25,14 @@ from nacre._tools.units import rounded, symbol
 from nacre.results import display, svg, tables
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import Quantity
+from nacre.results.rows import Row, remark
 from nacre.results.values import encode
 
 if TYPE_CHECKING:
     from nacre.results.verdict import Verdict
 
 Array = npt.NDArray[np.float64]
-Rows = Sequence[tuple[str, str]]
+Rows = Sequence[Row]
 
 MOST_ROWS = 300
 """Largest number of rows of a table that stand in a page."""
@@ -171,7 +172,7 @@ def page(
         "Warnings": [markup("note", text=text) for text in texts or ["no warnings"]],
         "Case file": case and markup("case", text=case),
     }
-    head = [("case", name), ("date", date), ("computed by", tables.SOURCE)]
+    head = [remark("case", name), remark("date", date), remark("computed by", tables.SOURCE)]
     return markup(
         "page",
         style=Markup(svg.STYLE),
@@ -195,15 +196,15 @@ def input_rows(values: Mapping[str, object], units: Mapping[str, str] | None = N
     return [row for rows in leaves for row in rows]
 
 
-def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[Row]:
     """Yield the rows of an encoded value."""
     if isinstance(value, Mapping) and value.keys() == {"array"}:
         shape, digest = value["array"]
-        yield path, f"{' × '.join(map(str, shape))} numbers, SHA-256 {digest}"
+        yield remark(path, f"{' × '.join(map(str, shape))} numbers, SHA-256 {digest}")
     elif isinstance(value, Mapping):
         is_call = len(value) == 1 and (kind := next(iter(value)))[:1].isupper()
         if is_call and kind not in BODIES:
-            yield path, kind
+            yield remark(path, kind)
         arguments = value[kind] if is_call else value
         if is_call and kind in GRIDS:
             arguments = {**arguments, "center": _without_rounding(arguments)}
@@ -215,7 +216,8 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[tupl
     elif value is not None and not (isinstance(value, list) and all(v is None for v in value)):
         # Limits of layers have the unit of the name before.
         names = re.sub(r"\[\d+\]", "", path).split(".")[:-3:-1]
-        yield path, _leaf(value, next((units[name] for name in names if name in units), ""))
+        unit = next((units[name] for name in names if name in units), "")
+        yield Row(path, path, _leaf(value, unit), value, unit)
 
 
 def _without_rounding(grid: Mapping[str, Any]) -> object:
@@ -236,13 +238,13 @@ def _leaf(value: object, unit: str) -> str:
     return str(value)
 
 
-def other_numbers(result: tables.HasQuantities) -> Rows:
+def other_numbers(result: tables.HasQuantities) -> list[Row]:
     """Return the quantities of a result that its printed table leaves out."""
     rows = []
     for row, value in tables.numbers(result):
         if not row.label and "." not in row.path and np.isfinite(value).all():
-            number = display.pair if row.dims else display.number
-            rows.append((row.words, number(value, result._si(row))))
+            number, unit = display.pair if row.dims else display.number, result._si(row)
+            rows.append(Row(row.name, row.words, number(value, unit), value, unit))
     return rows
 
 
@@ -342,7 +344,8 @@ def _heading(title: str) -> Markup | None:
 
 def _pairs(rows: Rows) -> Markup:
     """Return a table of names and texts, in which a zero has no exponent."""
-    pairs = [markup("pair", name=name, text=text.replace("0e+00", "0")) for name, text in rows]
+    texts = ((row.label, row.text.replace("0e+00", "0")) for row in rows)
+    pairs = [markup("pair", name=label, text=text) for label, text in texts]
     return markup("pairs", rows=pairs)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,43 +14,51 @@ from nacre._tools.units import display_units, symbol
 from nacre.results import display, files, svg
 from nacre.results.parameters import PARAMETERS
 from nacre.results.quantities import ERROR
-from nacre.results.report import Picture, Rows, Sections, Table, table, write
+from nacre.results.report import Picture, Rows, Table, table, write
+from nacre.results.rows import Row, remark
+from nacre.results.shown import Shown
 
 if TYPE_CHECKING:
     import xarray
 
 MOST_CURVES = 7
 """Largest number of curves in a picture: there are so many colours."""
-MODEL = (
-    ("theory", "each case is a solve of its own; ± is the error due to the size of the cells"),
-)
+MODEL = [
+    remark("theory", "each case is a solve of its own; ± is the error due to the size of the cells")
+]
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Shown):
     """A Dataset of a study, of which a report is written."""
 
     dataset: xarray.Dataset
 
-    def _sections(self) -> Sections:
-        dataset, texts = self.dataset, ("error", "warnings")
-        names = [str(name) for name in dataset.data_vars if name not in texts]
-        names = [name for name in names if not name.endswith(ERROR)]
-        numbers = [name for name in names if dataset[name].dims == self._dims]
+    def _title(self) -> str:
+        return str(self.dataset.attrs.get("title", "study"))
+
+    def _inputs(self) -> Rows:
+        names = (str(name) for name in self.dataset.coords if name != "axis")
+        return [remark(name, self._values(name)) for name in names]
+
+    @property
+    def _outputs(self) -> list[str]:
+        """Names of the outputs that are numbers of each case."""
+        names = [str(name) for name in self.dataset.data_vars if name not in ("error", "warnings")]
+        return [n for n in names if not n.endswith(ERROR) and self.dataset[n].dims == self._dims]
+
+    def _report_rows(self) -> Rows:
+        dataset = self.dataset
         failed = int((dataset["error"] != "").sum()) if "error" in dataset else 0
         cases = int(np.prod([dataset.sizes[dim] for dim in self._dims]))
-        return Sections(
-            str(dataset.attrs.get("title", "study")),
-            [(str(name), self._values(str(name))) for name in dataset.coords if name != "axis"],
-            [
-                ("cases", f"{cases}, {failed} failed"),
-                *((name, self._range(name)) for name in numbers),
-            ],
-            [picture for name in numbers for picture in self._pictures(name)],
-            self._tables(numbers),
-            MODEL,
-            self._warnings(),
-        )
+        ranges = [Row(name, name, self._range(name)) for name in self._outputs]
+        return [remark("cases", f"{cases}, {failed} failed"), *ranges]
+
+    def _pictures(self) -> Sequence[Picture]:
+        return [picture for name in self._outputs for picture in self._pictures_of(name)]
+
+    def _model(self) -> Rows:
+        return MODEL
 
     @property
     def _dims(self) -> tuple[object, ...]:
@@ -87,8 +96,9 @@ class Study:
         ends = (self._number(name, float(end)) for end in (finite.min(), finite.max()))
         return " to ".join(dict.fromkeys(ends))
 
-    def _tables(self, names: list[str]) -> list[Table]:
+    def _tables(self) -> Sequence[Table]:
         """Return the table of all cases, and that of those that failed."""
+        names = self._outputs
         kept = [*names, *(name + ERROR for name in names if name + ERROR in self.dataset)]
         rows = self.dataset[[*kept, *(["error"] if "error" in self.dataset else [])]]
         frame = rows.to_dataframe().reset_index()
@@ -108,7 +118,7 @@ class Study:
             tables.append(Table("Cases that failed", [*places, "error"], cells))
         return tables
 
-    def _pictures(self, name: str) -> list[Picture]:
+    def _pictures_of(self, name: str) -> list[Picture]:
         """Return the picture of an output over the first parameter that is a number."""
         output = self.dataset[name]
         along = [
@@ -139,7 +149,8 @@ class Study:
     def _axis(self, name: str) -> svg.Axis:
         return svg.Axis(name.replace("_", " "), self._unit(name))
 
-    def _warnings(self) -> list[str]:
+    @property
+    def _warnings(self) -> Sequence[str]:
         if "warnings" not in self.dataset:
             return []
         texts = np.ravel(self.dataset["warnings"].values).tolist()
@@ -151,7 +162,7 @@ def save_report(
     path: str | os.PathLike[str],
     *,
     case: str | None = None,
-    inputs: Rows = (),
+    inputs: Sequence[tuple[str, str]] = (),
 ) -> Path:
     """Write the report of a study, whole or not at all: a page of HTML to print and to sign.
 
@@ -188,4 +199,5 @@ def save_report(
     'study.html'
     """
     with display_units(str(dataset.attrs.get("unit_system", "SI"))):
-        return files.save(path, {".html": lambda file: write(file, [Study(dataset)], case, inputs)})
+        rows = [remark(name, text) for name, text in inputs]
+        return files.save(path, {".html": lambda file: write(file, [Study(dataset)], case, rows)})

@@ -220,9 +220,9 @@ def test_bounds_of_rates_are_physical_in_any_units() -> None:
 
 def test_printed_rows_have_one_unit() -> None:
     """1e-17 m²/N of 1e5 N/m over 100 m are 100 µm²."""
-    rows = dict(worn(counter_rate=1e-18)._rows())
+    rows = {row.label: row.text for row in worn(counter_rate=1e-18)._rows()}
     assert rows["worn volume"] == "100 µm² of the body, 10 µm² of the counterbody"
-    rows = dict(worn(sliding=50.0, steps=1)._rows())
+    rows = {row.label: row.text for row in worn(sliding=50.0, steps=1)._rows()}
     assert rows["worn volume"] == "50 µm² of the body, 0 µm² of the counterbody"
     assert rows["peak pressure"].count("MPa") == 2
 

@@ -151,7 +151,7 @@ def test_inputs_of_a_history_that_goes_on_name_both_parts() -> None:
     assert third.inputs["body"] == first.inputs["body"]
     # Loads times distances of the parts.
     assert third.volume[-1, 0] == pytest.approx(1e-17 * (50e5 + 50 * 2e5), rel=1e-12)
-    report = dict(third._sections().inputs)
+    report = {row.label: row.text for row in third._sections().inputs}
     assert report["load"] == "100000.0 up to 50 m, then 200000.0 N/m"
     assert report["sliding"] == "100 m"
 

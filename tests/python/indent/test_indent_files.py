@@ -53,7 +53,7 @@ def test_tables_hold_the_contacts(tmp_path: Path) -> None:
         head, *rows = csv.reader(line for line in file if not line.startswith("#"))
     assert head[:2] == ["load [N]", "approach [m]"]
     np.testing.assert_array_equal(np.array(rows, float)[:, 0], found.load)
-    with pytest.raises(ValueError, match=r"must end in \.nc, \.csv, \.html"):
+    with pytest.raises(ValueError, match=r"must end in \.nc, \.csv, \.png, \.pdf, \.svg, \.html"):
         found.save(tmp_path / "a.txt")
     assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Mapping
 from typing import Any
 
 import pytest
@@ -144,8 +143,8 @@ def test_reports_give_back_what_went_in(name: str, units: str, line: bool) -> No
         sections = result._sections()
     # What moves tangentially is found or given: its row is among the results.
     moves = name in ("shift", "force", "twist", "torque", "spin")
-    rows: Mapping[str, str] = dict(sections.numbers if moves else sections.inputs)
-    shown = next(text for label, text in rows.items() if label.split(".")[0] == name)
+    rows = sections.numbers if moves else sections.inputs
+    shown = next(row.text for row in rows if row.key.split(".")[0] == name)
     assert_close(quantity(shown), expected, rtol=1e-3)
 
 

@@ -298,7 +298,7 @@ def test_a_solution_prints_what_was_solved() -> None:
     assert "rigid" not in elastic.lower()
 
 
-@pytest.mark.parametrize("kind", ["TableResult", "Tabular", "Result", "", None, ["Solution"]])
+@pytest.mark.parametrize("kind", ["TableResult", "Shown", "Result", "", None, ["Solution"]])
 def test_a_kind_that_is_no_result_is_refused(kind: Any) -> None:
     with pytest.raises(ValueError, match="must name a result of nacre"):
         values.decode(values.heading("") | {"kind": kind})
