@@ -786,7 +786,7 @@ class PairSolution(Equilibrium):
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences
         heavier = max(self.bearings, key=lambda one: one.largest_load)
-        picture = notebook_picture(heavier._pictures()[:1])
+        picture = notebook_picture([heavier._ring_chart()])
         return display.markup(self._rows(), self.report.warnings, picture, verdict=verdict)
 
     def _state(self) -> dict[str, object]:

@@ -17,22 +17,20 @@ import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.normal import NormalContact
 from nacre.contact.solution import NOT_COUNTED, Solution, datum_words
-from nacre.contact.stresses import DepthOptions, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
+from nacre.results.charts import Axis, Picture, contact_charts, contact_map, loop_chart
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
 from nacre.results.report import (
-    Picture,
     Sections,
-    contact_pictures,
+    drawn,
     input_rows,
-    map_picture,
     notebook_picture,
     other_numbers,
     table,
     writer,
 )
-from nacre.results.svg import Axis, Curve, lines
 
 if TYPE_CHECKING:
     import xarray
@@ -362,19 +360,19 @@ class FrictionSolution(NormalContact, Result):
         return display.text(self._rows(), self._warnings)
 
     def _repr_html_(self) -> str:
-        picture = notebook_picture(self._pictures())
+        picture = notebook_picture(self._charts())
         return display.markup(self._rows(), self._warnings, picture)
 
-    def _pictures(self) -> list[Picture]:
-        """Return the pictures of a report: pressure, and where the contact sticks and slips."""
-        pictures = contact_pictures(self)
-        if self.grid.is_line or not pictures:
-            return pictures
+    def _charts(self) -> list[Picture]:
+        """Return the charts of pressure, and of where the contact sticks and slips."""
+        charts = contact_charts(self)
+        if self.grid.is_line or not charts:
+            return charts
         bound = np.where(self.bound > 0, self.bound, np.inf)
         share = np.hypot(*self.traction) / bound
         caption = "Traction over friction times pressure: it slips where that is 1."
         axis = Axis("traction over its bound", "", (0.0, 1.0))
-        return [*pictures, map_picture(self, share, axis, caption)]
+        return [*charts, contact_map(self, share, axis, caption)]
 
     def _rows(self) -> list[tuple[str, str]]:
         """Return the numbers of the normal contact, and those of friction."""
@@ -385,7 +383,7 @@ class FrictionSolution(NormalContact, Result):
         """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
         normal = self.normal._sections()
         friction = {"friction": self.friction, "direction": self.direction}
-        pictures = [*self._pictures(), *depth_pictures(self, **stress)]
+        pictures = drawn([*self._charts(), *depth_charts(self, **stress)])
         model = [
             *(row for row in normal.model if row[0] != "not counted"),
             ("friction", LAW),
@@ -601,14 +599,8 @@ class History(list[FrictionSolution], Warned):
         last = checked(self)[-1]._sections(**stress)
         forces = np.array([step.force for step in self])
         axis = int(np.argmax(np.ptp(forces, axis=0)))
-        loop = []
-        if shifts := [step.shift for step in self if step.shift is not None]:
-            curve = Curve(np.array(shifts)[:, axis], forces[:, axis])
-            axes = (
-                Axis(f"shift along {'xy'[axis]}", "m"),
-                Axis("force", "N/m" if self[0].grid.is_line else "N"),
-            )
-            loop = [Picture("Force over shift, all steps.", lines([curve], axes))]
+        is_sliding = all(step.shift is not None for step in self)
+        loop = drawn([loop_chart(self, axis)] if is_sliding else ())
         return dataclasses.replace(
             last,
             title="history of a contact with friction; numbers and pressures are of the last step",

@@ -27,14 +27,15 @@ from nacre.contact.gradient import (
     linearisation,
 )
 from nacre.contact.normal import NormalContact
-from nacre.contact.stresses import DepthOptions, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
+from nacre.results.charts import contact_charts
 from nacre.results.quantities import CONTACT, Quantity
 from nacre.results.report import (
     Rows,
     Sections,
-    contact_pictures,
+    drawn,
     input_rows,
     notebook_picture,
     other_numbers,
@@ -712,7 +713,7 @@ class Solution(NormalContact, Result):
         return display.text(self._rows(), self._warnings)
 
     def _repr_html_(self) -> str:
-        picture = notebook_picture(contact_pictures(self))
+        picture = notebook_picture(contact_charts(self))
         return display.markup(self._rows(), self._warnings, picture)
 
     def _rows(self) -> list[tuple[str, str]]:
@@ -721,7 +722,7 @@ class Solution(NormalContact, Result):
 
     def _sections(self, **stress: Unpack[DepthOptions]) -> Sections:
         """Return what stands in a report; `stress` has keywords of stresses, for their picture."""
-        pictures = [*contact_pictures(self), *depth_pictures(self, **stress)]
+        pictures = drawn([*contact_charts(self), *depth_charts(self, **stress)])
         numbers = [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]
         inputs, model = _inputs(self), _model(self.report)
         return Sections(self._TITLE, inputs, numbers, pictures, (), model, self._warnings)

@@ -20,7 +20,7 @@ from nacre.contact.gradient import Output
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
-from nacre.results import display, files, report, svg, tables
+from nacre.results import charts, display, files, report, tables
 from nacre.results.base import Fields
 
 if TYPE_CHECKING:
@@ -124,14 +124,23 @@ class Optimum(Fields):
         table = {".csv": lambda file: tables.write_rows(file, rows, source=tables.SOURCE)}
         return files.save(path, table | files.pictures(self.plot) | report.writer(self))
 
+    def _charts(self) -> list[charts.Chart]:
+        """Return the chart of the objective, the limits and the parameters, over the solves."""
+        table = self.course
+        shares = {"objective": table["objective"] / table["objective"][0]}
+        if np.isfinite(table["excess"]).all():
+            shares["largest share of a limit"] = 1 + table["excess"]
+        shares |= {name: table[name] / (table[name][0] or 1.0) for name in self.values}
+        curves = [
+            charts.Curve(table["solves"], values, name, "marked") for name, values in shares.items()
+        ]
+        is_log = all((values > 0).all() for values in shares.values())
+        share = charts.Axis("share of the start", scale="log" if is_log else "linear")
+        axes = charts.Axis("solves, of contacts and of derivatives"), share
+        return [charts.Chart("Course.", curves, axes)]
+
     def _sections(self) -> report.Sections:
         (head, *rows), lines = self._table()
-        x = self.course["solves"]
-        curves = [
-            svg.Curve(x, self.course[name] / (self.course[name][0] or 1.0), name)
-            for name in ("objective", *self.values)
-        ]
-        drawing = svg.lines(curves, (svg.Axis("solves"), svg.Axis("share of the start")))
         cases = [one._sections() for one in self.solutions]
         course = [[*self.course], *zip(*(c.tolist() for c in self.course.values()), strict=True)]
         return report.Sections(
@@ -146,7 +155,7 @@ class Optimum(Fields):
                 for k, case in enumerate(cases)
                 for name, text in case.numbers
             ],
-            [report.Picture("Course.", drawing), *(p for case in cases for p in case.pictures)],
+            [*report.drawn(self._charts()), *(p for case in cases for p in case.pictures)],
             [report.Table("Optimum", head, rows), report.table("Course", course)],
             [("minimised", text) for text in lines if not text.startswith("warning: ")],
             self.warnings,

@@ -32,9 +32,9 @@ from nacre.fatigue.summary import (
 )
 from nacre.results import display, files
 from nacre.results.base import Warned
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import SHAKEDOWN
-from nacre.results.report import Picture, Sections, table
-from nacre.results.svg import Axis, Curve, lines
+from nacre.results.report import Sections, drawn, table
 from nacre.results.table_results import Tabular
 
 if TYPE_CHECKING:
@@ -165,23 +165,25 @@ class ShakedownMap(Tabular, Warned):
             for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
                 yield [name, friction, *columns]
 
-    def _sections(self) -> Sections:
-        order = np.argsort(self.friction)
-        curves = [
-            Curve(self.friction[order], values[order], f"{name}: {words}", look)
-            for k, name in enumerate(self.names)
-            for values, words, look in (
-                (self.limits[k], "shakedown", "line"),
-                (self.first_yield[k], "first yield", "dashed"),
-            )
-        ]
+    def _charts(self, label: str = "") -> list[Chart]:
+        """Return the chart of the limits over friction; words may stand before names of layers."""
+        order, curves = np.argsort(self.friction), []
+        for k, name in enumerate(self.names):
+            words = f"{label}, {name}" if label else name
+            curves += [
+                Curve(self.friction[order], self.limits[k][order], words, "solid"),
+                Curve(self.friction[order], self.first_yield[k][order], look="thin"),
+            ]
         axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
+        return [Chart("Shakedown limits over friction; thin: first yield.", curves, axes)]
+
+    def _sections(self) -> Sections:
         _, notes = self._printed()
         return Sections(
             "shakedown map",
             [("rule", self.rule)],
             [("peak pressure", display.number(self.peak_pressure, "Pa"))],
-            [Picture("Limits over friction.", lines(curves, axes))],
+            drawn(self._charts()),
             [table("Limits", self._file_rows(), SHAKEDOWN)],
             [("theory", note) for note in notes],
             self.warnings,

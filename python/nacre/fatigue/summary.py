@@ -22,9 +22,9 @@ from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
+from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 from nacre.results.quantities import EXTREME_UNITS, FATIGUE, PROFILE
-from nacre.results.report import Picture, Sections, table
-from nacre.results.svg import Axis, Curve, lines
+from nacre.results.report import Sections, drawn, table
 from nacre.results.table_results import Tabular
 from nacre.results.verdict import Demand, Verdict, judged, times
 
@@ -372,21 +372,27 @@ class FatigueSummary(Tabular, Warned):
                 value = getattr(face, name)
                 yield display.part(face), name, value, np.nan, np.nan, face.depth, np.nan
 
-    def _sections(self) -> Sections:
+    def _charts(self) -> list[Chart]:
+        """Return the chart of what a material needs at each depth."""
         labels = {row.name: row.label for row in PROFILE}
         curves = [
             Curve(self.depths, values, labels.get(name, name))
             for name, values in self.profiles.items()
         ]
-        marks = [face.depth for face in self.interfaces]
-        drawing = lines(curves, (Axis("depth", "m"), Axis("stress", "Pa")), marks)
+        marks, deepest = [face.depth for face in self.interfaces], float(self.depths.max())
+        enlarged = enlarged_depth(marks, deepest)
+        axes = Axis("depth", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
+        caption = "What a material needs at each depth; dotted: interfaces."
+        return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
+
+    def _sections(self) -> Sections:
         _, notes = self._printed()
         comments = ((name, str(self._comments()[name])) for name in ("rule", "criteria"))
         return Sections(
             "shakedown and fatigue",
             list(comments),
             [("peak pressure", display.number(self.peak_pressure, "Pa"))],
-            [Picture("What a material needs at each depth; dotted: interfaces.", drawing)],
+            drawn(self._charts()),
             [table("What layers and interfaces need", self._file_rows(), FATIGUE)],
             [("theory", note) for note in notes],
             self.warnings,

@@ -22,9 +22,9 @@ from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
 from nacre.results import display
-from nacre.results.report import Picture, Sections, Table, input_rows, table
-from nacre.results.svg import Axis, lines
-from nacre.results.svg import Curve as Line
+from nacre.results.charts import Axis, Chart
+from nacre.results.charts import Curve as Line
+from nacre.results.report import Sections, Table, drawn, input_rows, table
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
@@ -179,7 +179,7 @@ class Fit(Tabular):
             "fit of indentation curves",
             [("bodies and tip", "with the estimates in place"), *input_rows(inputs)],
             [(row[0], f"{row[1]} ± {row[2]}; 95 %: {row[3]} {row[4]}".rstrip()) for row in rows],
-            self._pictures(),
+            drawn(self._charts()),
             [
                 Table("Estimates", head, rows),
                 table("Correlation", [["", *names], *([n, *row] for n, row in correlations)]),
@@ -188,8 +188,8 @@ class Fit(Tabular):
             self.warnings,
         )
 
-    def _pictures(self) -> list[Picture]:
-        """Return the pictures of a report: force and residuals over depth."""
+    def _charts(self) -> list[Chart]:
+        """Return the charts of a report: force and residuals over depth."""
         forces, residuals = [], []
         for number, curve in enumerate(self.curves):
             name, order = curve.name or f"curve {number}", np.argsort(curve.depth, kind="stable")
@@ -200,8 +200,8 @@ class Fit(Tabular):
         rest = Axis("residual", "N") if self.noise == "absolute" else Axis("residual, share")
         depth = Axis("depth", "m")
         return [
-            Picture("Force over depth as measured.", lines(forces, (depth, Axis("force", "N")))),
-            Picture("Residuals over depth.", lines(residuals, (depth, rest))),
+            Chart("Force over depth as measured.", forces, (depth, Axis("force", "N"))),
+            Chart("Residuals over depth.", residuals, (depth, rest)),
         ]
 
     def __eq__(self, other: object) -> bool:

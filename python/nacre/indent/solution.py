@@ -21,9 +21,9 @@ from nacre._tools.units import printable, written
 from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Warned
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import INDENT, units
-from nacre.results.report import Picture, Sections, input_rows, table
-from nacre.results.svg import Axis, Curve, lines
+from nacre.results.report import Sections, drawn, input_rows, table
 from nacre.results.table_results import Tabular
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
@@ -375,6 +375,17 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
 
         return contact_rows(self)
 
+    def _charts(self) -> list[Chart]:
+        """Return the chart of load over depth, or of the pressure of a single contact."""
+        if np.size(self.load) > 1:
+            curve = Curve(np.ravel(self.approach), np.ravel(self.load), look="marked")
+            return [Chart("Load over depth.", [curve], (Axis("approach", "m"), Axis("load", "N")))]
+        edge = float(np.ravel(self.outer_radius)[0])
+        x = np.linspace(0.0, 1.1 * edge, 221)[1:]  # a sharp tip presses without limit at 0
+        axes = Axis("distance from the axis", "m"), Axis("pressure", "Pa")
+        caption = "Pressure over the distance from the axis."
+        return [Chart(caption, [Curve(x, np.ravel(self.pressure(x)))], axes)]
+
     def _sections(self) -> Sections:
         inputs = {name: getattr(self, name) for name in ARGUMENTS}
         inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
@@ -382,9 +393,7 @@ class IndentSolution(Tabular, Warned, Generic[Value]):
         numbers = [(name, self._range(name)) for name in NUMBERS[:4]]
         if self.adhesion is not None:
             numbers += [(n.replace("_", " "), with_unit(v, n)) for n, v in self._pulled.items()]
-        x, y = np.ravel(self.approach), np.ravel(self.load)
-        axes = Axis("approach", "m"), Axis("load", "N")
-        pictures = [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
+        pictures = drawn(self._charts() if np.size(self.load) > 1 else ())
         contacts = [table("Contacts", self._file_rows())]
         title = "indentation of a coated body"
         rows = input_rows(inputs)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from itertools import product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -155,28 +154,23 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
     >>> plot.load_distribution(solution).name
     'polar'
     """
-    loads = solution.loads
-    scale = Scale.of(float(loads.max(initial=0.0)), "N")
+    loads, highest = solution.loads, float(solution.loads.max(initial=0.0))
+    same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * highest)
+    ring = solution._ring_chart(1 if same else len(RINGS))
+    scale, _ = ring.axis.units(highest)
     with styled():
         if axes is None:
             figure = plt.figure(figsize=(0.5 * WIDTH, 0.5 * WIDTH), layout="constrained")
             axes = figure.add_subplot(projection="polar")
-        same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * loads.max(initial=0.0))
-        count, rows = solution.bearing.count, solution.bearing.rows
-        width, rings = 2 * np.pi / count, RINGS[:1] if same else RINGS
-        share = 0.5 / (rows * len(rings))
-        for number, (row, ring) in enumerate(product(range(rows), rings)):
-            members = slice(row * count, (row + 1) * count)
-            words = [f"row {row + 1}"] * (rows > 1)
-            words += [ring if words else f"{ring} ring"] * (not same or rows == 1)
-            style = {"color": look(number)["color"], "label": ", ".join(words)}
-            place = (
-                solution.angles[members] + (number - (rows * len(rings) - 1) / 2) * share * width
-            )
-            heights = scale.factor * loads[members, RINGS.index(ring)]
-            axes.bar(place, heights, width=share * width, **style)
+        count, series = ring.loads.shape
+        width = 2 * np.pi / count
+        share = 0.5 / series
+        for number, label in enumerate(ring.labels):
+            places = ring.angles[:, number] + (number - (series - 1) / 2) * share * width
+            heights = scale.factor * ring.loads[:, number]
+            axes.bar(places, heights, share * width, color=look(number)["color"], label=label)
         axes.set_axisbelow(True)
-        highest = scale.factor * float(loads.max(initial=0.0))
+        highest *= scale.factor
         ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]
         axes.set_yticks(ticks, [])
         axes.set_xticks(solution.angles[:count], [f"{j}" for j in range(count)])
@@ -187,25 +181,9 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
         for tick in ticks:  # those of Matplotlib lie below the bars
             style = {"size": STYLE["ytick.labelsize"], "ha": "center", "va": "center"}
             axes.text(beside, tick, f"{tick:g}", bbox=paper, **style)
-        if not same or rows > 1:
+        if any(ring.labels):
             axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.08), ncols=2)
     return axes
-
-
-def _curve(solution: BearingSolution, element: int, ring: Ring) -> tuple[Array, Array]:
-    """Return positions along the axis of an element, and the largest pressures there."""
-    number = RINGS.index(ring)
-    if solution.model == "solved":
-        contact = solution.contact(element, ring)
-        if contact is None:
-            return np.zeros(0), np.zeros(0)
-        return contact.x, contact.pressure.max(axis=1)
-    pressures = solution.lamina_pressures
-    if pressures is None:
-        return np.zeros(0), np.zeros(0)
-    length: float = solution.bearing.length  # type: ignore[attr-defined]
-    count = pressures.shape[-1]
-    return ((np.arange(count) + 0.5) / count - 0.5) * length, pressures[element, number]
 
 
 @in_si
@@ -273,7 +251,7 @@ def elements_pressure(
             axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
             axes.legend()
             return axes
-        curves = [(j, r, *_curve(solution, j, r)) for j in elements for r in rings]
+        curves = [(j, r, *solution._profile(j, RINGS.index(r))) for j in elements for r in rings]
         curves = [curve for curve in curves if curve[2].size]
         longest = max((float(np.abs(x).max()) for _, _, x, _ in curves), default=1e-3)
         length = Scale.of(longest, "m")

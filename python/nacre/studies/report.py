@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nacre._tools.units import display_units, symbol
-from nacre.results import display, files, svg
+from nacre.results import display, files
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.parameters import PARAMETERS
 from nacre.results.quantities import ERROR
-from nacre.results.report import Picture, Rows, Sections, Table, table, write
+from nacre.results.report import Rows, Sections, Table, drawn, table, write
 
 if TYPE_CHECKING:
     import xarray
@@ -45,7 +46,7 @@ class Study:
                 ("cases", f"{cases}, {failed} failed"),
                 *((name, self._range(name)) for name in numbers),
             ],
-            [picture for name in numbers for picture in self._pictures(name)],
+            drawn(chart for name in numbers for chart in self._charts(name)),
             self._tables(numbers),
             MODEL,
             self._warnings(),
@@ -108,8 +109,8 @@ class Study:
             tables.append(Table("Cases that failed", [*places, "error"], cells))
         return tables
 
-    def _pictures(self, name: str) -> list[Picture]:
-        """Return the picture of an output over the first parameter that is a number."""
+    def _charts(self, name: str) -> list[Chart]:
+        """Return the chart of an output over the first parameter that is a number."""
         output = self.dataset[name]
         along = [
             dim
@@ -128,16 +129,16 @@ class Study:
         for k in range(min(flat.sizes["others"], MOST_CURVES)):
             one = flat.isel(others=k)
             places = ", ".join(f"{dim} {self._number(str(dim), one[dim].item())}" for dim in rest)
-            curves.append(svg.Curve(output[x].values, one.values, places))
+            curves.append(Curve(output[x].values, one.values, places))
         low, high = float(output.min()), float(output.max())
         margin = (high - low) / 10
         # Of values that hardly change, 0 is not shown.
         ends = (low - margin, high + margin) if 0 < margin < low / 20 else None
         axes = (self._axis(x), self._axis(name)._replace(ends=ends))
-        return [Picture(f"{name} over {x}.".replace("_", " "), svg.lines(curves, axes))]
+        return [Chart(f"{name} over {x}.".replace("_", " "), curves, axes)]
 
-    def _axis(self, name: str) -> svg.Axis:
-        return svg.Axis(name.replace("_", " "), self._unit(name))
+    def _axis(self, name: str) -> Axis:
+        return Axis(name.replace("_", " "), self._unit(name))
 
     def _warnings(self) -> list[str]:
         if "warnings" not in self.dataset:
