@@ -168,7 +168,8 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
         for number, label in enumerate(ring.labels):
             places = ring.angles[:, number] + (number - (series - 1) / 2) * share * width
             heights = scale.factor * ring.loads[:, number]
-            axes.bar(places, heights, share * width, color=look(number)["color"], label=label)
+            words = label.removesuffix(" ring") if solution.bearing.rows > 1 else label
+            axes.bar(places, heights, share * width, color=look(number)["color"], label=words)
         axes.set_axisbelow(True)
         highest *= scale.factor
         ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]

@@ -1,7 +1,4 @@
-"""Charts as data: what a picture shows, for the drawers of SVG and of Matplotlib.
-
-Numbers are in SI, and are drawn in the units that are set.
-"""
+"""Charts as data: what a picture shows, for the drawers of SVG and of Matplotlib."""
 
 from __future__ import annotations
 
@@ -30,16 +27,21 @@ HEADROOM = 0.05
 
 
 class Axis(NamedTuple):
-    """What is drawn along an axis; the ends are those of the numbers by default."""
+    """What is drawn along an axis; the ends are those of the numbers by default.
+
+    Numbers are in the units that are set; their unit is named by that of SI.
+    """
 
     name: str
     unit: str = ""
     ends: Ends | None = None
     scale: Literal["linear", "log"] = "linear"
+    is_exact: bool = False
+    """Whether numbers are in this very unit, whatever units are set, as those of Datasets."""
 
     def units(self, largest: float) -> tuple[Scale, str]:
         """Return the scale of numbers of which the largest is given, and the label."""
-        scale = display.scale_in(largest, symbol(self.unit))
+        scale = display.scale_in(largest, self.unit if self.is_exact else symbol(self.unit))
         return scale, f"{self.name} [{scale.unit}]".strip() if scale.unit else self.name
 
 

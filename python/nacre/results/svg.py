@@ -1,7 +1,6 @@
 """Pictures as SVG, from numbers to text: curves, loads around a ring, and maps of cells.
 
-Colours are names of classes, which `STYLE` sets, so that a page can have others in print. Numbers
-are in SI, and are drawn in the units that are set.
+Colours are names of classes, which `STYLE` sets, so that a page can have others in print.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ class Study:
         return [Chart(f"{name} over {x}.".replace("_", " "), curves, axes)]
 
     def _axis(self, name: str) -> Axis:
-        return Axis(name.replace("_", " "), self._unit(name))
+        return Axis(name.replace("_", " "), self._unit(name), is_exact=True)
 
     def _warnings(self) -> list[str]:
         if "warnings" not in self.dataset:

@@ -26,7 +26,7 @@ from nacre.contact import stresses
 from nacre.results import report, svg
 from nacre.results.charts import Axis, Bars, Chart, Curve, Map, contact_charts
 from nacre.results.report import Sections, input_rows, page, table, write
-from nacre.studies.report import save_report
+from nacre.studies.report import Study, save_report
 from support import Capture, assert_close, command, written
 
 LARGEST = 300_000
@@ -510,6 +510,18 @@ def test_bars_and_curves_are_those_of_the_elements() -> None:
     assert max(inner.y) == rollers.peak_pressures[:, 0].max()
     assert max(outer.y) == pytest.approx(rollers.lamina_pressures[0, 1].max())  # type: ignore[index]
     assert inner.x[0] == pytest.approx(-9.6e-3 / 2 * 39 / 40)  # the middle of the first of 40
+
+
+def test_pictures_of_studies_have_units_of_their_own() -> None:
+    study = design.load_curve(BALL, STEEL, load=[10.0, 20.0])
+    with nacre.display_units("N-mm-MPa"):
+        (chart,) = Study(study)._charts("peak_pressure")
+        texts = [*drawn(svg.drawing(chart)).iter("text")]
+    assert "peak pressure [MPa]" in {text.text for text in texts}
+    low, high = study.peak_pressure.values / 1e6
+    ticks = [float(text.text or "") for text in texts if text.get("class") == "end"]
+    assert len(ticks) >= 3
+    assert 0.9 * low < min(ticks) < max(ticks) < 1.1 * high
 
 
 def test_long_curves_keep_their_peaks() -> None:
