@@ -175,7 +175,8 @@ class ShakedownMap(Tabular, Warned):
                 Curve(self.friction[order], self.first_yield[k][order], look="thin"),
             ]
         axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
-        return [Chart("Shakedown limits over friction; thin: first yield.", curves, axes)]
+        title = "shakedown limits; thin: first yield"
+        return [Chart(f"{title[:1].upper()}{title[1:]}.", curves, axes, title=title)]
 
     def _sections(self) -> Sections:
         _, notes = self._printed()

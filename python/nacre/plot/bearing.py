@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
-from nacre._tools.units import Scale, written
-from nacre.plot.style import STYLE, WIDTH, look, new_axes, styled
+from nacre._tools.units import written
+from nacre.plot.drawer import draw
+from nacre.plot.style import STYLE, WIDTH, look, styled
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.display import in_si
 
 with extra("plot"):
@@ -239,41 +241,34 @@ def elements_pressure(
     rings: list[Ring] = (
         [ring] if ring is not None else [*RINGS] if len(elements) == 1 else ["inner"]
     )
-    scale = Scale.of(solution.peak_pressure, "Pa")
-    with styled():
-        axes = axes or new_axes(0.8, 0.45)
-        axes.set_ylabel(f"pressure [{scale.unit}]")
-        if solution.model != "solved" and solution.lamina_pressures is None:
-            for number, one in enumerate(RINGS):
-                peaks = scale.factor * solution.peak_pressures[:, number]
-                mark = {"marker": "o", "linestyle": "none", "color": look(number)["color"]}
-                axes.plot(solution.angles, peaks, label=f"{one} ring", **mark)
-            axes.set(xlabel="angle [rad]", title="peak pressures, Hertz")
-            axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
-            axes.legend()
-            return axes
-        curves = [(j, r, *solution._profile(j, RINGS.index(r))) for j in elements for r in rings]
-        curves = [curve for curve in curves if curve[2].size]
-        longest = max((float(np.abs(x).max()) for _, _, x, _ in curves), default=1e-3)
-        length = Scale.of(longest, "m")
-        drawn: list[tuple[list[int], Ring, Array, Array]] = []
-        for element, name, x, values in curves:  # elements on both sides of the load are alike
-            for others, other, _, known in drawn:
-                if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
-                    others.append(element)
-                    break
-            else:
-                drawn.append(([element], name, x, values))
-        for number, (alike, which, x, values) in enumerate(drawn):
-            element_label = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
-            label = f"{which} ring" if len(elements) == 1 else element_label
-            peak = written(float(values.max()), "Pa", 3)
-            style = {**look(number), "label": f"{label} (peak {peak})"}
-            axes.plot(length.factor * x, scale.factor * values, **style)
-        title = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
-        if solution.model == "iso16281":
-            title += ", Hertz's pressure of laminae"
-        axes.set(xlabel=f"x along the element [{length.unit}]", title=title, ylim=(0, None))
-        if curves:
-            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
-    return axes
+    pressure = Axis("pressure", "Pa")
+    if solution.model != "solved" and solution.lamina_pressures is None:
+        peaks = [
+            Curve(solution.angles, solution.peak_pressures[:, k], f"{name} ring", "points")
+            for k, name in enumerate(RINGS)
+        ]
+        places = Axis("angle", "rad"), pressure._replace(ends=(0.0, 1.08 * solution.peak_pressure))
+        chart = Chart("", peaks, places, title="peak pressures, Hertz")
+        return draw(chart, axes, (0.8, 0.45), markersize=6)
+    curves = [(j, r, *solution._profile(j, RINGS.index(r))) for j in elements for r in rings]
+    curves = [curve for curve in curves if curve[2].size]
+    drawn: list[tuple[list[int], Ring, Array, Array]] = []
+    for element, name, x, values in curves:  # elements on both sides of the load are alike
+        for others, other, _, known in drawn:
+            if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
+                others.append(element)
+                break
+        else:
+            drawn.append(([element], name, x, values))
+    chart_curves = []
+    for alike, which, x, values in drawn:
+        element_label = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
+        label = f"{which} ring" if len(elements) == 1 else element_label
+        peak = written(float(values.max()), "Pa", 3)
+        chart_curves.append(Curve(x, values, f"{label} (peak {peak})"))
+    title = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
+    if solution.model == "iso16281":
+        title += ", Hertz's pressure of laminae"
+    chart = Chart("", chart_curves, (Axis("x along the element", "m"), pressure), title=title)
+    legend = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 2}
+    return draw(chart, axes, (0.8, 0.45), legend)

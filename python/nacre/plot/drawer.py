@@ -22,7 +22,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     "solid": {"linestyle": "-"},
     "dashed": {"linestyle": "--"},
     "marked": {"marker": "."},
-    "points": {"linestyle": "none", "marker": "o", "ms": 3},
+    "points": {"linestyle": "none", "marker": "o", "markersize": 3},
 }
 """Properties of curves beside their colours."""
 
@@ -44,7 +44,10 @@ def draw(
             beside = axes.figure.add_subplot(grid[1], sharey=axes)
             beside.tick_params(labelleft=False)
             panels.append((beside, chart.axes[0]._replace(ends=chart.inset)))
-        y, y_label = _units(chart.axes[1], [curve.y for curve in chart.curves])
+        has_zero = chart.axes[1].has_zero and chart.axes[1].scale == "linear"
+        low, high = chart.axes[0].ends or (-np.inf, np.inf)
+        visible = [curve.y[(curve.x >= low) & (curve.x <= high)] for curve in chart.curves]
+        y, y_label = _units(chart.axes[1], visible)
         for panel, axis in panels:
             x, x_label = _units(axis, [curve.x for curve in chart.curves])
             for curve, look in zip(chart.curves, _looks(panel, chart.curves), strict=True):
@@ -52,17 +55,19 @@ def draw(
                 (line,) = panel.plot(*points, **look | style)
                 if curve.label:
                     line.set_label(curve.label)
-                if chart.axes[1].scale == "linear":  # 0 is in the picture, and may be its edge
+                if has_zero:  # it may be the edge
                     line.sticky_edges.y.append(0.0)
             for mark in chart.marks:
                 panel.axvline(x.factor * mark, color="0.5", linewidth=0.8)
             panel.set_xlabel(x_label)
             if axis.ends is not None:
                 panel.set_xlim(*(x.factor * end for end in axis.ends))
-        axes.set(ylabel=y_label, yscale=chart.axes[1].scale)
+        axes.set(ylabel=y_label, xscale=chart.axes[0].scale, yscale=chart.axes[1].scale)
+        if chart.title:
+            axes.set_title(chart.title)
         if chart.axes[1].ends is not None:
             axes.set_ylim(*(y.factor * end for end in chart.axes[1].ends))
-        elif chart.axes[1].scale == "linear":
+        elif has_zero:
             axes.update_datalim([(0.0, 0.0)], updatex=False)
             axes.autoscale_view()
         if any(curve.label for curve in chart.curves):
@@ -74,7 +79,7 @@ def _units(axis: Axis, values: Sequence[npt.ArrayLike] | Sequence[Ends]) -> tupl
     """Return the scale and the label of an axis with these numbers, or with its own ends."""
     arrays = [np.ravel(numbers) for numbers in ([axis.ends] if axis.ends else values)]
     finite = (np.abs(numbers[np.isfinite(numbers)]) for numbers in arrays)
-    return axis.units(max(float(numbers.max(initial=0.0)) for numbers in finite))
+    return axis.units(max((float(numbers.max(initial=0.0)) for numbers in finite), default=0.0))
 
 
 def _looks(axes: Axes, curves: Sequence[Curve]) -> Any:

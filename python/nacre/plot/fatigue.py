@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from nacre._tools.extras import extra
 from nacre.plot.drawer import draw
-from nacre.plot.style import styled
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -84,7 +83,4 @@ def shakedown_map(limits: ShakedownMap, *, label: str = "", axes: Axes | None = 
     >>> plot.shakedown_map(shakedown_map).get_ylabel()
     'peak pressure / shear yield stress'
     """
-    with styled():
-        axes = draw(limits._charts(label)[0], axes, (0.75, 0.5))
-        axes.set_title("shakedown limits; thin: first yield")
-    return axes
+    return draw(limits._charts(label)[0], axes, (0.75, 0.5))

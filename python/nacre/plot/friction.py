@@ -13,7 +13,7 @@ from nacre._tools.units import Scale, written
 from nacre.plot.drawer import draw
 from nacre.plot.style import WIDTH, checked_axes, extent, lengths, new_axes, next_look, styled
 from nacre.results.base import checked, has_friction
-from nacre.results.charts import loop_chart
+from nacre.results.charts import Axis, Chart, Curve, loop_chart
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -275,15 +275,10 @@ def creep_curve(
     if quantity not in dataset:
         names = ", ".join(map(str, dataset.data_vars))
         raise ValueError(f"quantity must be one of {names}, got {quantity!r}")
-    with styled():
-        axes = axes or new_axes(0.5, 0.4)
-        look = next_look(axes) | style
-        column = dataset[quantity]
-        scale = Scale.in_unit(float(np.abs(column).max()), column.attrs["units"])
-        axes.plot(1e3 * dataset.creepage, scale.factor * column, marker=".", **look)
-        name = dataset.creepage.attrs.get("long_name", "creepage")
-        label = f"{quantity.replace('_', ' ')} [{scale.unit}]"
-        if quantity == "traction_ratio":
-            label = "force over friction times load"
-        axes.set(xlabel=f"{name} [10⁻³]", ylabel=label)
-    return axes
+    column, creepage = dataset[quantity], dataset.creepage
+    label, unit = quantity.replace("_", " "), column.attrs["units"]
+    if quantity == "traction_ratio":
+        label, unit = "force over friction times load", ""
+    x = Axis(f"{creepage.attrs.get('long_name', 'creepage')} [10⁻³]")
+    curve = Curve(1e3 * creepage.values, column.values, look="marked")
+    return draw(Chart("", [curve], (x, Axis(label, unit, is_exact=True))), axes, **style)

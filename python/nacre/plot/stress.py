@@ -245,11 +245,9 @@ def stress_depth(
     curves = [Curve(z[order], v, LABELS[q]) for q, v in zip(quantities, drawn, strict=True)]
     enlarged = enlarged_depth(inner, bottom)
     inset = (0.0, enlarged) if enlarged else None
-    chart = Chart("", curves, (Axis("z", "m", (0.0, bottom)), Axis("stress", "Pa")), inner, inset)
-    with styled():
-        axes = draw(chart, axes, (1.0, 0.5))
-        axes.set_title(f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}")
-    return axes
+    title = f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}"
+    places = Axis("z", "m", (0.0, bottom)), Axis("stress", "Pa")
+    return draw(Chart("", curves, places, inner, inset, title), axes, (1.0, 0.5))
 
 
 def colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:

@@ -36,6 +36,8 @@ class Axis(NamedTuple):
     unit: str = ""
     ends: Ends | None = None
     scale: Literal["linear", "log"] = "linear"
+    has_zero: bool = True
+    """Whether a linear axis of y has 0 among its numbers."""
     is_exact: bool = False
     """Whether numbers are in this very unit, whatever units are set, as those of Datasets."""
 
@@ -65,6 +67,8 @@ class Chart(NamedTuple):
     """Places along x of lines."""
     inset: Ends | None = None
     """Part of x that is drawn again, larger."""
+    title: str = ""
+    """What stands above it where there is no caption."""
 
 
 class Bars(NamedTuple):

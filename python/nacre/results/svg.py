@@ -113,7 +113,9 @@ def _chart(chart: Chart, size: tuple[float, float]) -> str:
     """
     curves, axes, inset = chart.curves, chart.axes, chart.inset
     points = [_thinned(curve, axes[0].ends or (-math.inf, math.inf)) for curve in curves]
-    low, high = _ends([part for _, part in points], has_zero=axes[1].scale == "linear")
+    low, high = _ends(
+        [part for _, part in points], has_zero=axes[1].has_zero and axes[1].scale == "linear"
+    )
     x_ends = axes[0].ends or _ends([part for part, _ in points])
     colours = _colours(curves)
     labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
