@@ -19,15 +19,16 @@ from nacre.case import Case, CaseError, toml
 from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
-from nacre.contact.stresses import depth_pictures
+from nacre.contact.stresses import depth_charts
 from nacre.indent import IndentSolution
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
 from nacre.results import display
-from nacre.results.report import Picture, Rows, section
+from nacre.results.charts import Axis, Chart, Curve, Look, Picture, section
+from nacre.results.report import Rows
 from nacre.results.rows import Row
-from nacre.results.svg import Axis, Curve, bars, lines
+from nacre.results.svg import drawing
 from nacre.results.verdict import Verdict
 from nacre.results.verdict import measured as with_error
 
@@ -169,7 +170,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
             if bare is not None:
                 sliding = {name: one for name, one in options.items() if name != "residual"}
                 beside += _extremes(bare.stress_summary(**sliding, progress=wanted))
-            pictures.append("".join(map(_figure, depth_pictures(solution, bare, **options))))
+            pictures.append("".join(map(_figure, depth_charts(solution, bare, **options))))
     peak = ("peak pressure", solution.peak_pressure, "Pa")
     return _answer(peak, rows, pictures, warnings, verdict, NEXT.get(stage), beside)
 
@@ -212,7 +213,7 @@ def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
     except nacre.ConvergenceError as error:
         raise CaseError(f"no history was found: {error}") from error
     new, worn = (history.states[k].solution for k in (0, -1))
-    pictures = [_pressures(worn=worn, new=new), _figure(history._depth_picture())]
+    pictures = [_pressures(worn=worn, new=new), _figure(history._depth_chart())]
     peak = ("last peak pressure", worn.peak_pressure, "Pa")
     following = "full" if stage == "draft" else None
     return _answer(
@@ -237,12 +238,15 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
         rows += [*rated._rows(), *rated._remarks()]
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
-        pictures = [_ring(one) for one in solution.bearings]
+        pictures = [_figure(member._ring_chart()) for member in solution.bearings]
     else:
         profiles = {"as it stands": _profile(solution)}
         if is_tilted and stage != "full":
             profiles["aligned"] = _profile(bearing.solve(**keywords | {"tilt": (0.0, 0.0)}))
-        pictures = [_drawn(HEAVIEST, Axis("x", "m"), PRESSURE, profiles), _ring(solution)]
+        pictures = [
+            _drawn(HEAVIEST, Axis("x", "m"), PRESSURE, profiles),
+            _figure(solution._ring_chart()),
+        ]
     is_compared = is_tilted and isinstance(bearing, RollerBearing)
     following = NEXT.get(stage) if stage == "draft" or is_compared else None
     peak = ("peak pressure", solution.peak_pressure, "Pa")
@@ -334,15 +338,18 @@ def _table(rows: Rows, beside: Rows) -> str:
 def _figure(picture: Picture) -> str:
     """Return a picture with its caption, which is read out, too."""
     words = html.escape(picture.caption)
-    drawing = picture.drawing.replace("<svg", f"<svg role='img' aria-label='{words}'", 1)
-    return f"<figure>{drawing}<figcaption>{words}</figcaption></figure>"
+    drawn = drawing(picture).replace("<svg", f"<svg role='img' aria-label='{words}'", 1)
+    return f"<figure>{drawn}<figcaption>{words}</figcaption></figure>"
 
 
 def _drawn(caption: str, x: Axis, y: Axis, curves: Mapping[str, tuple[Field, Field]]) -> str:
     """Return a picture of curves by name, the second one dashed; one alone needs no name."""
-    looks = zip(curves.items(), ("line", "dashed"), strict=False)
-    drawn = [Curve(*curve, name if len(curves) > 1 else "", look) for (name, curve), look in looks]
-    return _figure(Picture(caption, lines(drawn, (x, y))))
+    looks: tuple[Look, ...] = "line", "dashed"
+    drawn = [
+        Curve(*curve, name if len(curves) > 1 else "", look)
+        for (name, curve), look in zip(curves.items(), looks, strict=False)
+    ]
+    return _figure(Chart(caption, drawn, (x, y)))
 
 
 def _pressures(**contacts: Contact | None) -> str:
@@ -358,23 +365,10 @@ def _pressures(**contacts: Contact | None) -> str:
 def _profile(solution: BearingSolution) -> tuple[Field, Field]:
     """Return places along the heaviest element, and the largest pressure there."""
     heaviest = int(solution.loads[:, 0].argmax())
-    if solution.lamina_pressures is not None:
-        assert isinstance(solution.bearing, RollerBearing)
-        pressure = solution.lamina_pressures[heaviest, 0]
-        places = ((np.arange(pressure.size) + 0.5) / pressure.size - 0.5) * solution.bearing.length
-        return places, pressure
-    if solution.model != "solved" or (contact := solution.contact(heaviest, "inner")) is None:
+    places, pressures = solution._profile(heaviest, 0)
+    if not places.size:
         return np.zeros(1), solution.peak_pressures[heaviest, :1]
-    return contact.x, contact.pressure.max(axis=1)
-
-
-def _ring(solution: BearingSolution) -> str:
-    """Return the picture of the loads around the ring."""
-    count, rows = solution.bearing.count, solution.bearing.rows
-    loads = solution.loads.reshape(rows, count, 2)[:, :, 0].T
-    angles = solution.angles.reshape(rows, count).T
-    drawing = bars(angles, loads, Axis("load on the inner ring", "N"))
-    return _figure(Picture("Loads of the elements around the ring, x to the right.", drawing))
+    return places, pressures
 
 
 def _loads(arguments: Answer, solution: IndentSolution) -> str:

@@ -56,8 +56,9 @@ from nacre.bearing.solving import (
 )
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
+from nacre.results.charts import Picture
 from nacre.results.quantities import BEARING, PAIR_LIFE
-from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 from nacre.results.values import encode, refusing
@@ -692,11 +693,11 @@ class PairSolution(Equilibrium):
         ]
         return [*self._rows(), *rows]
 
-    def _pictures(self) -> Sequence[Picture]:
+    def _charts(self) -> Sequence[Picture]:
         return [
             picture._replace(caption=f"{name.capitalize()} bearing. {picture.caption}")
             for name, bearing in zip(NAMES, self.bearings, strict=True)
-            for picture in bearing._pictures()
+            for picture in bearing._charts()
         ]
 
     def _tables(self) -> Sequence[Table]:

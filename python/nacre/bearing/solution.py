@@ -26,19 +26,17 @@ from nacre.contact.solution import Solution
 from nacre.contact.stresses import SIZE_ERRORS
 from nacre.results import display, files
 from nacre.results.base import Result
+from nacre.results.charts import Axis, Bars, Chart, Curve, Look, Picture, contact_charts
 from nacre.results.quantities import BEARING, PER_CONTACT, Quantity
 from nacre.results.report import (
-    Picture,
     Rows,
     Table,
-    contact_pictures,
     input_rows,
     notebook_picture,
     table,
 )
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, bars, lines
 from nacre.results.values import encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -642,31 +640,45 @@ class BearingSolution(Equilibrium):
         return [*self._remarks(), *errors, remark("not counted", NOT_COUNTED)]
 
     def _notebook_picture(self) -> bytes | None:
-        return notebook_picture(self._pictures()[:1])
+        return notebook_picture([self._ring_chart()])
 
-    def _pictures(self) -> list[Picture]:
-        """Return the pictures of a report: loads around the ring, pressure of the heaviest."""
-        axis = Axis("load of each element", "N")
-        count, rows = self.bearing.count, self.bearing.rows
-        loads = self.loads.reshape(rows, count, 2).transpose(1, 0, 2).reshape(count, 2 * rows)
-        angles = np.repeat(self.angles.reshape(rows, count).T, 2, axis=1)
-        labels = [
-            f"row {k + 1}, {name}" if rows > 1 else name for k in range(rows) for name in RINGS
-        ]
-        ring = bars(angles, loads, axis, [f"{label} ring" for label in labels])
-        pictures = [Picture("Loads of the elements, x to the right.", ring)]
+    def _charts(self) -> list[Picture]:
+        """Return the charts of loads around the ring, and of the pressure of the heaviest."""
         heaviest = int(self.loads[:, 0].argmax())
         if self.lamina_pressures is None:
             contact = self.contact(heaviest, "inner") if self.model == "solved" else None
-            return pictures + ([] if contact is None else contact_pictures(contact))
-        count = self.lamina_pressures.shape[-1]
-        x = ((np.arange(count) + 0.5) / count - 0.5) * getattr(self.bearing, "length", 1.0)
+            return [self._ring_chart(), *([] if contact is None else contact_charts(contact))]
+        looks: tuple[Look, Look] = "line", "dashed"
         curves = [
-            Curve(x, self.lamina_pressures[heaviest, k], f"{name} ring", look)
-            for k, (name, look) in enumerate(zip(RINGS, ("line", "dashed"), strict=True))
+            Curve(*self._profile(heaviest, k), f"{RINGS[k]} ring", looks[k])
+            for k in range(len(RINGS))
         ]
-        drawing = lines(curves, (Axis("x along the element", "m"), Axis("pressure", "Pa")))
-        return [*pictures, Picture(f"Largest pressure along element {heaviest}.", drawing)]
+        axes = Axis("x along the element", "m"), Axis("pressure", "Pa")
+        caption = f"Largest pressure along element {heaviest}."
+        return [self._ring_chart(), Chart(caption, curves, axes)]
+
+    def _ring_chart(self, rings: int = len(RINGS)) -> Bars:
+        """Return the loads around the ring, by row and ring; of the inner ring alone if 1."""
+        count, rows = self.bearing.count, self.bearing.rows
+        loads = self.loads.reshape(rows, count, 2)[..., :rings].transpose(1, 0, 2)
+        angles = np.repeat(self.angles.reshape(rows, count).T, rings, axis=1)
+        words = [f"row {k + 1}" * (rows > 1) for k in range(rows)]
+        names = [f"{name} ring" for name in RINGS] if rings > 1 else [""]
+        labels = [", ".join(filter(None, (row, name))) for row in words for name in names]
+        caption = "Loads of the elements, x to the right."
+        loads, axis = loads.reshape(count, -1), Axis("load of each element", "N")
+        return Bars(caption, angles, loads, axis, labels)
+
+    def _profile(self, element: int, ring: int) -> tuple[Array, Array]:
+        """Return places along an element, and the largest pressures there; none of balls' peaks."""
+        if self.lamina_pressures is not None:
+            pressures = self.lamina_pressures[element, ring]
+            length = getattr(self.bearing, "length", 1.0)
+            return ((np.arange(pressures.size) + 0.5) / pressures.size - 0.5) * length, pressures
+        contact = self.contact(element, RINGS[ring]) if self.model == "solved" else None
+        if contact is None:
+            return np.zeros(0), np.zeros(0)
+        return contact.x, contact.pressure.max(axis=1)
 
     def _rows(self) -> list[Row]:
         kinds, rows = {row.name: row for row in BEARING}, []

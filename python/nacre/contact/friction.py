@@ -16,24 +16,21 @@ import nacre._core as core
 from nacre._tools.units import energy, printable, rounded, symbol, written
 from nacre.contact.normal import NormalContact
 from nacre.contact.solution import NOT_COUNTED, Solution, datum_words
-from nacre.contact.stresses import DepthOptions, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
+from nacre.results.charts import Axis, Picture, contact_charts, contact_map, loop_chart
 from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
 from nacre.results.report import (
-    Picture,
     Rows,
     Table,
-    contact_pictures,
     input_rows,
-    map_picture,
     notebook_picture,
     other_numbers,
     table,
 )
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, lines
 
 if TYPE_CHECKING:
     import xarray
@@ -340,23 +337,23 @@ class FrictionSolution(NormalContact, Shown, Result):
         friction = [*_friction_rows(self), *self._remarks()]
         return [*self.normal._report_rows(), *friction, *other_numbers(self)]
 
-    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
-        """Return the pictures of a report; `stress` has keywords of stresses, for their picture."""
-        return [*self._contact_pictures(), *depth_pictures(self, **stress)]
+    def _charts(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the charts of a report; `stress` has keywords of stresses, for their picture."""
+        return [*self._contact_charts(), *depth_charts(self, **stress)]
 
-    def _contact_pictures(self) -> list[Picture]:
-        """Return the pictures of pressure, and of where the contact sticks and slips."""
-        pictures = contact_pictures(self)
-        if self.grid.is_line or not pictures:
-            return pictures
+    def _contact_charts(self) -> list[Picture]:
+        """Return the charts of pressure, and of where the contact sticks and slips."""
+        charts = contact_charts(self)
+        if self.grid.is_line or not charts:
+            return charts
         bound = np.where(self.bound > 0, self.bound, np.inf)
         share = np.hypot(*self.traction) / bound
         caption = "Traction over friction times pressure: it slips where that is 1."
         axis = Axis("traction over its bound", "", (0.0, 1.0))
-        return [*pictures, map_picture(self, share, axis, caption)]
+        return [*charts, contact_map(self, share, axis, caption)]
 
     def _notebook_picture(self) -> bytes | None:
-        return notebook_picture(self._contact_pictures())
+        return notebook_picture(self._contact_charts())
 
     @property
     def _warnings(self) -> Sequence[str]:
@@ -536,15 +533,9 @@ class History(list[FrictionSolution], Shown, Warned):
         """Return the pictures of a report: force over shift, and those of the last step."""
         forces = np.array([step.force for step in self])
         axis = int(np.argmax(np.ptp(forces, axis=0)))
-        loop = []
-        if shifts := [step.shift for step in self if step.shift is not None]:
-            curve = Curve(np.array(shifts)[:, axis], forces[:, axis])
-            axes = (
-                Axis(f"shift along {'xy'[axis]}", "m"),
-                Axis("force", "N/m" if self[0].grid.is_line else "N"),
-            )
-            loop = [Picture("Force over shift, all steps.", lines([curve], axes))]
-        return [*loop, *checked(self)[-1]._pictures(**stress)]
+        is_sliding = all(step.shift is not None for step in self)
+        loop = [loop_chart(self, axis)] if is_sliding else []
+        return [*loop, *checked(self)[-1]._charts(**stress)]
 
     def _notebook_picture(self) -> bytes | None:
         return display.drawn(self.plot) if self else None

@@ -27,14 +27,13 @@ from nacre.contact.gradient import (
     linearisation,
 )
 from nacre.contact.normal import NormalContact
-from nacre.contact.stresses import DepthOptions, depth_pictures
+from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
+from nacre.results.charts import Picture, contact_charts
 from nacre.results.quantities import CONTACT, Quantity
 from nacre.results.report import (
-    Picture,
     Rows,
-    contact_pictures,
     input_rows,
     notebook_picture,
     other_numbers,
@@ -743,12 +742,12 @@ class Solution(NormalContact, Shown, Result):
     def _report_rows(self) -> Rows:
         return [*_number_rows(self), *_moduli(self.report), *other_numbers(self)]
 
-    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
-        """Return the pictures of a report; `stress` has keywords of stresses, for their picture."""
-        return [*contact_pictures(self), *depth_pictures(self, **stress)]
+    def _charts(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the charts of a report; `stress` has keywords of stresses, for their picture."""
+        return [*contact_charts(self), *depth_charts(self, **stress)]
 
     def _notebook_picture(self) -> bytes | None:
-        return notebook_picture(contact_pictures(self))
+        return notebook_picture(contact_charts(self))
 
     def _model(self) -> Rows:
         report = self.report

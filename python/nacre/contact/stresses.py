@@ -18,11 +18,11 @@ from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, am
 from nacre._tools.units import rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
+from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 from nacre.results.quantities import EXTREME_UNITS, EXTREMES
-from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, lines
 from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdict, judged
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ SIZE_ERRORS = "errors due to the size of the cells, estimated"
 DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
 """Depths of the picture of a report, in all, fewest and most, and in each layer; their number times
 that of the cells, which takes 0.2 s; most cells of a grid for it."""
-DEEPEST, THIN = 1.25, 0.1
-"""Its depth over the width of the contact; thickness over that below which it has an inset."""
+DEEPEST = 1.25
+"""Its depth over the width of the contact."""
 WORDS = {"von_mises": "von Mises", "tension": "tension"}
 """Words for these extremes."""
 MISES = "von Mises stress"
@@ -1106,14 +1106,14 @@ def _warned(result: StressResult) -> StressResult:
     return result
 
 
-def depth_pictures(
+def depth_charts(
     solution: Stressed,
     bare: Stressed | None = None,
     *,
     body: Member = "body",
     **sliding: Unpack[SlidingOptions],
-) -> Iterator[Picture]:
-    """Yield the picture of the von Mises stress against depth below the largest pressure.
+) -> Iterator[Chart]:
+    """Yield the chart of the von Mises stress against depth below the largest pressure.
 
     A `bare` solution, without the layers, is drawn beside the coated one. There is none of bodies
     without stresses, of surfaces that have yielded and of large grids.
@@ -1131,7 +1131,8 @@ def depth_pictures(
     widths = [high - low for low, high in normal.contact_extent if high > low]
     bottom = DEEPEST * min(widths, default=min(normal.grid.size))
     faces = [0.0, *(z for z in member.interfaces if z < bottom), bottom]
-    inset = (0.0, 3 * faces[1]) if faces[1] < THIN * bottom else None
+    enlarged = enlarged_depth(faces[1:-1], bottom)
+    inset = (0.0, enlarged) if enlarged else None
     ends = sorted({*faces, *(inset or ())})
     count = np.clip(WORK // normal.pressure.size, *DEPTHS) / bottom
     counts = [max(INSIDE, round(count * (end - top))) for top, end in pairwise(ends)]
@@ -1148,7 +1149,7 @@ def depth_pictures(
     words += ["dotted: interfaces"] if faces[1:-1] else []
     words += ["inset: the first three thicknesses of the coat"] if inset else []
     caption = "; ".join(words) + "."
-    yield Picture(caption, lines(curves, axes, faces[1:-1], inset))
+    yield Chart(caption, curves, axes, faces[1:-1], inset)
 
 
 def _over_depth(

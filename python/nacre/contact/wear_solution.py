@@ -39,13 +39,13 @@ from nacre.contact.arguments import (
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same
+from nacre.results.charts import HEADROOM, Axis, Chart, Curve, Picture, contact_charts
 from nacre.results.journal import Journal, Record
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import WEAR
-from nacre.results.report import Picture, Rows, Table, contact_pictures, table
+from nacre.results.report import Rows, Table, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
-from nacre.results.svg import Axis, Curve, lines
 from nacre.results.tables import heading
 from nacre.results.verdict import Level, Verdict, number
 
@@ -72,6 +72,8 @@ MOST_ENDS = 1_000_000
 """Largest number of equal steps: some days of line contacts on coarse grids."""
 ROUNDING = 1e-12
 """Part of a distance below which another is none."""
+MOST_SECTIONS = 8
+"""Sections of a chart of worn depths; of more states some are left out."""
 THICKNESSES: dict[str, str] = {
     "frozen": "as thick as before",
     "first order": "thinner to first order in the depth",
@@ -758,19 +760,21 @@ class WearHistory(Shown, Result):
     def _inputs(self) -> Rows:
         return [remark(name, self._input(name, text)) for name, text in self.inputs.items()]
 
-    def _pictures(self) -> Sequence[Picture]:
+    def _charts(self) -> list[Picture]:
+        """Return the charts over the distance, those of the last contact, and the worn depths."""
         axis = Axis("distance", self.unit if self.unit == "m" else "")
-        pictures = [
-            Picture(
+        over_distance = [
+            Chart(
                 f"{words} over the distance.",
-                lines([Curve(self.distance, numbers)], (axis, Axis(words.lower(), unit))),
+                [Curve(self.distance, numbers)],
+                (axis, Axis(words.lower(), unit)),
             )
             for words, numbers, unit in (
                 ("Deepest wear", self.deepest.sum(axis=1), "m"),
                 ("Peak pressure", self.peak_pressure, "Pa"),
             )
         ]
-        return [*pictures, *contact_pictures(self.states[-1].solution), self._depth_picture()]
+        return [*over_distance, *contact_charts(self.states[-1].solution), self._depth_chart()]
 
     def _report_rows(self) -> Rows:
         return [*self._rows(), *self._remarks()]
@@ -781,14 +785,21 @@ class WearHistory(Shown, Result):
     def _model(self) -> Rows:
         return [remark("model", MODEL.format(THICKNESSES[self._thickness]))]
 
-    def _depth_picture(self) -> Picture:
-        """Return the picture of the last depth of both bodies together, through its deepest."""
-        last = self.states[-1]
-        grid, depth = last.solution.grid, last.depth + last.counter_depth
-        i, j = np.unravel_index(int(depth.argmax()), depth.shape)
-        curve = Curve(grid.y, depth[i]) if grid.is_line else Curve(grid.x, depth[:, j])
-        axes = Axis("y" if grid.is_line else "x", "m"), Axis("depth removed", "m")
-        return Picture("Depth removed in the end, through the deepest.", lines([curve], axes))
+    def _depth_chart(self) -> Chart:
+        """Return the chart of depths of both bodies together, through the deepest in the end."""
+        count = min(MOST_SECTIONS, len(self))
+        numbers = np.unique(np.linspace(0, len(self) - 1, count).round().astype(int))
+        depths = [s.depth + s.counter_depth for s in (self.states[k] for k in numbers)]
+        grid, last = self.states[-1].solution.grid, depths[-1]
+        i, j = np.unravel_index(int(last.argmax()), last.shape)
+        x, cells = (grid.y, np.s_[i, :]) if grid.is_line else (grid.x, np.s_[:, j])
+        curves = [
+            Curve(x, depth[cells], travelled(self.states[k].distance, self.unit), "graded")
+            for k, depth in zip(numbers, depths, strict=True)
+        ]
+        down = (1.0 + HEADROOM) * float(last.max()) or 1.0, 0.0
+        axes = Axis("y" if grid.is_line else "x", "m"), Axis("depth removed", "m", down)
+        return Chart("Depth removed, through the deepest in the end.", curves, axes)
 
     def _input(self, name: str, text: str) -> str:
         """Return an input in words with its unit."""

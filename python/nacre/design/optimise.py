@@ -19,7 +19,7 @@ from nacre.contact.gradient import Output
 from nacre.contact.solution import Solution
 from nacre.design.parameters import Bounds, scales_of
 from nacre.design.problem import Array, Build, Enough, Problem
-from nacre.results import display, files, report, svg, tables
+from nacre.results import charts, display, files, report, tables
 from nacre.results.report import Rows
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -136,15 +136,24 @@ class Optimum(Shown):
             for row in getattr(solution, name)()
         ]
 
-    def _pictures(self) -> Sequence[report.Picture]:
-        x = self.course["solves"]
+    def _charts(self) -> list[charts.Picture]:
+        cases = (chart for solution in self.solutions for chart in solution._charts())
+        return [self._course_chart(), *cases]
+
+    def _course_chart(self) -> charts.Chart:
+        """Return the chart of the objective, the limits and the parameters, over the solves."""
+        table = self.course
+        shares = {"objective": table["objective"] / table["objective"][0]}
+        if np.isfinite(table["excess"]).all():
+            shares["largest share of a limit"] = 1 + table["excess"]
+        shares |= {name: table[name] / (table[name][0] or 1.0) for name in self.values}
         curves = [
-            svg.Curve(x, self.course[name] / (self.course[name][0] or 1.0), name)
-            for name in ("objective", *self.values)
+            charts.Curve(table["solves"], values, name, "marked") for name, values in shares.items()
         ]
-        drawing = svg.lines(curves, (svg.Axis("solves"), svg.Axis("share of the start")))
-        cases = [picture for solution in self.solutions for picture in solution._pictures()]
-        return [report.Picture("Course.", drawing), *cases]
+        is_log = all((values > 0).all() for values in shares.values())
+        share = charts.Axis("share of the start", scale="log" if is_log else "linear")
+        axes = charts.Axis("solves, of contacts and of derivatives"), share
+        return charts.Chart("Course.", curves, axes)
 
     def _tables(self) -> Sequence[report.Table]:
         printed = self._table()

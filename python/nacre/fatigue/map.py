@@ -32,11 +32,11 @@ from nacre.fatigue.summary import (
 )
 from nacre.results import display, files
 from nacre.results.base import Result, Warned
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import SHAKEDOWN
-from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, lines
 
 if TYPE_CHECKING:
     import xarray
@@ -174,18 +174,18 @@ class ShakedownMap(Shown, Warned, Result):
     def _report_rows(self) -> Rows:
         return [display.numbered("peak_pressure", "peak pressure", self.peak_pressure, "Pa")]
 
-    def _pictures(self) -> Sequence[Picture]:
-        order = np.argsort(self.friction)
-        curves = [
-            Curve(self.friction[order], values[order], f"{name}: {words}", look)
-            for k, name in enumerate(self.names)
-            for values, words, look in (
-                (self.limits[k], "shakedown", "line"),
-                (self.first_yield[k], "first yield", "dashed"),
-            )
-        ]
+    def _charts(self, label: str = "") -> list[Chart]:
+        """Return the chart of the limits over friction; words may stand before names of layers."""
+        order, curves = np.argsort(self.friction), []
+        for k, name in enumerate(self.names):
+            words = f"{label}, {name}" if label else name
+            curves += [
+                Curve(self.friction[order], self.limits[k][order], words, "solid"),
+                Curve(self.friction[order], self.first_yield[k][order], look="thin"),
+            ]
         axes = Axis("coefficient of friction"), Axis("peak pressure / shear yield stress")
-        return [Picture("Limits over friction.", lines(curves, axes))]
+        title = "shakedown limits; thin: first yield"
+        return [Chart(f"{title[:1].upper()}{title[1:]}.", curves, axes, title=title)]
 
     def _tables(self) -> Sequence[Table]:
         return [table("Limits", self._file_rows(), SHAKEDOWN)]

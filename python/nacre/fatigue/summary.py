@@ -22,11 +22,11 @@ from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
+from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 from nacre.results.quantities import EXTREME_UNITS, FATIGUE, PROFILE
-from nacre.results.report import Picture, Rows, Table, table
+from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, lines
 from nacre.results.verdict import Demand, Verdict, judged, times
 
 if TYPE_CHECKING:
@@ -374,15 +374,18 @@ class FatigueSummary(Shown, Warned, Result):
     def _report_rows(self) -> Rows:
         return [display.numbered("peak_pressure", "peak pressure", self.peak_pressure, "Pa")]
 
-    def _pictures(self) -> Sequence[Picture]:
+    def _charts(self) -> list[Chart]:
+        """Return the chart of what a material needs at each depth."""
         labels = {row.name: row.label for row in PROFILE}
         curves = [
             Curve(self.depths, values, labels.get(name, name))
             for name, values in self.profiles.items()
         ]
-        marks = [face.depth for face in self.interfaces]
-        drawing = lines(curves, (Axis("depth", "m"), Axis("stress", "Pa")), marks)
-        return [Picture("What a material needs at each depth; dotted: interfaces.", drawing)]
+        marks, deepest = [face.depth for face in self.interfaces], float(self.depths.max())
+        enlarged = enlarged_depth(marks, deepest)
+        axes = Axis("depth", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
+        caption = "What a material needs at each depth; dotted: interfaces."
+        return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
 
     def _tables(self) -> Sequence[Table]:
         return [table("What layers and interfaces need", self._file_rows(), FATIGUE)]

@@ -23,11 +23,11 @@ from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
 from nacre.results import display
 from nacre.results.base import Result
-from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.charts import Axis, Chart
+from nacre.results.charts import Curve as Line
+from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, lines
-from nacre.results.svg import Curve as Line
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -199,8 +199,8 @@ class Fit(Shown, Result):
     def _notebook_picture(self) -> bytes | None:
         return display.drawn(self.plot)
 
-    def _pictures(self) -> list[Picture]:
-        """Return the pictures of a report: force and residuals over depth."""
+    def _charts(self) -> list[Chart]:
+        """Return the charts of a report: force and residuals over depth."""
         forces, residuals = [], []
         for number, curve in enumerate(self.curves):
             name, order = curve.name or f"curve {number}", np.argsort(curve.depth, kind="stable")
@@ -211,8 +211,8 @@ class Fit(Shown, Result):
         rest = Axis("residual", "N") if self.noise == "absolute" else Axis("residual, share")
         depth = Axis("depth", "m")
         return [
-            Picture("Force over depth as measured.", lines(forces, (depth, Axis("force", "N")))),
-            Picture("Residuals over depth.", lines(residuals, (depth, rest))),
+            Chart("Force over depth as measured.", forces, (depth, Axis("force", "N"))),
+            Chart("Residuals over depth.", residuals, (depth, rest)),
         ]
 
     def __eq__(self, other: object) -> bool:

@@ -21,11 +21,11 @@ from nacre._tools.units import written
 from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Result, Warned
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import INDENT, units
-from nacre.results.report import Picture, Rows, Table, input_rows, table
+from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.svg import Axis, Curve, lines
 from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
@@ -388,10 +388,16 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
             rows.append(Row(name, name.replace("_", " "), with_unit(value, name), value))
         return rows
 
-    def _pictures(self) -> Sequence[Picture]:
-        x, y = np.ravel(self.approach), np.ravel(self.load)
-        axes = Axis("approach", "m"), Axis("load", "N")
-        return [Picture("Load over depth.", lines([Curve(x, y)], axes))] if x.size > 1 else []
+    def _charts(self) -> list[Chart]:
+        """Return the chart of load over depth, or of the pressure of a single contact."""
+        if np.size(self.load) > 1:
+            curve = Curve(np.ravel(self.approach), np.ravel(self.load), look="marked")
+            return [Chart("Load over depth.", [curve], (Axis("approach", "m"), Axis("load", "N")))]
+        edge = float(np.ravel(self.outer_radius)[0])
+        x = np.linspace(0.0, 1.1 * edge, 221)[1:]  # a sharp tip presses without limit at 0
+        axes = Axis("distance from the axis", "m"), Axis("pressure", "Pa")
+        caption = "Pressure over the distance from the axis."
+        return [Chart(caption, [Curve(x, np.ravel(self.pressure(x)))], axes)]
 
     def verdict(self) -> Verdict:
         """Return the verdict: whether the largest depth tells the modulus of the outermost layer.

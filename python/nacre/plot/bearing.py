@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from itertools import product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
-from nacre._tools.units import Scale, written
-from nacre.plot.style import STYLE, WIDTH, look, new_axes, styled
+from nacre._tools.units import written
+from nacre.plot.drawer import draw
+from nacre.plot.style import STYLE, WIDTH, look, styled
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.display import in_si
 
 with extra("plot"):
@@ -155,28 +156,24 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
     >>> plot.load_distribution(solution).name
     'polar'
     """
-    loads = solution.loads
-    scale = Scale.of(float(loads.max(initial=0.0)), "N")
+    loads, highest = solution.loads, float(solution.loads.max(initial=0.0))
+    same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * highest)
+    ring = solution._ring_chart(1 if same else len(RINGS))
+    scale, _ = ring.axis.units(highest)
     with styled():
         if axes is None:
             figure = plt.figure(figsize=(0.5 * WIDTH, 0.5 * WIDTH), layout="constrained")
             axes = figure.add_subplot(projection="polar")
-        same = np.allclose(loads[:, 0], loads[:, 1], rtol=1e-3, atol=1e-6 * loads.max(initial=0.0))
-        count, rows = solution.bearing.count, solution.bearing.rows
-        width, rings = 2 * np.pi / count, RINGS[:1] if same else RINGS
-        share = 0.5 / (rows * len(rings))
-        for number, (row, ring) in enumerate(product(range(rows), rings)):
-            members = slice(row * count, (row + 1) * count)
-            words = [f"row {row + 1}"] * (rows > 1)
-            words += [ring if words else f"{ring} ring"] * (not same or rows == 1)
-            style = {"color": look(number)["color"], "label": ", ".join(words)}
-            place = (
-                solution.angles[members] + (number - (rows * len(rings) - 1) / 2) * share * width
-            )
-            heights = scale.factor * loads[members, RINGS.index(ring)]
-            axes.bar(place, heights, width=share * width, **style)
+        count, series = ring.loads.shape
+        width = 2 * np.pi / count
+        share = 0.5 / series
+        for number, label in enumerate(ring.labels):
+            places = ring.angles[:, number] + (number - (series - 1) / 2) * share * width
+            heights = scale.factor * ring.loads[:, number]
+            words = label.removesuffix(" ring") if solution.bearing.rows > 1 else label
+            axes.bar(places, heights, share * width, color=look(number)["color"], label=words)
         axes.set_axisbelow(True)
-        highest = scale.factor * float(loads.max(initial=0.0))
+        highest *= scale.factor
         ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, highest) if 0 < tick <= highest]
         axes.set_yticks(ticks, [])
         axes.set_xticks(solution.angles[:count], [f"{j}" for j in range(count)])
@@ -187,25 +184,9 @@ def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) ->
         for tick in ticks:  # those of Matplotlib lie below the bars
             style = {"size": STYLE["ytick.labelsize"], "ha": "center", "va": "center"}
             axes.text(beside, tick, f"{tick:g}", bbox=paper, **style)
-        if not same or rows > 1:
+        if any(ring.labels):
             axes.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.08), ncols=2)
     return axes
-
-
-def _curve(solution: BearingSolution, element: int, ring: Ring) -> tuple[Array, Array]:
-    """Return positions along the axis of an element, and the largest pressures there."""
-    number = RINGS.index(ring)
-    if solution.model == "solved":
-        contact = solution.contact(element, ring)
-        if contact is None:
-            return np.zeros(0), np.zeros(0)
-        return contact.x, contact.pressure.max(axis=1)
-    pressures = solution.lamina_pressures
-    if pressures is None:
-        return np.zeros(0), np.zeros(0)
-    length: float = solution.bearing.length  # type: ignore[attr-defined]
-    count = pressures.shape[-1]
-    return ((np.arange(count) + 0.5) / count - 0.5) * length, pressures[element, number]
 
 
 @in_si
@@ -260,41 +241,34 @@ def elements_pressure(
     rings: list[Ring] = (
         [ring] if ring is not None else [*RINGS] if len(elements) == 1 else ["inner"]
     )
-    scale = Scale.of(solution.peak_pressure, "Pa")
-    with styled():
-        axes = axes or new_axes(0.8, 0.45)
-        axes.set_ylabel(f"pressure [{scale.unit}]")
-        if solution.model != "solved" and solution.lamina_pressures is None:
-            for number, one in enumerate(RINGS):
-                peaks = scale.factor * solution.peak_pressures[:, number]
-                mark = {"marker": "o", "linestyle": "none", "color": look(number)["color"]}
-                axes.plot(solution.angles, peaks, label=f"{one} ring", **mark)
-            axes.set(xlabel="angle [rad]", title="peak pressures, Hertz")
-            axes.set_ylim(0, 1.08 * scale.factor * solution.peak_pressure)
-            axes.legend()
-            return axes
-        curves = [(j, r, *_curve(solution, j, r)) for j in elements for r in rings]
-        curves = [curve for curve in curves if curve[2].size]
-        longest = max((float(np.abs(x).max()) for _, _, x, _ in curves), default=1e-3)
-        length = Scale.of(longest, "m")
-        drawn: list[tuple[list[int], Ring, Array, Array]] = []
-        for element, name, x, values in curves:  # elements on both sides of the load are alike
-            for others, other, _, known in drawn:
-                if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
-                    others.append(element)
-                    break
-            else:
-                drawn.append(([element], name, x, values))
-        for number, (alike, which, x, values) in enumerate(drawn):
-            element_label = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
-            label = f"{which} ring" if len(elements) == 1 else element_label
-            peak = written(float(values.max()), "Pa", 3)
-            style = {**look(number), "label": f"{label} (peak {peak})"}
-            axes.plot(length.factor * x, scale.factor * values, **style)
-        title = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
-        if solution.model == "iso16281":
-            title += ", Hertz's pressure of laminae"
-        axes.set(xlabel=f"x along the element [{length.unit}]", title=title, ylim=(0, None))
-        if curves:
-            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
-    return axes
+    pressure = Axis("pressure", "Pa")
+    if solution.model != "solved" and solution.lamina_pressures is None:
+        peaks = [
+            Curve(solution.angles, solution.peak_pressures[:, k], f"{name} ring", "points")
+            for k, name in enumerate(RINGS)
+        ]
+        places = Axis("angle", "rad"), pressure._replace(ends=(0.0, 1.08 * solution.peak_pressure))
+        chart = Chart("", peaks, places, title="peak pressures, Hertz")
+        return draw(chart, axes, (0.8, 0.45), markersize=6)
+    curves = [(j, r, *solution._profile(j, RINGS.index(r))) for j in elements for r in rings]
+    curves = [curve for curve in curves if curve[2].size]
+    drawn: list[tuple[list[int], Ring, Array, Array]] = []
+    for element, name, x, values in curves:  # elements on both sides of the load are alike
+        for others, other, _, known in drawn:
+            if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
+                others.append(element)
+                break
+        else:
+            drawn.append(([element], name, x, values))
+    chart_curves = []
+    for alike, which, x, values in drawn:
+        element_label = f"element{'s' * (len(alike) > 1)} {', '.join(map(str, sorted(alike)))}"
+        label = f"{which} ring" if len(elements) == 1 else element_label
+        peak = written(float(values.max()), "Pa", 3)
+        chart_curves.append(Curve(x, values, f"{label} (peak {peak})"))
+    title = f"element {elements[0]}" if len(elements) == 1 else f"{rings[0]} ring"
+    if solution.model == "iso16281":
+        title += ", Hertz's pressure of laminae"
+    chart = Chart("", chart_curves, (Axis("x along the element", "m"), pressure), title=title)
+    legend = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 2}
+    return draw(chart, axes, (0.8, 0.45), legend)

@@ -10,8 +10,10 @@ import numpy.typing as npt
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
+from nacre.plot.drawer import draw
 from nacre.plot.style import WIDTH, checked_axes, extent, lengths, new_axes, next_look, styled
 from nacre.results.base import checked, has_friction
+from nacre.results.charts import Axis, Chart, Curve, loop_chart
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -232,24 +234,9 @@ def loop(
     solutions = checked(solutions)
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
-    axis = "xy".index(along)
-    shifts = [solution.shift for solution in solutions]
-    if any(shift is None for shift in shifts):
+    if any(solution.shift is None for solution in solutions):
         raise ValueError("solutions must be steps of sliding, got one of rolling")
-    shift = np.array([shift[axis] for shift in shifts if shift is not None])
-    force = np.array([solution.force[axis] for solution in solutions])
-    line = solutions[0].grid.is_line
-    length = Scale.of(float(np.abs(shift).max()), "m")
-    scale = Scale.of(float(np.abs(force).max()), "N/m" if line else "N")
-    with styled():
-        axes = axes or new_axes(0.5, 0.4)
-        look = next_look(axes) | style
-        axes.plot(length.factor * shift, scale.factor * force, marker=".", **look)
-        axes.set(
-            xlabel=f"shift along {along} [{length.unit}]",
-            ylabel=f"force along {along} [{scale.unit}]",
-        )
-    return axes
+    return draw(loop_chart(solutions, "xy".index(along)), axes, **style)
 
 
 def creep_curve(
@@ -288,15 +275,10 @@ def creep_curve(
     if quantity not in dataset:
         names = ", ".join(map(str, dataset.data_vars))
         raise ValueError(f"quantity must be one of {names}, got {quantity!r}")
-    with styled():
-        axes = axes or new_axes(0.5, 0.4)
-        look = next_look(axes) | style
-        column = dataset[quantity]
-        scale = Scale.in_unit(float(np.abs(column).max()), column.attrs["units"])
-        axes.plot(1e3 * dataset.creepage, scale.factor * column, marker=".", **look)
-        name = dataset.creepage.attrs.get("long_name", "creepage")
-        label = f"{quantity.replace('_', ' ')} [{scale.unit}]"
-        if quantity == "traction_ratio":
-            label = "force over friction times load"
-        axes.set(xlabel=f"{name} [10⁻³]", ylabel=label)
-    return axes
+    column, creepage = dataset[quantity], dataset.creepage
+    label, unit = quantity.replace("_", " "), column.attrs["units"]
+    if quantity == "traction_ratio":
+        label, unit = "force over friction times load", ""
+    x = Axis(f"{creepage.attrs.get('long_name', 'creepage')} [10⁻³]")
+    curve = Curve(1e3 * creepage.values, column.values, look="marked")
+    return draw(Chart("", [curve], (x, Axis(label, unit, is_exact=True))), axes, **style)

@@ -13,7 +13,8 @@ from nacre._core import integer
 from nacre._tools.disk import replacing
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, written
-from nacre.plot.style import COLOURS, WIDTH, new_axes, next_look, styled
+from nacre.plot.drawer import draw
+from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
 
 with extra("plot"):
     import matplotlib.pyplot as plt
@@ -78,25 +79,7 @@ def contacts(solution: IndentSolution, axes: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes.
     """
-    approach, load = np.ravel(solution.approach), np.ravel(solution.load)
-    if load.size > 1:
-        x, y, names = approach, load, (("approach", "m"), ("load", "N"))
-    else:
-        edge = float(np.ravel(solution.outer_radius)[0])
-        x = np.linspace(0.0, 1.1 * edge, 221)[1:]  # a sharp tip presses without limit at 0
-        y = np.ravel(solution.pressure(x))
-        names = ("distance from the axis", "m"), ("pressure", "Pa")
-    scales = [
-        Scale.of(float(np.abs(part[np.isfinite(part)]).max(initial=0.0)), unit)
-        for part, (_, unit) in zip((x, y), names, strict=True)
-    ]
-    with styled():
-        axes = axes or new_axes(0.5, 0.4)
-        look = {"marker": "."} if load.size > 1 else {}
-        axes.plot(scales[0].factor * x, scales[1].factor * y, **next_look(axes) | look)
-        labels = [f"{name} [{s.unit}]" for (name, _), s in zip(names, scales, strict=True)]
-        axes.set(xlabel=labels[0], ylabel=labels[1])
-    return axes
+    return draw(solution._charts()[0], axes)
 
 
 def residuals(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:

@@ -6,7 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
+from nacre.plot.drawer import draw
 from nacre.plot.style import look, new_axes, styled
+from nacre.results.charts import Axis, Chart, Curve
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -19,13 +21,9 @@ def bulk_limit(
     ratios: npt.ArrayLike, limits: dict[str, npt.NDArray[np.float64]], axes: Axes | None = None
 ) -> Axes:
     """Draw the limits of `nacre.indent.charts.bulk_limit` over the ratios of moduli."""
-    with styled():
-        axes = axes or new_axes(0.7, 0.5)
-        for number, (name, values) in enumerate(limits.items()):
-            axes.loglog(np.asarray(ratios), values, label=LABELS[name], **look(number))
-        axes.set(xlabel=r"$E_1/E_2$", ylabel="largest $a/h$")
-        axes.legend()
-    return axes
+    curves = [Curve(np.asarray(ratios), y, LABELS[name]) for name, y in limits.items()]
+    sides = Axis(r"$E_1/E_2$", scale="log"), Axis("largest $a/h$", scale="log")
+    return draw(Chart("", curves, sides), axes, (0.7, 0.5))
 
 
 def pull_off(
@@ -48,10 +46,6 @@ def information(
 ) -> Axes:
     """Draw deviations of `nacre.indent.charts.information` over the largest contact radius."""
     labels = {"young": r"$\sigma(\ln E_1)$", "thickness": r"$\sigma(\ln h)$"}
-    with styled():
-        axes = axes or new_axes(0.7, 0.5)
-        for number, (name, values) in enumerate(deviations.items()):
-            axes.loglog(np.asarray(reach), values, label=labels[name], **look(number))
-        axes.set(xlabel="largest $a/h$", ylabel="standard deviation")
-        axes.legend()
-    return axes
+    curves = [Curve(np.asarray(reach), y, labels[name]) for name, y in deviations.items()]
+    sides = Axis("largest $a/h$", scale="log"), Axis("standard deviation", scale="log")
+    return draw(Chart("", curves, sides), axes, (0.7, 0.5))

@@ -8,7 +8,9 @@ import numpy as np
 
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, symbol
+from nacre.plot.drawer import draw
 from nacre.plot.style import COLOURMAP, COLOURS, lengths, new_axes, next_look, styled
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.patches import CURVE, crosses, patch_labels
 
 with extra("plot"):
@@ -129,14 +131,10 @@ def distribution(density: xarray.DataArray, axes: Axes | None = None, **style: A
     unit = "Pa" if name == "pressure" else "m"
     places = density[name].values
     scale = Scale.of(float(places.max()), unit)
-    with styled():
-        axes = axes or new_axes(0.7, 0.5)
-        look = next_look(axes) | style
-        axes.plot(scale.factor * places, density.values / scale.factor, **look)
-        axes.set(xlabel=f"{name} [{scale.unit}]", ylabel=f"density [1/{scale.unit}]")
-        axes.set_ylim(bottom=0)
-        axes.set_title(f"share at 0: {100 * density.attrs['share_at_zero']:.1f} %")
-    return axes
+    curve = Curve(scale.factor * places, density.values / scale.factor)
+    title = f"share at 0: {100 * density.attrs['share_at_zero']:.1f} %"
+    names = Axis(f"{name} [{scale.unit}]"), Axis(f"density [1/{scale.unit}]")
+    return draw(Chart("", [curve], names, title=title), axes, (0.7, 0.5), **style)
 
 
 def patches(solution: Solution, axes: Axes | None = None) -> Axes:
@@ -203,17 +201,14 @@ def spectrum(spectra: xarray.Dataset, axes: Axes | None = None) -> Axes:
         The axes.
     """
     largest = max(float(spectra[name].max()) for name in ("undeformed", "deformed"))
-    with styled():
-        axes = axes or new_axes(0.7, 0.5)
-        for name in ("undeformed", "deformed"):
-            density = spectra[name].values
-            # What is rounding beside the largest is not drawn.
-            visible = density > 1e-20 * largest
-            look = next_look(axes) | {"label": name}
-            axes.loglog(spectra["wavenumber"].values[visible], density[visible], **look)
-        axes.set(
-            xlabel=f"wavenumber [{spectra['wavenumber'].attrs['units']}]",
-            ylabel=f"spectral density [{spectra['deformed'].attrs['units']}]",
-        )
-        axes.legend()
-    return axes
+    wavenumbers, curves = spectra["wavenumber"], []
+    for name in ("undeformed", "deformed"):
+        density = spectra[name].values
+        # What is rounding beside the largest is not drawn.
+        visible = density > 1e-20 * largest
+        curves.append(Curve(wavenumbers.values[visible], density[visible], name))
+    wavenumber, density_axis = (
+        Axis(f"{name} [{values.attrs['units']}]", scale="log")
+        for name, values in (("wavenumber", wavenumbers), ("spectral density", spectra["deformed"]))
+    )
+    return draw(Chart("", curves, (wavenumber, density_axis)), axes, (0.7, 0.5))

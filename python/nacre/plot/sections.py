@@ -9,8 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
-from nacre._tools.units import Scale, written
-from nacre.plot.style import extent, look, new_axes, next_look, styled
+from nacre._tools.units import written
+from nacre.plot.drawer import draw
+from nacre.plot.style import extent
+from nacre.results.charts import Axis, Chart, Curve
 from nacre.results.quantities import units
 
 with extra("plot"):
@@ -61,17 +63,11 @@ def section(
         If there is no such direction or quantity, or the place is off the grid.
     """
     position, values, place = cut(solution, along, at, quantity)
-    with styled():
-        axes = axes or new_axes(1.0, 0.5)
-        window = _window(solution, along, quantity)
-        length = Scale.of(np.abs(window).max(), "m")
-        scale = Scale.of(_visible(position, values, window).max(initial=0.0), units()[quantity])
-        axes.plot(length.factor * position, scale.factor * values, **(next_look(axes) | style))
-        _finish(axes, along, window, length, scale, quantity)
-        if quantity != "line_load":
-            other = "y" if along == "x" else "x"
-            axes.set_title(f"at {other} = {written(place, 'm', 3)}")
-    return axes
+    sides, title = _sides(along, _window(solution, along, quantity), quantity), ""
+    if quantity != "line_load":
+        title = f"at {'y' if along == 'x' else 'x'} = {written(place, 'm', 3)}"
+    chart = Chart("", [Curve(position, values)], sides, title=title)
+    return draw(chart, axes, (1.0, 0.5), **style)
 
 
 def compare(
@@ -117,18 +113,13 @@ def compare(
         raise ValueError("solutions must hold at least one solution, got none")
     cuts = {name: cut(s, along, at, quantity) for name, s in solutions.items()}
     windows = np.array([_window(s, along, quantity) for s in solutions.values()])
+    curves = [
+        Curve(x, values, f"{name} (peak {written(solutions[name].peak_pressure, 'Pa', 3)})")
+        for name, (x, values, _) in cuts.items()
+    ]
     window = np.array([windows[:, 0].min(), windows[:, 1].max()])
-    largest = max(_visible(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
-    length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, units()[quantity])
-    with styled():
-        axes = axes or new_axes(1.0, 0.55)
-        for number, (name, (position, values, _)) in enumerate(cuts.items()):
-            label = f"{name} (peak {written(solutions[name].peak_pressure, 'Pa', 3)})"
-            curve = (length.factor * position, scale.factor * values)
-            axes.plot(*curve, **look(number), label=label)
-        _finish(axes, along, window, length, scale, quantity)
-        axes.legend(loc="upper left", bbox_to_anchor=(0, -0.16), ncols=2)
-    return axes
+    legend = {"loc": "upper left", "bbox_to_anchor": (0, -0.16), "ncols": 2}
+    return draw(Chart("", curves, _sides(along, window, quantity)), axes, (1.0, 0.55), legend)
 
 
 def cut(
@@ -171,17 +162,8 @@ def _window(solution: Solution, along: str, quantity: str) -> Array:
     return np.array([max(contact[0] - margin, low), min(contact[1] + margin, high)])
 
 
-def _visible(position: Array, values: Array, window: Array) -> Array:
-    inside = (position >= window[0]) & (position <= window[1]) & np.isfinite(values)
-    magnitudes: Array = np.abs(values[inside])
-    return magnitudes
-
-
-def _finish(
-    axes: Axes, along: str, window: Array, length: Scale, scale: Scale, quantity: str
-) -> None:
-    name = quantity.replace("_", " ")
-    axes.set(xlabel=f"{along} [{length.unit}]", ylabel=f"{name} [{scale.unit}]")
-    axes.set_xlim(*(length.factor * window))
-    if quantity != "displacement":
-        axes.set_ylim(bottom=0)
+def _sides(along: str, window: Array, quantity: str) -> tuple[Axis, Axis]:
+    """Return the axes of a section within a range."""
+    low, high = window.tolist()
+    has_zero, name = quantity != "displacement", quantity.replace("_", " ")
+    return Axis(along, "m", (low, high)), Axis(name, units()[quantity], has_zero=has_zero)

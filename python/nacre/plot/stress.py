@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
@@ -13,7 +13,9 @@ from nacre._core import HalfSpace, check_memory, integer
 from nacre._tools.extras import extra
 from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
-from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, look, new_axes, styled
+from nacre.plot.drawer import draw
+from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, new_axes, styled
+from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
 
 with extra("plot"):
     from matplotlib.axes import Axes
@@ -38,8 +40,6 @@ LABELS = {
     "tension": "largest principal stress",
 }
 """Labels of the quantities that can be drawn."""
-THIN, ENLARGED = 0.05, 3.0
-"""Share of the depth below which layers are enlarged, and their thicknesses that are drawn then."""
 
 
 def stress_section(
@@ -59,7 +59,7 @@ def stress_section(
 
     The cross marks the largest value. A section much longer than deep is drawn out of scale, and
     the picture says so. Beyond a free end of the body nothing is drawn. Below it, a new
-    figure enlarges layers thinner than a twentieth of the depth: it shows three times their
+    figure enlarges layers thinner than a tenth of the depth: it shows three times their
     thickness.
 
     Parameters
@@ -124,7 +124,7 @@ def stress_section(
     largest = scale.factor * highest or 1.0
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
 
-    def draw(axes: Axes, bottom: float, down: Scale) -> QuadMesh:
+    def draw_section(axes: Axes, bottom: float, down: Scale) -> QuadMesh:
         mesh = axes.pcolormesh(
             across.factor * sides,
             down.factor * edges,
@@ -150,13 +150,13 @@ def stress_section(
     enlarged = enlarged_depth(half_space.interfaces, bottom) if axes is None else 0.0
     with styled():
         axes = axes or new_axes(0.75, 0.75 if enlarged else 0.45)
-        mesh = draw(axes, bottom, down)
+        mesh = draw_section(axes, bottom, down)
         colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
         if enlarged:
             halves = axes.figure.add_gridspec(2)
             axes.set_subplotspec(halves[0])
             below = axes.figure.add_subplot(halves[1])
-            draw(below, enlarged, Scale.of(enlarged, "m"))
+            draw_section(below, enlarged, Scale.of(enlarged, "m"))
             axes.set_xlabel("")
             axes.tick_params(labelbottom=False)
         other = "y" if along == "x" else "x"
@@ -186,7 +186,7 @@ def stress_depth(
 ) -> Axes:
     """Draw stresses against depth below a point, with both sides of every interface.
 
-    Beside it, a new figure enlarges layers thinner than a twentieth of the depth: it shows three
+    Beside it, a new figure enlarges layers thinner than a tenth of the depth: it shows three
     times their thickness.
 
     Parameters
@@ -242,49 +242,12 @@ def stress_depth(
         raise ValueError(
             f"at must be in the body, whose ends are {half_space.ends}, got x = {at[0]:g}"
         )
-    scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
-
-    def draw(axes: Axes, bottom: float) -> None:
-        length = Scale.of(bottom, "m")
-        for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
-            curve = (length.factor * z[order], scale.factor * values)
-            axes.plot(*curve, **look(number), label=LABELS[quantity])
-        for interface in half_space.interfaces:
-            if interface < bottom:
-                axes.axvline(length.factor * interface, color="0.5", linewidth=0.8)
-        axes.set_xlabel(f"z [{length.unit}]")
-        axes.set_xlim(0.0, length.factor * bottom)
-
-    with styled():
-        is_new, axes = axes is None, axes or new_axes(1.0, 0.5)
-        draw(axes, bottom)
-        if is_new:
-            enlarge_depth(axes, half_space.interfaces, bottom, draw)
-        axes.set_ylabel(f"stress [{scale.unit}]")
-        axes.set_title(f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}")
-        axes.legend()
-    return axes
-
-
-def enlarged_depth(interfaces: Sequence[float], bottom: float) -> float:
-    """Return the depth to which a picture enlarges thin layers; 0 where there are none."""
-    coat = max(interfaces, default=0.0)
-    return ENLARGED * coat if coat < THIN * bottom else 0.0
-
-
-def enlarge_depth(
-    axes: Axes,
-    interfaces: Sequence[float],
-    bottom: float,
-    draw: Callable[[Axes, float], object],
-) -> None:
-    """Draw curves again beside axes of a new figure, down to three thicknesses of thin layers."""
-    if enlarged := enlarged_depth(interfaces, bottom):
-        grid = axes.figure.add_gridspec(1, 2, width_ratios=(3, 2))
-        axes.set_subplotspec(grid[0])
-        beside = axes.figure.add_subplot(grid[1], sharey=axes)
-        draw(beside, enlarged)
-        beside.tick_params(labelleft=False)
+    curves = [Curve(z[order], v, LABELS[q]) for q, v in zip(quantities, drawn, strict=True)]
+    enlarged = enlarged_depth(inner, bottom)
+    inset = (0.0, enlarged) if enlarged else None
+    title = f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}"
+    places = Axis("z", "m", (0.0, bottom)), Axis("stress", "Pa")
+    return draw(Chart("", curves, places, inner, inset, title), axes, (1.0, 0.5))
 
 
 def colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:

@@ -13,10 +13,10 @@ import numpy.typing as npt
 from nacre._tools.disk import FILMS, replacing
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale, travelled
-from nacre.plot.style import COLOURMAP, checked_axes, new_axes, styled
+from nacre.plot.drawer import draw
+from nacre.plot.style import styled
 
 with extra("plot"):
-    import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
     from matplotlib.axes import Axes
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from nacre.contact.wear_solution import WearHistory, WearState
 
 Array = npt.NDArray[np.float64]
-MOST_SECTIONS = 8
-"""Sections of a picture; of more states some are left out."""
 
 
 def _section(state: WearState, values: Array) -> tuple[Array, Array]:
@@ -63,24 +61,7 @@ def wear(history: WearHistory, axes: Axes | None = None) -> Axes:
     >>> nacre.plot.wear(history).get_ylabel()
     'depth removed [nm]'
     """
-    count = min(MOST_SECTIONS, len(history))
-    places = np.unique(np.linspace(0, len(history) - 1, count).round().astype(int))
-    states = [history.states[k] for k in places]
-    sections = [_section(state, state.depth + state.counter_depth) for state in states]
-    along = _scale([x for x, _ in sections], "m")
-    deep = _scale([depth for _, depth in sections], "m")
-    colours = mpl.colormaps[COLOURMAP](np.linspace(0, 0.9, len(states)))
-    with styled():
-        axes = checked_axes(axes) or new_axes(0.75, 0.45)
-        for state, (x, depth), colour in zip(states, sections, colours, strict=True):
-            label = travelled(state.distance, history.unit)
-            axes.plot(along.factor * x, deep.factor * depth, color=colour, label=label)
-        axis = "y" if states[0].solution.grid.is_line else "x"
-        axes.set_xlabel(f"{axis} [{along.unit}]")
-        axes.set_ylabel(f"depth removed [{deep.unit}]")
-        axes.invert_yaxis()
-        axes.legend()
-    return axes
+    return draw(history._depth_chart(), axes, (0.75, 0.45))
 
 
 def animate_wear(

@@ -22,7 +22,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.markup import Markup, Parts, text_of
 from nacre._tools.units import rounded, symbol
-from nacre.results import display, svg, tables
+from nacre.results import charts, display, svg, tables
 from nacre.results.parameters import INPUTS
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
@@ -56,7 +56,7 @@ BODIES = {"HalfSpace", "Elastic", "Layer", "Spring", "Response", *GRIDS}
 markup = Parts(text_of("nacre.results", "report.html"))
 
 
-class Picture(NamedTuple):
+class Drawing(NamedTuple):
     """A picture as SVG, and what it shows."""
 
     caption: str
@@ -82,7 +82,7 @@ class Sections:
     """Inputs by name, with units."""
     numbers: Rows = ()
     """Quantities by name, with units and errors."""
-    pictures: Sequence[Picture] = ()
+    pictures: Sequence[Drawing] = ()
     """Pictures."""
     tables: Sequence[Table] = ()
     """Parts: elements, layers, steps, cases."""
@@ -294,48 +294,14 @@ def _column(
     return f"{words} [{scale.unit}]" if scale.unit else words, [cell(value) for value in values]
 
 
-def section(result: tables.Peaked, axis: int) -> tuple[Array, Array]:
-    """Return places along x or y through the largest pressure, where it is loaded, and it there."""
-    pressure = result.pressure
-    peak = np.unravel_index(pressure.argmax(), pressure.shape)
-    low, high = display.loaded_parts(pressure)[axis]
-    cells = slice(low, high + 1)
-    line = np.take(pressure, peak[1 - axis], axis=1 - axis)
-    return (result.x, result.y)[axis][cells], line[cells]
+def drawn(pictures: Iterable[charts.Picture]) -> list[Drawing]:
+    """Return pictures, drawn in the units that are set now."""
+    return [Drawing(one.caption, svg.drawing(one)) for one in pictures]
 
 
-def contact_pictures(result: tables.Peaked) -> list[Picture]:
-    """Return the pressure of a contact along x and y through its largest, and over the cells."""
-    pressure, is_line = result.pressure, result.grid.is_line
-    if not pressure.any():
-        return []
-    y_axis, pictures = svg.Axis("pressure", "Pa"), []
-    for axis in (1,) if is_line else (0, 1):
-        axes = svg.Axis("xy"[axis], "m"), y_axis
-        drawing = svg.lines([svg.Curve(*section(result, axis))], axes)
-        pictures.append(Picture(f"Pressure along {'xy'[axis]}, through the largest.", drawing))
-    if not is_line:
-        caption = "Pressure over the contact, x and y each to its scale; white: no contact."
-        pictures.append(map_picture(result, pressure, y_axis, caption))
-    return pictures
-
-
-def map_picture(result: tables.Peaked, values: Array, axis: svg.Axis, caption: str) -> Picture:
-    """Return the picture of values ``(nx, ny)`` in the contact, white where nothing touches."""
-    pressure, places = result.pressure, (result.x, result.y)
-    cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
-    ends = [
-        (float(side[part][0] - step / 2), float(side[part][-1] + step / 2))
-        for side, part, step in zip(places, cells, result.grid.spacing, strict=True)
-    ]
-    x, y = (svg.Axis(name, "m", end) for name, end in zip("xy", ends, strict=True))
-    loaded = np.where(pressure > 0, values, np.nan)[cells[0], cells[1]]
-    return Picture(caption, svg.image(loaded, (x, y, axis)))
-
-
-def notebook_picture(pictures: Sequence[Picture]) -> bytes | None:
+def notebook_picture(pictures: Sequence[charts.Picture]) -> bytes | None:
     """Return the last picture, if there is one, as a file for a notebook."""
-    return svg.alone(pictures[-1].drawing) if pictures else None
+    return svg.alone(svg.drawing(pictures[-1])) if pictures else None
 
 
 def _heading(title: str) -> Markup | None:
@@ -349,7 +315,7 @@ def _pairs(rows: Rows) -> Markup:
     return markup("pairs", rows=pairs)
 
 
-def _figures(pictures: Iterable[Picture]) -> Markup:
+def _figures(pictures: Iterable[Drawing]) -> Markup:
     figures = [
         markup("figure", drawing=Markup(one.drawing), caption=one.caption) for one in pictures
     ]

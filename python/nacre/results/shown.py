@@ -13,8 +13,9 @@ from nacre._tools.typing import AnyPath
 from nacre._tools.units import SI, Within, printable
 from nacre.results import display, files, report
 from nacre.results.base import Fields, Result, Warned
+from nacre.results.charts import Picture
 from nacre.results.quantities import AXIS, Quantity
-from nacre.results.report import Picture, Rows, Sections, Table
+from nacre.results.report import Rows, Sections, Table
 from nacre.results.rows import Row, remark
 from nacre.results.tables import heading
 from nacre.results.verdict import Verdict
@@ -68,8 +69,8 @@ class Shown(Fields):
         """Return the numbers in a report."""
         return self._rows()
 
-    def _pictures(self) -> Sequence[Picture]:
-        """Return the pictures of a report."""
+    def _charts(self) -> Sequence[Picture]:
+        """Return the charts of a report."""
         return ()
 
     def _tables(self) -> Sequence[Table]:
@@ -118,7 +119,7 @@ class Shown(Fields):
                 self._title(),
                 self._inputs(),
                 self._report_rows(),
-                self._pictures(**stress),
+                report.drawn(self._charts(**stress)),
                 self._tables(),
                 self._model(),
                 self._warnings,

@@ -1,7 +1,6 @@
 """Pictures as SVG, from numbers to text: curves, loads around a ring, and maps of cells.
 
-Colours are names of classes, which `STYLE` sets, so that a page can have others in print. Numbers
-are in SI, and are drawn in the units that are set.
+Colours are names of classes, which `STYLE` sets, so that a page can have others in print.
 """
 
 from __future__ import annotations
@@ -12,17 +11,12 @@ import math
 import struct
 import zlib
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.markup import text_of
-from nacre._tools.units import Scale, symbol
-from nacre.results import display
-
-Array = npt.NDArray[np.float64]
-Ends = tuple[float, float]
+from nacre.results.charts import HEADROOM, Array, Axis, Bars, Chart, Curve, Ends, Map, Picture
 
 WIDTH, HEIGHT = 460, 290
 LEFT, RIGHT, TOP, BOTTOM = 62, 12, 12, 42
@@ -41,29 +35,14 @@ MOST_NUMBERS = 20
 """Largest number of elements of a ring that are numbered."""
 INSET, ABOVE = 0.36, 2.0
 """Size of an inset over that of the picture, and of y over the curves, so that it is free."""
-HEADROOM = 0.05
-"""Share of the range that stays free beyond curves, where they do not end at 0."""
+FEW_LABELS, LETTER = 4, 6.5
+"""Largest number of labels that are below each other; width of a letter."""
 VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725"
 """Colours of Matplotlib's map viridis, at equal distances."""
 STYLE = text_of("nacre.results", "svg.css")
 """Style sheet of pictures."""
-
-
-class Axis(NamedTuple):
-    """What is drawn along an axis; the ends are those of the numbers by default."""
-
-    name: str
-    unit: str = ""
-    ends: Ends | None = None
-
-
-class Curve(NamedTuple):
-    """Numbers along x and y, drawn as a line, a dashed line or points."""
-
-    x: npt.ArrayLike
-    y: npt.ArrayLike
-    label: str = ""
-    look: str = "line"
+GRADED = 0.9
+"""Largest share of the colour map that curves have: yellow is hard to see on white."""
 
 
 class Side:
@@ -74,10 +53,9 @@ class Side:
     """
 
     def __init__(self, axis: Axis, ends: Ends, start: float, end: float) -> None:
-        self.scale: Scale = display.scale_in(max(map(abs, ends)), symbol(axis.unit))
-        unit = f"[{self.scale.unit}]" if self.scale.unit else ""
-        self.label = f"{axis.name} {unit}".strip()
-        self.low, self.high = (self.scale.factor * one for one in ends)
+        self.scale, self.label = axis.units(max(map(abs, ends)))
+        self.is_log = axis.scale == "log"
+        self.low, self.high = self._along(self.scale.factor * np.array(ends)).tolist()
         self.start, self.end = start, end
 
     def at(self, values: Array) -> Array:
@@ -86,13 +64,22 @@ class Side:
 
     def place(self, values: Array) -> Array:
         """Return the coordinates of numbers in the unit of the axis."""
-        share = (values - self.low) / ((self.high - self.low) or 1.0)
-        return self.start + share * (self.end - self.start)
+        share = (self._along(values) - self.low) / ((self.high - self.low) or 1.0)
+        places: Array = self.start + share * (self.end - self.start)
+        return places
+
+    def _along(self, values: Array) -> Array:
+        along: Array = np.log10(values) if self.is_log else values
+        return along
 
     def ticks(self) -> list[tuple[float, str]]:
         """Return the coordinates of round numbers, and these as text."""
         apart = ABREAST if self.end > self.start else STACKED
-        values = round_numbers(self.low, self.high, abs(self.end - self.start) / apart)
+        low, high = sorted((self.low, self.high))
+        values = round_numbers(low, high, abs(self.end - self.start) / apart)
+        if self.is_log:
+            values = np.unique([float(f"{value:.1g}") for value in 10.0**values])
+            values = values[(values >= 10.0**low) & (values <= 10.0**high)]
         return [(float(self.place(v)), f"{v:.6g}") for v in values]
 
 
@@ -112,56 +99,77 @@ def round_numbers(low: float, high: float, most: float) -> Array:
     return np.round(counts * step * 10.0**power, max(0, -power)) + 0.0
 
 
-def lines(
-    curves: Sequence[Curve],
-    axes: tuple[Axis, Axis],
-    marks: Sequence[float] = (),
-    inset: Ends | None = None,
-    size: tuple[float, float] = (WIDTH, HEIGHT),
-) -> str:
-    """Return a picture of curves, with vertical lines at `marks`, and a part of x as an inset.
+def drawing(picture: Picture) -> str:
+    """Return the picture of curves, of bars or of a map."""
+    if isinstance(picture, Chart):
+        return _chart(picture, (WIDTH, HEIGHT))
+    return _ring(picture) if isinstance(picture, Bars) else _map(picture)
+
+
+def _chart(chart: Chart, size: tuple[float, float]) -> str:
+    """Return curves, with vertical lines at marks.
 
     The inset is in the upper right corner, above the curves.
     """
+    curves, axes, inset = chart.curves, chart.axes, chart.inset
     points = [_thinned(curve, axes[0].ends or (-math.inf, math.inf)) for curve in curves]
-    low, high = _ends([part for _, part in points], has_zero=True)
+    low, high = _ends(
+        [part for _, part in points], has_zero=axes[1].has_zero and axes[1].scale == "linear"
+    )
     x_ends = axes[0].ends or _ends([part for part, _ in points])
+    colours = _colours(curves)
     labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
+    columns, column = 1, 40 + LETTER * max((len(label) for _, label in labels), default=0)
+    if len(labels) > FEW_LABELS:
+        columns = max(1, int((size[0] - LEFT) / column))
     x = Side(axes[0], x_ends, LEFT, size[0] - RIGHT)
     y_ends = axes[1].ends or (low, high * (1.0 if inset is None else ABOVE))
-    y = Side(axes[1], y_ends, size[1] - BOTTOM, TOP + LINE * len(labels))
+    y = Side(axes[1], y_ends, size[1] - BOTTOM, TOP + LINE * math.ceil(len(labels) / columns))
     parts = [_frame(x, y)]
-    parts += [_curve(k, one.look, x, y, points[k]) for k, one in enumerate(curves)]
-    for mark in x.at(np.array([one for one in marks if x_ends[0] < one < x_ends[1]])):
+    parts += [
+        _curve(curve.look, colour, x, y, places)
+        for curve, colour, places in zip(curves, colours, points, strict=True)
+    ]
+    for mark in x.at(np.array([place for place in chart.marks if x_ends[0] < place < x_ends[1]])):
         parts.append(f"<path class='mark' d='M{mark:.1f} {y.start:.1f}V{y.end:.1f}'/>")
-    for row, (k, label) in enumerate(labels):
-        parts.append(f"<path class='c{k % 7}' stroke-width='2' d='M{LEFT} {TOP + LINE * row}h18'/>")
-        parts.append(_text(label, LEFT + 24, TOP + LINE * row + 4))
+    for number, (k, label) in enumerate(labels):
+        left, top = LEFT + column * (number % columns), TOP + LINE * (number // columns)
+        parts.append(f"<path {colours[k]} stroke-width='2' d='M{left:.6g} {top}h18'/>")
+        parts.append(_text(label, left + 24, top + 4))
     if inset is not None:
         small = (INSET * size[0], INSET * size[1])
         corner = f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}'"
         units = axes[0]._replace(name="", ends=inset), axes[1]._replace(name="")
-        inner = lines([one._replace(label="") for one in curves], units, marks, None, small)
+        unnamed = [curve._replace(label="") for curve in curves]
+        inner = _chart(chart._replace(curves=unnamed, axes=units, inset=None), small)
         size_of = f"width='{small[0]}' height='{small[1]}'"
         parts.append(inner.replace("<svg", f"<svg {corner} {size_of}", 1))
     return _picture(parts, size)
 
 
-def bars(
-    angles: npt.ArrayLike, loads: npt.ArrayLike, axis: Axis, labels: Sequence[str] = ()
-) -> str:
-    """Return loads ``(Z, n)`` around a ring: bars at angles from x [rad], n beside each other."""
-    heights = np.asarray(loads, dtype=np.float64)
+def _colours(curves: Sequence[Curve]) -> list[str]:
+    """Return the attributes of the colours of curves."""
+    shares, number, colours = np.linspace(0.0, GRADED, len(curves)), -1, []
+    for curve, (red, green, blue) in zip(curves, viridis(shares), strict=True):
+        number += curve.look != "thin"
+        graded = f"style='stroke:#{red:02x}{green:02x}{blue:02x}'"
+        colours.append(graded if curve.look == "graded" else f"class='c{number % 7}'")
+    return colours
+
+
+def _ring(ring: Bars) -> str:
+    """Return loads around a ring as bars."""
+    heights, labels = ring.loads, ring.labels
     count, series = heights.shape
-    places = np.broadcast_to(np.asarray(angles, dtype=np.float64).reshape(count, -1), heights.shape)
+    places = ring.angles
     x, y = WIDTH / 2, TOP + LINE * (len(labels) + 1) + OUTER
-    radius = Side(axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
+    radius = Side(ring.axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
     width = min(7.0, 0.7 * 2 * math.pi * INNER / (count * series))
     parts = [_text(radius.label, x, TOP + 4, "middle")]
     for length, number in radius.ticks():
         parts.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
         parts.append(_text(number, x + 3, y - length - 2))
-    for k, label in enumerate(labels):
+    for k, label in enumerate(filter(None, labels)):
         parts.append(f"<path class='c{k}' stroke-width='7' d='M4 {TOP + LINE * (k + 1)}h10'/>")
         parts.append(_text(label, 20, TOP + LINE * (k + 1) + 4))
     shifts = 1.2 * width / INNER * (np.arange(series) - (series - 1) / 2)
@@ -177,11 +185,9 @@ def bars(
     return _picture(parts, (WIDTH, y + OUTER + LINE))
 
 
-def image(values: Array, axes: tuple[Axis, Axis, Axis]) -> str:
-    """Return a map of cells ``(nx, ny)``, x to the right and y upwards; NaN stays white.
-
-    The axes are those of x and y, whose ends are those of the map, and of the values.
-    """
+def _map(cells: Map) -> str:
+    """Return a map of cells, with its colour bar."""
+    values, axes = cells.values, cells.axes
     (x_low, x_high), (y_low, y_high) = (axis.ends or (0.0, 1.0) for axis in axes[:2])
     low, high = axes[2].ends or (0.0, float(values[np.isfinite(values)].max(initial=0.0)) or 1.0)
     widest, highest = WIDTH - LEFT - RIGHT - BAR, 1.2 * HEIGHT
@@ -214,13 +220,10 @@ def png(shares: Array) -> bytes:
     rows = shares[np.ix_(*keep)].T[::-1]
     index = 1 + np.round(254 * np.clip(np.nan_to_num(rows), 0.0, 1.0))
     pixels = np.where(np.isfinite(rows), index, 0).astype(np.uint8)
-    nodes = np.array([list(bytes.fromhex(colour)) for colour in VIRIDIS.split()])
-    along = np.linspace(0, len(nodes) - 1, 255)
-    colours = np.stack([np.interp(along, range(len(nodes)), one) for one in nodes.T], axis=1)
     lines_of = np.insert(pixels, 0, 0, axis=1).tobytes()  # each begins with its filter, none
     chunks = {
         b"IHDR": struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 3, 0, 0, 0),
-        b"PLTE": b"\xff\xff\xff" + colours.round().astype(np.uint8).tobytes(),
+        b"PLTE": b"\xff\xff\xff" + viridis(np.linspace(0.0, 1.0, 255)).tobytes(),
         b"IDAT": zlib.compress(lines_of, 9),
         b"IEND": b"",
     }
@@ -230,9 +233,16 @@ def png(shares: Array) -> bytes:
     )
 
 
+def viridis(shares: Array) -> npt.NDArray[np.uint8]:
+    """Return the colours ``(n, 3)`` of Matplotlib's map viridis at shares from 0 to 1."""
+    nodes = np.array([list(bytes.fromhex(colour)) for colour in VIRIDIS.split()])
+    colours = [np.interp(shares * (len(nodes) - 1), range(len(nodes)), base) for base in nodes.T]
+    return np.stack(colours, axis=1).round().astype(np.uint8)
+
+
 def _thinned(curve: Curve, ends: Ends) -> tuple[Array, Array]:
     """Return the finite points of a curve between two places, not too many, with its extremes."""
-    x, y = (np.asarray(part, dtype=np.float64) for part in (curve.x, curve.y))
+    x, y = curve.x, curve.y
     inside = np.isfinite(x) & np.isfinite(y) & (x >= ends[0]) & (x <= ends[1])
     x, y = x[inside], y[inside]
     if x.size <= MOST_POINTS:
@@ -269,14 +279,16 @@ def _frame(x: Side, y: Side, paper: str = "frame paper") -> str:
     return "".join(parts) + turned + _text(y.label, 12, middle + 2, "middle") + "</g>"
 
 
-def _curve(number: int, look: str, x: Side, y: Side, points: tuple[Array, Array]) -> str:
-    """Return a curve, or its points."""
-    places, colour = [*zip(x.at(points[0]), y.at(points[1]), strict=True)], number % 7
-    if look == "points":
-        dots = (f"<circle class='p{colour}' cx='{a:.1f}' cy='{b:.1f}' r='2.2'/>" for a, b in places)
-        return "".join(dots)
+def _curve(look: str, colour: str, x: Side, y: Side, points: tuple[Array, Array]) -> str:
+    """Return a curve, its points, or both."""
+    places = [*zip(x.at(points[0]), y.at(points[1]), strict=True)]
     text = " ".join(f"{a:.1f},{b:.1f}" for a, b in places)
-    return f"<polyline class='c{colour} {look}' points='{text}'/>"
+    line = f"<g {colour}><polyline class='{look}' points='{text}'/></g>"
+    if look not in ("points", "marked"):
+        return line
+    filled = colour.replace("class='c", "class='p")
+    dots = (f"<circle {filled} cx='{a:.1f}' cy='{b:.1f}' r='2.2'/>" for a, b in places)
+    return line * (look == "marked") + "".join(dots)
 
 
 def _text(words: str, x: float, y: float, side: str = "start") -> str:

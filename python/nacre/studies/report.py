@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nacre._tools.units import display_units, symbol
-from nacre.results import display, files, svg
+from nacre.results import display, files
+from nacre.results.charts import Axis, Chart, Curve, Picture
 from nacre.results.parameters import PARAMETERS
 from nacre.results.quantities import ERROR
-from nacre.results.report import Picture, Rows, Table, table, write
+from nacre.results.report import Rows, Table, table, write
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 
@@ -54,8 +55,8 @@ class Study(Shown):
         ranges = [Row(name, name, self._range(name)) for name in self._outputs]
         return [remark("cases", f"{cases}, {failed} failed"), *ranges]
 
-    def _pictures(self) -> Sequence[Picture]:
-        return [picture for name in self._outputs for picture in self._pictures_of(name)]
+    def _charts(self) -> Sequence[Picture]:
+        return [chart for name in self._outputs for chart in self._charts_of(name)]
 
     def _model(self) -> Rows:
         return MODEL
@@ -118,8 +119,8 @@ class Study(Shown):
             tables.append(Table("Cases that failed", [*places, "error"], cells))
         return tables
 
-    def _pictures_of(self, name: str) -> list[Picture]:
-        """Return the picture of an output over the first parameter that is a number."""
+    def _charts_of(self, name: str) -> list[Chart]:
+        """Return the chart of an output over the first parameter that is a number."""
         output = self.dataset[name]
         along = [
             dim
@@ -138,16 +139,16 @@ class Study(Shown):
         for k in range(min(flat.sizes["others"], MOST_CURVES)):
             one = flat.isel(others=k)
             places = ", ".join(f"{dim} {self._number(str(dim), one[dim].item())}" for dim in rest)
-            curves.append(svg.Curve(output[x].values, one.values, places))
+            curves.append(Curve(output[x].values, one.values, places))
         low, high = float(output.min()), float(output.max())
         margin = (high - low) / 10
         # Of values that hardly change, 0 is not shown.
         ends = (low - margin, high + margin) if 0 < margin < low / 20 else None
         axes = (self._axis(x), self._axis(name)._replace(ends=ends))
-        return [Picture(f"{name} over {x}.".replace("_", " "), svg.lines(curves, axes))]
+        return [Chart(f"{name} over {x}.".replace("_", " "), curves, axes)]
 
-    def _axis(self, name: str) -> svg.Axis:
-        return svg.Axis(name.replace("_", " "), self._unit(name))
+    def _axis(self, name: str) -> Axis:
+        return Axis(name.replace("_", " "), self._unit(name), is_exact=True)
 
     @property
     def _warnings(self) -> Sequence[str]:

@@ -371,10 +371,11 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
         sliding = {name: keywords[name] for name in ("friction", "direction")}
         coated = solutions[0].stress_summary(**keywords)
         other = solutions[1].stress_summary(**sliding)
-        for name, text in solutions[0]._rows():
-            if name in CONTACT_ROWS:
-                pair = html.escape(text), html.escape(dict(solutions[1]._rows())[name])
-                assert "<th>{}</th><td>{}</td><td>{}</td>".format(name, *pair) in rows
+        of_bare = {row.key: html.escape(row.text) for row in solutions[1]._rows()}
+        for row in solutions[0]._rows():
+            if row.key in CONTACT_ROWS:
+                pair = html.escape(row.text), of_bare[row.key]
+                assert "<th>{}</th><td>{}</td><td>{}</td>".format(row.label, *pair) in rows
     largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]
     texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
     assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)

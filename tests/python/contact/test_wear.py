@@ -260,7 +260,7 @@ def test_what_is_shown_is_of_both_bodies(tmp_path: Path, monkeypatch: pytest.Mon
     assert (force, removed) == ("pressure [MPa]", "depth removed [nm]")
     assert_close(presses, 1e-6 * pressure)
     assert_close(film, 1e9 * depth)
-    heads, *rows = history._table()
+    heads, *rows = history._file_rows()
     for name, numbers in (("volume", history.volume), ("deepest", history.deepest)):
         for member, which in enumerate(("body", "counterbody")):
             (place,) = [k for k, head in enumerate(heads) if f"{name} {which} [" in str(head)]

@@ -23,13 +23,13 @@ import nacre
 import results
 from bodies import BALL, ROD, STEEL, quiet
 from nacre import bearing, design, fatigue
-from nacre.contact import friction as friction_module
 from nacre.contact import stresses
 from nacre.results import report, svg
+from nacre.results.charts import Axis, Bars, Chart, Curve, Map, contact_charts, contact_map
 from nacre.results.report import Sections, input_rows, page, table, write
 from nacre.results.rows import remark
-from nacre.studies.report import save_report
-from support import Capture, Patch, assert_close, command, written
+from nacre.studies.report import Study, save_report
+from support import Capture, assert_close, command, written
 
 LARGEST = 300_000
 """Bytes of a page that mail and archives take."""
@@ -428,8 +428,12 @@ PIXEL = 0.06
 
 
 def test_curves_are_where_their_numbers_are() -> None:
-    axes = svg.Axis("x", "m", (0.0, 4e-3)), svg.Axis("p", "Pa", (0.0, 2e9))
-    picture = drawn(svg.lines([svg.Curve([1e-3, 3e-3], [5e8, 2e9])], axes, marks=[2e-3]))
+    axes = Axis("x", "m", (0.0, 4e-3)), Axis("p", "Pa", (0.0, 2e9))
+    picture = drawn(
+        svg.drawing(
+            Chart("", [Curve(np.array([1e-3, 3e-3]), np.array([5e8, 2e9]))], axes, marks=[2e-3])
+        )
+    )
     (curve,) = picture.iter("polyline")
     points = [tuple(map(float, pair.split(","))) for pair in curve.get("points", "").split()]
     width, height = svg.WIDTH - svg.LEFT - svg.RIGHT, svg.HEIGHT - svg.TOP - svg.BOTTOM
@@ -444,9 +448,10 @@ def test_curves_are_where_their_numbers_are() -> None:
 
 
 def test_ticks_are_where_their_numbers_are() -> None:
-    picture = drawn(
-        svg.lines([svg.Curve([0.0, 7.3], [-40.0, 90.0])], (svg.Axis("x"), svg.Axis("y")))
+    chart = Chart(
+        "", [Curve(np.array([0.0, 7.3]), np.array([-40.0, 90.0]))], (Axis("x"), Axis("y"))
     )
+    picture = drawn(svg.drawing(chart))
     (curve,) = picture.iter("polyline")
     (_, low), (_, high) = (map(float, pair.split(",")) for pair in curve.get("points", "").split())
     ticks = [t for t in picture.iter("text") if t.get("class") == "end"]
@@ -465,30 +470,18 @@ def test_ticks_lie_in_the_picture() -> None:
         assert low - room <= ticks.min() <= ticks.max() <= high + room
 
 
-def captured(monkeypatch: Patch, module: Any, name: str, result: Any) -> tuple[Any, ...]:
-    """Return the arguments of the first picture that the report of a result draws in a module."""
-    calls: list[tuple[Any, ...]] = []
-
-    def drawing(*arguments: Any) -> str:
-        calls.append(arguments)
-        return "<svg/>"
-
-    monkeypatch.setattr(module, name, drawing)
-    quiet(result._sections)
-    return calls[0]
-
-
-def test_the_stress_over_depth_is_that_of_the_solution(monkeypatch: Patch) -> None:
-    (curve,), axes, marks, inset = captured(monkeypatch, stresses, "lines", ball())
+def test_the_stress_over_depth_is_that_of_the_solution() -> None:
+    (chart,) = quiet(lambda: [*stresses.depth_charts(ball())])
+    _, (curve,), axes, marks, inset = chart
     assert [axis.unit for axis in axes] == ["m", "Pa"]
     assert (marks, inset) == ([2e-6], (0.0, 6e-6))
     x, y = ball().peak_position
-    z, count = np.asarray(curve.x), np.count_nonzero(curve.x <= 2e-6)
+    z, count = curve.x, np.count_nonzero(curve.x <= 2e-6)
     assert np.all(np.diff(z) >= 0)
     assert np.count_nonzero(z == 2e-6) == 2  # the coat first, then the steel below it
     for part, side in ((slice(0, count - 1), "above"), (slice(count - 1, None), "below")):
         due = quiet(ball().stress, z[part], x=x, y=y, side=side).von_mises
-        assert_close(np.asarray(curve.y)[part], due, rtol=1e-12)
+        assert_close(curve.y[part], due, rtol=1e-12)
     width = np.diff(ball().contact_extent[1])[0]
     assert z[-1] == pytest.approx(1.25 * width)
 
@@ -497,25 +490,27 @@ def test_the_stress_over_depth_is_that_of_the_solution(monkeypatch: Patch) -> No
 def test_sections_go_through_the_largest_pressure(axis: int) -> None:
     """They hold the contact, and a margin of a tenth of it and a cell."""
     solution = results.solved("both coated, tilted")
+    chart = contact_charts(solution)[axis]
+    assert isinstance(chart, Chart)
+    (curve,) = chart.curves
     places = (solution.x, solution.y)[axis]
-    x, y = report.section(solution, axis)
     row = np.abs((solution.y, solution.x)[axis] - solution.peak_position[1 - axis]).argmin()
     whole = np.take(solution.pressure, row, axis=1 - axis)
     first, last = np.flatnonzero(solution.pressure.any(axis=1 - axis))[[0, -1]]
     margin = 1 + (last - first) // 10
     kept = slice(max(first - margin, 0), last + margin + 1)
-    np.testing.assert_array_equal(x, places[kept])
-    np.testing.assert_array_equal(y, whole[kept])
-    assert max(y) == solution.peak_pressure
-    assert "xy"[axis] in report.contact_pictures(solution)[axis].caption
+    np.testing.assert_array_equal(curve.x, places[kept])
+    np.testing.assert_array_equal(curve.y, whole[kept])
+    assert max(curve.y) == solution.peak_pressure
+    assert "xy"[axis] in chart.caption
 
 
 def test_maps_have_x_to_the_right_and_y_upwards(tmp_path: Path) -> None:
     solution = results.solved("both coated, tilted")
     values = np.where(np.arange(31) > 14, 1.0, 0.5) * np.ones((40, 1))
     values[:20] *= 0.25
-    axis = svg.Axis("p", "Pa", (0.0, 1.0))
-    picture = drawn(report.map_picture(solution, values, axis, "a map").drawing)
+    axis = Axis("p", "Pa", (0.0, 1.0))
+    picture = drawn(svg.drawing(contact_map(solution, values, axis, "a map")))
     image = next(picture.iter("image")).get("href", "").partition("base64,")[2]
     (tmp_path / "a.png").write_bytes(base64.b64decode(image))
     pixels = imread(tmp_path / "a.png")[..., :3]
@@ -531,46 +526,62 @@ def test_maps_have_x_to_the_right_and_y_upwards(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-def test_a_loop_is_along_the_axis_of_the_force(axis: int, monkeypatch: Patch) -> None:
+def test_a_loop_is_along_the_axis_of_the_force(axis: int) -> None:
     pair = [(0.1, force)[:: 1 if axis else -1] for force in (1.0, -1.0)]
     history = results.CONTACT.slide(
         BALL, load=10.0, friction=0.3, steps=[{"force": f} for f in pair]
     )
-    curves, axes = captured(monkeypatch, friction_module, "lines", history)
-    (curve,) = curves
-    np.testing.assert_array_equal(curve.x, [step.shift[axis] for step in history])
+    chart = history._charts()[0]
+    assert isinstance(chart, Chart)
+    (curve,) = chart.curves
+    shifts = [step.shift[axis] for step in history if step.shift is not None]
+    np.testing.assert_array_equal(curve.x, shifts)
     np.testing.assert_array_equal(curve.y, [step.force[axis] for step in history])
-    assert axes[0].name == f"shift along {'xy'[axis]}"
+    assert chart.axes[0].name == f"shift along {'xy'[axis]}"
 
 
-def test_bars_and_curves_are_those_of_the_elements(monkeypatch: Patch) -> None:
+def test_bars_and_curves_are_those_of_the_elements() -> None:
     solution = quiet(KINDS["two rows"])
-    angles, heights, _, labels = captured(monkeypatch, bearing.solution, "bars", solution)
+    _, angles, heights, _, labels = quiet(solution._charts)[0]
     assert labels == [f"row {row}, {ring} ring" for row in (1, 2) for ring in ("inner", "outer")]
     for element, ring in ((0, 0), (3, 1), (15, 0), (29, 1)):
         row, place = divmod(element, 15)
         assert heights[place, 2 * row + ring] == solution.loads[element, ring]
         assert angles[place, 2 * row + ring] == solution.angles[element]
     rollers = loads()
-    inner, outer = captured(monkeypatch, bearing.solution, "lines", rollers)[0]
+    _, chart = rollers._charts()
+    assert isinstance(chart, Chart)
+    inner, outer = chart.curves
     assert max(inner.y) == rollers.peak_pressures[:, 0].max()
     assert max(outer.y) == pytest.approx(rollers.lamina_pressures[0, 1].max())  # type: ignore[index]
     assert inner.x[0] == pytest.approx(-9.6e-3 / 2 * 39 / 40)  # the middle of the first of 40
 
 
+def test_pictures_of_studies_have_units_of_their_own() -> None:
+    study = design.load_curve(BALL, STEEL, load=[10.0, 20.0])
+    with nacre.display_units("N-mm-MPa"):
+        (chart,) = Study(study)._charts_of("peak_pressure")
+        texts = [*drawn(svg.drawing(chart)).iter("text")]
+    assert "peak pressure [MPa]" in {text.text for text in texts}
+    low, high = study.peak_pressure.values / 1e6
+    ticks = [float(text.text or "") for text in texts if text.get("class") == "end"]
+    assert len(ticks) >= 3
+    assert 0.9 * low < min(ticks) < max(ticks) < 1.1 * high
+
+
 def test_long_curves_keep_their_peaks() -> None:
     x = np.linspace(0.0, 1.0, 10_001)
     y = np.exp(-(((x - 0.123_4) / 1e-4) ** 2))
-    axes = svg.Axis("x"), svg.Axis("y", "", (0.0, 1.0))
-    (curve,) = drawn(svg.lines([svg.Curve(x, y)], axes)).iter("polyline")
+    axes = Axis("x"), Axis("y", "", (0.0, 1.0))
+    (curve,) = drawn(svg.drawing(Chart("", [Curve(x, y)], axes))).iter("polyline")
     points = [tuple(map(float, pair.split(","))) for pair in curve.get("points", "").split()]
     assert len(points) <= svg.MOST_POINTS
     assert min(y for _, y in points) == pytest.approx(svg.TOP, abs=PIXEL)
 
 
 def test_an_inset_is_a_part_of_the_curve() -> None:
-    curve = svg.Curve([0.0, 1.0, 2.0, 10.0], [0.0, 3.0, 4.0, 1.0], "a")
-    picture = drawn(svg.lines([curve], (svg.Axis("x"), svg.Axis("y")), (), (0.0, 2.0)))
+    curve = Curve(np.array([0.0, 1.0, 2.0, 10.0]), np.array([0.0, 3.0, 4.0, 1.0]), "a")
+    picture = drawn(svg.drawing(Chart("", [curve], (Axis("x"), Axis("y")), (), (0.0, 2.0))))
     inner = picture.find("svg")
     assert inner is not None
     whole, part = picture.iter("polyline")
@@ -582,7 +593,8 @@ def test_an_inset_is_a_part_of_the_curve() -> None:
 
 def test_bars_point_where_the_elements_are() -> None:
     loads = np.array([[400.0], [200.0], [0.0]])
-    picture = drawn(svg.bars([0.0, math.pi / 2, math.pi], loads, svg.Axis("load", "N")))
+    angles = np.array([[0.0], [math.pi / 2], [math.pi]])
+    picture = drawn(svg.drawing(Bars("", angles, loads, Axis("load", "N"))))
     ends = [
         [float(n) for n in re.findall(r"-?[\d.]+", one.get("d", ""))]
         for one in picture.iter("path")
@@ -603,15 +615,15 @@ def test_maps_are_images_of_their_cells(tmp_path: Path) -> None:
     due[0, 0] = 1.0
     # Ten colours stand for 256: their interpolation is off by 0.02 at most.
     assert_close(pixels, due, atol=0.02)
-    ends = svg.Axis("x", "m", (0.0, 2e-3)), svg.Axis("y", "m", (0.0, 3e-3)), svg.Axis("p", "Pa")
-    (cells, _) = drawn(svg.image(1e9 * shares, ends)).iter("image")
+    ends = Axis("x", "m", (0.0, 2e-3)), Axis("y", "m", (0.0, 3e-3)), Axis("p", "Pa")
+    (cells, _) = drawn(svg.drawing(Map("", 1e9 * shares, ends))).iter("image")
     size = [float(cells.get(name, "")) for name in ("width", "height")]
     assert size[1] / size[0] == pytest.approx(1.5, rel=1e-3)
 
 
 def test_labels_with_markup_are_text() -> None:
-    curve = svg.Curve([0.0, 1.0], [0.0, 1.0], EVIL)
-    picture = drawn(svg.lines([curve], (svg.Axis(EVIL), svg.Axis("y"))))
+    curve = Curve(np.array([0.0, 1.0]), np.array([0.0, 1.0]), EVIL)
+    picture = drawn(svg.drawing(Chart("", [curve], (Axis(EVIL), Axis("y")))))
     assert [t.text for t in picture.iter("text")].count(EVIL) == 2
 
 
