@@ -529,8 +529,8 @@ class History(list[FrictionSolution], Shown, Warned):
         """Return the numbers of the last step."""
         return checked(self)[-1]._report_rows()
 
-    def _pictures(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
-        """Return the pictures of a report: force over shift, and those of the last step."""
+    def _charts(self, **stress: Unpack[DepthOptions]) -> Sequence[Picture]:
+        """Return the charts of a report: force over shift, and those of the last step."""
         forces = np.array([step.force for step in self])
         axis = int(np.argmax(np.ptp(forces, axis=0)))
         is_sliding = all(step.shift is not None for step in self)
