@@ -783,6 +783,7 @@ class PairSolution(Equilibrium):
         """Return the verdict and the main numbers."""
         return f"{self.verdict}\n\n" + display.text(self._rows(), self.report.warnings)
 
+    @display.in_si
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences
         heavier = max(self.bearings, key=lambda one: one.largest_load)

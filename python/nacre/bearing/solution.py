@@ -780,6 +780,7 @@ class BearingSolution(Equilibrium):
             + printable(table)
         )
 
+    @display.in_si
     def _repr_html_(self) -> str:
         verdict = self.verdict.sentences
         picture = notebook_picture([self._ring_chart()])

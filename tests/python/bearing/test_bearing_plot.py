@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
 import pytest
 
+import nacre
 from nacre import plot
 from nacre.bearing import AngularContactBall, CylindricalRoller, DeepGrooveBall, Pair
 from support import assert_close
@@ -28,6 +30,16 @@ def test_bars_are_the_loads() -> None:
     assert len(both.patches) == 28
     texts: Any = both.get_legend()
     assert [text.get_text() for text in texts.get_texts()] == ["inner ring", "outer ring"]
+
+
+def test_loads_are_in_newtons_whatever_units_are_set() -> None:
+    with nacre.display_units("lbf-in-psi"):
+        axes = plot.load_distribution(STANDARD)
+        picture = base64.b64decode(STANDARD._repr_html_().partition("base64,")[2].partition("'")[0])
+    assert axes.get_title() == "load of each element [kN]"
+    bars: list[Any] = list(axes.patches)
+    assert_close([bar.get_height() for bar in bars], STANDARD.loads[:, 0] / 1e3)
+    assert b"load of each element [kN]" in picture
 
 
 def test_curves_are_the_pressures_and_alike_elements_share_one() -> None:
