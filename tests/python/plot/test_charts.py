@@ -168,6 +168,15 @@ def test_svg_draws_equal_factors_equally_high_on_a_logarithmic_axis() -> None:
     assert {"1", "10"} <= texts
 
 
+def test_svg_draws_curves_up_to_the_end_between_two_points() -> None:
+    part = chart("line", axes=(Axis("x", "m", (0.0, 1.5e-3)), SIDES[1]))
+    (line,) = svg_of(part).iter("polyline")
+    last = line.get("points", "").split()[-1].split(",")
+    assert float(last[0]) == svg.WIDTH - svg.RIGHT
+    ((bottom, top, end),) = heights(part)
+    assert end - bottom == pytest.approx(0.75 * (top - bottom), abs=0.2)  # 2.5 of 1 to 3 GPa
+
+
 def test_svg_turns_an_axis_with_its_ends() -> None:
     down = chart("line", axes=(SIDES[0], Axis("p", "Pa", (3e9, 0.0))))
     ((first, second, _),) = heights(down)
