@@ -383,7 +383,7 @@ class FatigueSummary(Shown, Warned, Result):
         ]
         marks, deepest = [face.depth for face in self.interfaces], float(self.depths.max())
         enlarged = enlarged_depth(marks, deepest)
-        axes = Axis("depth", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
+        axes = Axis("z", "m", (0.0, deepest or 1.0)), Axis("stress", "Pa")
         caption = "What a material needs at each depth; dotted: interfaces."
         return [Chart(caption, curves, axes, marks, (0.0, enlarged) if enlarged else None)]
 

@@ -132,6 +132,7 @@ def bearing_pair(solution: PairSolution) -> dict[str, Axes]:
     return dict(panels)
 
 
+@in_si
 def load_distribution(solution: BearingSolution, *, axes: Axes | None = None) -> Axes:
     """Draw the loads of the elements around the bearing, x to the right.
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.units import Scale, symbol
 from nacre.results import display
-
-if TYPE_CHECKING:
-    from nacre.contact.friction import FrictionSolution
-    from nacre.results.tables import Peaked
+from nacre.results.tables import Gridded, Peaked
 
 Array = npt.NDArray[np.float64]
 Ends = tuple[float, float]
@@ -24,6 +21,18 @@ THIN, ENLARGED = 0.1, 3.0
 """Share of the depth below which layers are enlarged, and their thicknesses that are drawn then."""
 HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
+
+
+class Step(Gridded, Protocol):
+    """A step of sliding or rolling."""
+
+    @property
+    def shift(self) -> tuple[float, float] | None:
+        """Shift along x and y [m]; none of rolling."""
+
+    @property
+    def force(self) -> tuple[float, float]:
+        """Tangential force along x and y."""
 
 
 class Axis(NamedTuple):
@@ -142,7 +151,7 @@ def contact_map(result: Peaked, values: Array, axis: Axis, caption: str) -> Map:
     return Map(caption, loaded, (x, y, axis))
 
 
-def loop_chart(steps: Sequence[FrictionSolution], axis: int) -> Chart:
+def loop_chart(steps: Sequence[Step], axis: int) -> Chart:
     """Return the force over the shift, along x or y, of steps of sliding."""
     shifts = np.array([step.shift[axis] for step in steps if step.shift is not None])
     forces = np.array([step.force[axis] for step in steps])

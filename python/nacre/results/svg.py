@@ -76,10 +76,14 @@ class Side:
         """Return the coordinates of round numbers, and these as text."""
         apart = ABREAST if self.end > self.start else STACKED
         low, high = sorted((self.low, self.high))
-        values = round_numbers(low, high, abs(self.end - self.start) / apart)
-        if self.is_log:
-            values = np.unique([float(f"{value:.1g}") for value in 10.0**values])
-            values = values[(values >= 10.0**low) & (values <= 10.0**high)]
+        most = abs(self.end - self.start) / apart
+        if self.is_log and high - low < 1.0:  # less than a decade
+            values = round_numbers(10.0**low, 10.0**high, most)
+        elif self.is_log:
+            values = np.array([float(f"{10.0**v:.1g}") for v in round_numbers(low, high, most)])
+            values = np.unique(values[(values >= 10.0**low) & (values <= 10.0**high)])
+        else:
+            values = round_numbers(low, high, most)
         return [(float(self.place(v)), f"{v:.6g}") for v in values]
 
 
@@ -243,6 +247,10 @@ def viridis(shares: Array) -> npt.NDArray[np.uint8]:
 def _thinned(curve: Curve, ends: Ends) -> tuple[Array, Array]:
     """Return the finite points of a curve between two places, not too many, with its extremes."""
     x, y = curve.x, curve.y
+    if x.size and curve.look != "points" and np.all(np.diff(x) >= 0):
+        between = [end for end in ends if x[0] < end < x[-1] and end not in x]
+        places = np.searchsorted(x, between)
+        x, y = np.insert(x, places, between), np.insert(y, places, np.interp(between, x, y))
     inside = np.isfinite(x) & np.isfinite(y) & (x >= ends[0]) & (x <= ends[1])
     x, y = x[inside], y[inside]
     if x.size <= MOST_POINTS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+import nacre
 from nacre import plot
 from nacre.bearing import (
     AngularContactBall,
@@ -41,7 +43,10 @@ def test_bars_are_the_loads() -> None:
 def test_each_row_and_ring_has_its_bars() -> None:
     """Two rows, of which the second carries more; bars stand about the angle of their element."""
     barrels = SphericalRoller(
-        **{"count": 15, "diameter": 10e-3, "length": 9e-3, "pitch_diameter": 60e-3},
+        count=15,
+        diameter=10e-3,
+        length=9e-3,
+        pitch_diameter=60e-3,
         contact_angle=0.2,
         profile_radius=32e-3,
     )
@@ -54,6 +59,16 @@ def test_each_row_and_ring_has_its_bars() -> None:
     middles = np.reshape([bar.get_x() + bar.get_width() / 2 for bar in bars], (4, 15))
     assert_close(middles.mean(axis=0), solution.angles[:15], atol=1e-9)
     assert_close(np.diff(middles, axis=0), bars[0].get_width(), rtol=1e-9)
+
+
+def test_loads_are_in_newtons_whatever_units_are_set() -> None:
+    with nacre.display_units("lbf-in-psi"):
+        axes = plot.load_distribution(STANDARD)
+        picture = base64.b64decode(STANDARD._repr_html_().partition("base64,")[2].partition("'")[0])
+    assert axes.get_title() == "load of each element [kN]"
+    bars: list[Any] = list(axes.patches)
+    assert_close([bar.get_height() for bar in bars], STANDARD.loads[:, 0] / 1e3)
+    assert b"load of each element [kN]" in picture
 
 
 def test_curves_are_the_pressures_and_alike_elements_share_one() -> None:

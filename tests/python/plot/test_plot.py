@@ -363,7 +363,7 @@ def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
     (arrows,) = (child for child in axes.collections if isinstance(child, Quiver))
     places = [
         np.searchsorted(1e6 * side, xy - 1e-6)
-        for side, xy in ((coated.x, arrows.X), (coated.y, arrows.Y))
+        for side, xy in ((coated.x, np.asarray(arrows.X)), (coated.y, np.asarray(arrows.Y)))
     ]
     assert_close(arrows.U, field.xz[*places])
     assert_close(arrows.V, field.yz[*places])

@@ -472,9 +472,9 @@ def test_ticks_lie_in_the_picture() -> None:
 
 def test_the_stress_over_depth_is_that_of_the_solution() -> None:
     (chart,) = quiet(lambda: [*stresses.depth_charts(ball())])
-    _, (curve,), axes, marks, inset = chart
-    assert [axis.unit for axis in axes] == ["m", "Pa"]
-    assert (marks, inset) == ([2e-6], (0.0, 6e-6))
+    (curve,) = chart.curves
+    assert [axis.unit for axis in chart.axes] == ["m", "Pa"]
+    assert (chart.marks, chart.inset) == ([2e-6], (0.0, 6e-6))
     x, y = ball().peak_position
     z, count = curve.x, np.count_nonzero(curve.x <= 2e-6)
     assert np.all(np.diff(z) >= 0)
