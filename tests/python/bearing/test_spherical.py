@@ -148,6 +148,7 @@ def test_half_of_the_diametral_clearance_brings_a_barrel_to_both_rings() -> None
     assert_close(apart, 0.0, atol=1e-11)
 
 
+@pytest.mark.slow
 def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
     row = SphericalRoller(**SIZE, contact_angle=0.0, rows=1)
     x = np.linspace(-5.5e-3, 5.5e-3, 201)
