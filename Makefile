@@ -41,12 +41,12 @@ test-rust: $(BUILD)
 	PYO3_PYTHON=none cargo run --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 
 test-python: $(WHEEL) $(DEV)
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist worksteal
 
 # Without what takes more than half a second each in Rust, or seconds each in Python: two minutes once built.
 quick: $(WHEEL) $(DEV) ## the tests of a daily edit: those of Rust and Python that are fast
 	cargo test --tests --features serde
-	$(BIN)/pytest -q -n 2 -m "not slow"
+	$(BIN)/pytest -q -n 2 --dist worksteal -m "not slow"
 
 check: check-rust check-python ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
 

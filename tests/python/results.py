@@ -158,11 +158,13 @@ WEAR: dict[str, Callable[[], nacre.types.WearHistory]] = {
 FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}
 
 
+RESULTS: dict[str, Callable[[], Any]] = {
+    **{**NORMAL, **FRICTION, **WEAR},
+    **{**INDENT, **FITS, **LISTED},
+}
+
+
 @functools.cache
 def solved(kind: str) -> Any:
     """Return the result of a kind; what it warns of is saved with it."""
-    makers: dict[str, Callable[[], Any]] = {
-        **{**NORMAL, **FRICTION, **WEAR},
-        **{**INDENT, **FITS, **LISTED},
-    }
-    return quiet(makers[kind])
+    return quiet(RESULTS[kind])

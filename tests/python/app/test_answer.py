@@ -110,7 +110,13 @@ def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys
         assert f"{steel['yield_safety_factor']:.3g} times" in parts["verdict"]["words"]
 
 
-@pytest.mark.parametrize("name", templates.KINDS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name in ("bearing", "roller") else [])
+        for name in templates.KINDS
+    ],
+)
 def test_reports_are_those_of_the_command_line(name: str, tmp_path: Path, capsys: Capture) -> None:
     path, saved = tmp_path / f"{name}.toml", tmp_path / f"{name}.html"
     card = cards().get(name)

@@ -315,6 +315,7 @@ def tilted() -> BearingSolution:
     return bearing.solve(force=(4450.0, 0.0, None), tilt=(None, 6e-4), **COARSE)
 
 
+@pytest.mark.slow
 def test_pressures_are_within_their_errors(tilted: BearingSolution) -> None:
     errors = tilted.report.discretisation
     assert errors is not None

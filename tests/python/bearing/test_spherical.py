@@ -148,6 +148,7 @@ def test_half_of_the_diametral_clearance_brings_a_barrel_to_both_rings() -> None
     assert_close(apart, 0.0, atol=1e-11)
 
 
+@pytest.mark.slow
 def test_barrel_row_is_a_cylindrical_one_with_the_drop_of_the_barrel() -> None:
     row = SphericalRoller(**SIZE, contact_angle=0.0, rows=1)
     x = np.linspace(-5.5e-3, 5.5e-3, 201)
@@ -367,33 +368,3 @@ def test_pictures_show_both_rows() -> None:
     legend = plot.load_distribution(fast).get_legend()
     words = [f"row {row}, {ring}" for row in (1, 2) for ring in ("inner", "outer")]
     assert [text.get_text() for text in legend.get_texts()] == words
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"rows": 3}, "rows must be 1 or 2, got 3"),
-        ({"contact_angle": 0.8}, "contact_angle must be at most π/4, got 0.8"),
-        ({"contact_angle": 0.1}, r"contact_angle must be larger for two rows.*overlap by .* mm"),
-        (
-            {"profile_radius": 48e-3},
-            r"profile_radius must be below those of the raceways, 47\.5997",
-        ),
-        ({"groove_radius": 46e-3}, "profile_radius must be below those of the raceways, 46 mm"),
-        ({"profile_radius": 5e-3}, "length must be below that at which the barrel is pointed"),
-        ({"pitch_diameter": None}, "pitch_diameter must be given"),
-        ({"length": -1.0}, "length must be finite and above 0, got -1"),
-    ],
-)
-def test_wrong_bearings_are_refused(given: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        spherical(**given)
-
-
-def test_moments_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"moment must be None.*aligns itself.*got \(None, 1\.0\)"):
-        spherical().solve(force=FORCE, moment=(None, 1.0))
-    with pytest.raises(ValueError, match="force along z must be at least 171"):
-        spherical(rows=1).solve(force=(1e3, None, 100.0))
-    with pytest.raises(TypeError, match="free_ends must be True or False, got 1"):
-        spherical(free_ends=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from pathlib import Path
 from typing import Any
@@ -180,6 +181,7 @@ parameters."solve.load" = [100]
 """
 
 
+@functools.cache
 def expected() -> fatigue.FatigueSummary:
     steel, dlc = nacre.Elastic(210e3, 0.3), nacre.Elastic(420e3, 0.3)
     body = nacre.HalfSpace(steel, [nacre.Layer(dlc, 15e-3, name="DLC")])

@@ -12,7 +12,7 @@ import pytest
 
 import nacre
 import support
-from bodies import BALL, COATED, HARD, HELD, NAN, STEEL, quiet
+from bodies import BALL, COATED, HARD, HELD, NAN, ROD, STEEL, quiet
 from nacre import bearing
 from shapes import SHAPES
 from support import errors, table
@@ -506,10 +506,128 @@ FIELD_TYPES = {
     "PRESSED.gradient(3.0)": "a word, a pair or a dict",
 }
 
+# Bearings and wear.
+
+ROLLERS = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
+BALL_SIZES = {"count": 7, "diameter": 11.5e-3, "pitch_diameter": 43.5e-3}
+BARRELS = {"count": 19, "diameter": 12e-3, "length": 11e-3, "pitch_diameter": 82e-3}
+BARRELS |= {"profile_radius": 46.5e-3, "contact_angle": 0.17}
+CONES = {"count": 17, "diameter": 8e-3, "length": 11e-3, "pitch_diameter": 48e-3}
+CONES |= {"contact_angle": 0.25}
+
+
+def made(kind: Any, sizes: dict[str, Any]) -> Callable[..., Any]:
+    """Return a function that makes a bearing of these sizes, but for those that are given."""
+    return lambda **given: kind(**sizes | given)
+
+
+def worn(**keywords: Any) -> Any:
+    """Call for a short history of a coated roller."""
+    coat = nacre.Layer(nacre.Elastic(300e9, 0.25), 2e-6, name="DLC")
+    given = {"load": 1e5, "grid": nacre.Grid.line(64, 6e-4), "rate": {0: 1e-17, "substrate": 1e-15}}
+    given |= {"sliding": 100.0, "steps": 2}
+    return nacre.wear(ROD, nacre.HalfSpace(STEEL, [coat]), **given | keywords)
+
+
+BEARINGS = {
+    "rollers(count=21)": "count must be at most 20",
+    "rollers(count=1)": "count must be at least 2, got 1",
+    "rollers(pitch_diameter=0.009)": "10 mm, for there is no room",
+    "rollers(clearance=-0.001)": "clearance must be at least -0.2 mm.*got -1 mm",
+    "rollers(length=0.0)": "length must be finite and above 0, got 0",
+    "rollers(diameter=NAN)": "diameter must be finite and above 0, got nan",
+    "rollers(raceway_diameters=(0.055, 0.0751))": "pitch_diameter must not be given",
+    "rollers(pitch_diameter=None)": "pitch_diameter or raceway_diameters must be",
+    "rollers(profile='round')": "profile must be a profile.*got 'round'",
+    "rollers(raceway_crown=(0.0, None))": "raceway_crown must not be 0",
+    "rollers(density=-1.0)": "density must be finite and above 0",
+    "rollers(element=nacre.HalfSpace(STEEL, ends=(0.0, 1.0)))": "element must have no ends",
+    "rollers(inner=nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, 0.001)]))": (
+        "inner must have an elastic substrate"
+    ),
+    "balls(osculation=(0.5, 0.53))": "osculation must be finite and above 0.5, got 0.5",
+    "balls(osculation=(0.515, 0.515), clearance=0.001)": "clearance must be below twice the "
+    r"distance.*0\.69 mm, got 1 mm",
+    "balls(pitch_diameter=None)": "pitch_diameter must be given",
+    "nacre.bearing.AngularContactBall(**BALL_SIZES, contact_angle=2.0)": "contact_angle must be "
+    r"below π/2, got 2\.0",
+    "rollers().solve(force=(1.0, None, 5.0))": "force along z must be None or 0: rollers without "
+    "a contact angle",
+    "rollers().solve(force=(1.0, None))": "force must be 3 numbers or None",
+    "rollers().solve(force=(INF, None, None))": "force must be finite",
+    "rollers().solve(force=(1.0, None, None), displacement=(1e-06, None, None))": (
+        "force and displacement must not both be given along x, got 1.0 and 1e-06"
+    ),
+    "rollers().solve(moment=(None, 1.0), tilt=(None, 0.0001))": "moment and tilt must not both "
+    "be given about y",
+    "rollers().solve(model='hertz')": 'model must be "solved" or "iso16281"',
+    "rollers().solve(cells=(50, 20))": "the first a multiple of 40, got",
+    "rollers().solve(tolerance=0.0)": "tolerance must be finite and above 0, got 0.0",
+    "rollers().solve(speed=NAN)": "speed must be finite, got nan",
+    "barrels(rows=3)": "rows must be 1 or 2, got 3",
+    "barrels(contact_angle=0.8)": "contact_angle must be at most π/4, got 0.8",
+    "barrels(contact_angle=0.1)": "contact_angle must be larger for two rows.*overlap by .* mm",
+    "barrels(profile_radius=0.048)": "profile_radius must be below those of the raceways, "
+    r"47\.5997",
+    "barrels(groove_radius=0.046)": "profile_radius must be below those of the raceways, 46 mm",
+    "barrels(profile_radius=0.005)": "length must be below that at which the barrel is pointed",
+    "barrels(pitch_diameter=None)": "pitch_diameter must be given",
+    "barrels(length=-1.0)": "length must be finite and above 0, got -1",
+    "tapered(contact_angle=0.0)": "contact_angle must be finite and above 0, got 0",
+    "tapered(contact_angle=0.8)": "contact_angle must be at most π/4, got 0.8",
+    "tapered(pitch_diameter=None)": "pitch_diameter must be given",
+    "tapered(length=0.3)": r"length must be below 225\.6.* mm, where the roller ends at its apex",
+    "tapered(count=19)": "count must be at most 18",
+    "barrels().solve(force=(20e3, 1e3, 2e3), moment=(None, 1.0))": "moment must be None.*aligns "
+    r"itself.*got \(None, 1\.0\)",
+    "barrels(rows=1).solve(force=(1e3, None, 100.0))": "force along z must be at least 171",
+    "tapered().solve(force=(1000.0, None, 100.0))": r"force along z must be at least 255\.342 "
+    r"N.*got 100\.0 N",
+}
+
+WEAR = {
+    "worn(rate=-1.0)": "rate must be finite and at least 0, got -1",
+    "worn(rate={'TiN': 1e-17})": "TiN",
+    "worn(rate={0: 1e-17})": "rate must hold a rate for substrate",
+    "worn(sliding=None)": "one of sliding, cycles and passes must be given, got none",
+    "worn(cycles=2.0)": "got sliding and cycles",
+    "worn(sliding=-1.0, steps='auto')": "sliding must be finite and at least 0, got -1",
+    "worn(sliding=-1.0)": "sliding must be finite and at least 0, got -1",
+    "worn(sliding=None, cycles=-2.0)": "cycles must be finite and at least 0, got -2",
+    "worn(sliding=INF)": "sliding must be finite and at least 0, got inf",
+    "worn(slip=np.zeros((1, 64)))": "slip must be above 0 somewhere",
+    "worn(steps=[50.0, 20.0, 100.0])": "steps must be finite, above 0 and increasing",
+    "worn(steps=[50.0])": "steps must end at 100",
+    "worn(steps='few')": 'steps must be "auto"',
+    "worn(scheme='explicit')": "scheme must be",
+    "worn(thickness='thin')": 'thickness must be "frozen" or "first order", got "thin"',
+    "worn(until='worn')": "until must be",
+    "worn(initial=np.full((1, 64), -1.0))": "initial",
+    "worn(load=None)": "load or approach must be given",
+}
+
+WEAR_KINDS = {
+    "worn(sliding=None, cycles=1.0, slide=5)": "slide must be a mapping of keywords, got 5",
+    "worn(sliding=None, passes=1.0, roll='x')": "roll must be a mapping of keywords, got",
+    "worn(sliding=None, cycles=1.0, slide={'friction': 0.3, 'steps': [5]})": "steps of slide "
+    r"must be a list of mappings, got \[5\]",
+    "worn(sliding=None, cycles=1.0, slide={'friction': 0.3, 5: 1})": "slide and roll must not "
+    "have 5",
+    "worn(sliding=1.0, steps=[[1.0]])": r"steps must be .*, got an array of shape \(1, 1\)",
+    "worn(steps=[])": r"steps must be .*, got an array of shape \(0,\)",
+    "worn(steps=2 ** 63)": "steps must be at least 1 and at most 1000000, got 9223372036854775808",
+    "worn(until=np.ones((2, 2)))": "until must be None or",
+    "worn(grid=np.ones((3, 3)))": "grid must be a nacre.Grid, got",
+    "worn(initial='x')": "initial must be a real array, got",
+    "worn(step_tolerance='a')": "step_tolerance must be a real number, got 'a'",
+    "worn(step_tolerance=0.01)": "step_tolerance must not be given beside steps",
+    "barrels(free_ends=1)": "free_ends must be True or False, got 1",
+}
+
 # Outside of the model.
 
-BEARING = bearing.CylindricalRoller(count=14, diameter=10e-3, length=9.6e-3, pitch_diameter=65e-3)
-BALLS = bearing.DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+BEARING = bearing.CylindricalRoller(**ROLLERS)  # type: ignore[arg-type]
+BALLS = bearing.DeepGrooveBall(**BALL_SIZES)  # type: ignore[arg-type]
 RADIAL = {"force": (1000.0, 0.0, None), "model": "iso16281"}
 WORDS = np.array(["solved", "iso16281"])
 
@@ -565,6 +683,10 @@ OUTSIDE = {
 NAMES = globals() | {
     "plot": nacre.plot,
     "fatigue": nacre.fatigue,
+    "rollers": made(bearing.CylindricalRoller, ROLLERS | {"clearance": 41e-6}),
+    "balls": made(bearing.DeepGrooveBall, BALL_SIZES),
+    "barrels": made(bearing.SphericalRoller, BARRELS),
+    "tapered": made(bearing.TaperedRoller, CONES),
     "replace": dataclasses.replace,
     "sweep": partial(nacre.sweep, {"shape": BALL, "body": STEEL, "grid": GRID, "load": 1.0}),
     "indented": partial(nacre.indent.solve, STEEL, nacre.indent.Tip.sphere(1e-6), load=1e-3),
@@ -577,10 +699,10 @@ NAMES = globals() | {
 
 
 @table(
-    *errors(ValueError, VALUES | FRICTION_VALUES | FIELD_VALUES),
+    *errors(ValueError, VALUES | FRICTION_VALUES | FIELD_VALUES | BEARINGS | WEAR),
     *(row for shape in SHAPES.values() for row in errors(ValueError, shape.refused)),
     *errors(TypeError, TYPES | FRICTION_TYPES | FIELD_TYPES),
-    *errors((TypeError, ValueError), OUTSIDE),
+    *errors((TypeError, ValueError), OUTSIDE | WEAR_KINDS),
     ("slides(force=(1.0, None), max_convolutions=1)", nacre.ConvergenceError, "max_convolutions"),
 )
 def test_bad_input_is_refused(call: str, kind: type[Exception], words: str) -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import copy
 import csv
 import json
-import pickle
 import sys
 from pathlib import Path
 from typing import Any
@@ -24,64 +22,15 @@ from nacre.results import values
 from results import DLC, GRID, solved
 from support import Patch, assert_close, python, resealed
 
-SAVED: dict[str, Any] = {
-    **{**results.NORMAL, **results.FRICTION, **results.WEAR},
-    **{**results.INDENT, **results.FITS, **results.LISTED},
-}
-FIELDS: dict[type, tuple[str, ...]] = {
-    nacre.Solution: ("pressure", "gap", "displacement", "x", "y", "line_load"),
-    nacre.types.FrictionSolution: (
-        *("traction", "displacement", "slip", "stick", "bound", "dissipation", "pressure"),
-    ),
-    nacre.indent.IndentSolution: ("load", "approach", "radius"),
-    nacre.indent.Fit: ("covariance",),
-}
 
-
-def same(found: Any, expected: Any) -> None:
-    """Compare every field to the bit, and the whole report."""
-    assert type(found) is type(expected)
-    for name in FIELDS.get(type(expected), ()):
-        field, due = getattr(found, name), getattr(expected, name)
-        assert type(field) is type(due)
-        assert np.asarray(field).tobytes() == np.asarray(due).tobytes()
-    if isinstance(expected, nacre.indent.Fit):
-        assert str(found) == str(expected)
-        assert (found.estimates, found.curves) == (expected.estimates, expected.curves)
-        assert (found.body, found.tip) == (expected.body, expected.tip)
-        return
-    assert found == expected
-    if isinstance(expected, nacre.indent.IndentSolution):
-        for name in ("body", "tip", "adhesion"):
-            assert getattr(found, name) == getattr(expected, name)
-        # The same program solves the same problem: no bit differs.
-        np.testing.assert_array_equal(found.state.load, expected.load)
-    elif isinstance(expected, nacre.types.FrictionSolution):
-        for name in ("force", "shift", "twist", "creepage", "spin", "direction", "report"):
-            assert getattr(found, name) == getattr(expected, name)
-    elif isinstance(expected, nacre.Solution):
-        assert found.report.seconds == expected.report.seconds
-
-
-@pytest.mark.parametrize("kind", SAVED)
-def test_files_and_copies_are_the_same_bit_for_bit(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", {**results.NORMAL, **results.FRICTION})
+def test_other_programs_read_the_file_as_the_dataset(kind: str, tmp_path: Path) -> None:
     result = solved(kind)
-    loaded = nacre.load(result.save(tmp_path / "a.nc"))
-    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
-    plain = result.to_dict()
-    if isinstance(result, nacre.indent.IndentSolution | nacre.indent.Fit):
-        plain = json.loads(json.dumps(plain))
-    for found in (
-        *(loaded, pickle.loads(pickle.dumps(loaded)), pickle.loads(pickle.dumps(result))),
-        *(copy.deepcopy(result), type(result).from_dict(plain)),
-    ):
-        same(found, result)
-    if kind in {**results.NORMAL, **results.FRICTION}:
-        read = xarray.load_dataset(tmp_path / "a.nc", engine="h5netcdf")
-        dataset = result.to_xarray()
-        assert read.equals(dataset)
-        for name, variable in dataset.variables.items():
-            assert read.variables[name].attrs == variable.attrs
+    read = xarray.load_dataset(result.save(tmp_path / "a.nc"), engine="h5netcdf")
+    dataset = result.to_xarray()
+    assert read.equals(dataset)
+    for name, variable in dataset.variables.items():
+        assert read.variables[name].attrs == variable.attrs
 
 
 def test_the_attributes_repeat_the_run() -> None:

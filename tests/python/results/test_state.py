@@ -3,8 +3,6 @@
 import copy
 import dataclasses
 import functools
-import json
-import pickle
 from collections.abc import Callable
 from typing import Any, get_type_hints
 
@@ -37,40 +35,6 @@ RESULTS: dict[str, Any] = {
 }
 
 every_result = pytest.mark.parametrize("kind", RESULTS)
-
-
-PLAIN = {int, float, str, bool, type(None), np.ndarray}
-
-
-def leaves(data: Any) -> set[type]:
-    if isinstance(data, dict):
-        assert all(isinstance(key, str) for key in data)
-        return set().union(*map(leaves, data.values()))
-    if isinstance(data, list):
-        return set().union(*map(leaves, data))
-    return {type(data)}
-
-
-@every_result
-def test_a_state_is_plain_data_that_gives_the_result_back(kind: str) -> None:
-    result = RESULTS[kind]
-    state = result.to_dict()
-    before = repr(state)
-    assert (state["format"], state["nacre"]) == (values.FORMAT, nacre.__version__)
-    assert state["kind"] == type(result).__name__
-    nested = {name: value for name, value in state.items() if not isinstance(value, dict)}
-    assert leaves(nested if "normal" in state else state) <= PLAIN
-    make, (reduced,) = result.__reduce__()
-    assert reduced["format"] == values.FORMAT
-    for found in (
-        type(result).from_dict(state),
-        values.decode(json.loads(json.dumps(values.encode(result)))),
-        make(reduced),
-        pickle.loads(pickle.dumps(result)),
-        copy.deepcopy(result),
-    ):
-        assert found == result
-    assert repr(state) == before  # reading leaves it alone
 
 
 LATER = {"rolling_direction", "uncertainty", "doubt"}

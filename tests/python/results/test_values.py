@@ -1,24 +1,29 @@
 """Public values pickle, copy and compare, and print as the call that makes them."""
 
 import copy
+import functools
 import itertools
 import json
 import pickle
+from collections.abc import Callable
+from operator import getitem
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import nacre
+import results
 from bodies import BALL, STEEL, quiet
 from nacre import fatigue
 from nacre._tools.units import written
 from nacre.results import values
 from nacre.results.base import Fields
-from results import LISTED, solved
+from results import solved
 from shapes import LOGARITHMIC, SAMPLED
 from shapes import VALUES as SHAPES
-from support import python
+from support import DATA, python
 
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
 COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=1e-5 / 3)])
@@ -105,10 +110,18 @@ VALUES = MADE_BY_A_CALL | {
     "fatigue summary": ASSESSED,
     "layer fatigue": ASSESSED.layers[-1],
     "interface fatigue": ASSESSED.interfaces[0],
-    **{name: solved(name) for name in LISTED},
 }
 
-every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())
+OF_OTHERS = {"indentation"}
+"""Attributes that are other objects, without an equality."""
+PLAIN = {int, float, str, bool, type(None), np.ndarray}
+
+
+@pytest.fixture(params=[*VALUES, *results.RESULTS])
+def value(request: pytest.FixtureRequest) -> Any:
+    """Return each value, and each result."""
+    name = request.param
+    return VALUES[name] if name in VALUES else solved(name)
 
 
 def public_classes() -> set[type]:
@@ -123,32 +136,101 @@ def attributes(value: object) -> dict[str, Any]:
 
 
 def test_every_public_class_has_a_value_here() -> None:
-    assert public_classes() - {type(value) for value in VALUES.values()} == set()
+    made = [*VALUES.values(), *map(solved, results.LISTED)]
+    assert public_classes() - {type(value) for value in made} == set()
 
 
-@every_value
-def test_copies_are_equal_and_other_things_are_not(value: object) -> None:
+def leaves(data: Any) -> set[type]:
+    if isinstance(data, dict):
+        assert all(isinstance(key, str) for key in data)
+        return set().union(*map(leaves, data.values()))
+    if isinstance(data, list):
+        return set().union(*map(leaves, data))
+    return {type(data)}
+
+
+def states(value: Any) -> list[Any]:
+    """Return what comes back from the plain data of a result."""
+    state = value.to_dict()
+    before = repr(state)
+    assert (state["format"], state["nacre"]) == (values.FORMAT, nacre.__version__)
+    assert state["kind"] == type(value).__name__
+    nested = {name: part for name, part in state.items() if not isinstance(part, dict)}
+    assert leaves(nested if "normal" in state else state) <= PLAIN
+    back = [type(value).from_dict(state)]
+    if type(value) is not nacre.types.WearHistory:  # its arrays are not written as text
+        back.append(values.decode(json.loads(json.dumps(values.encode(value)))))
+    assert repr(state) == before  # reading leaves it alone
+    return back
+
+
+def test_it_comes_back_to_the_bit_and_is_like_nothing_else(value: Any, tmp_path: Path) -> None:
     pickles = [pickle.dumps(value, protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
-    for back in (*map(pickle.loads, pickles), copy.copy(value), copy.deepcopy(value)):
+    copies = [*map(pickle.loads, pickles), copy.copy(value), copy.deepcopy(value)]
+    if hasattr(value, "to_dict"):
+        copies += states(value)
+    if hasattr(value, "save"):
+        copies.append(nacre.load(value.save(tmp_path / "a.nc")))
+        copies.append(pickle.loads(pickle.dumps(copies[-1])))
+        assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
+    own = attributes(value)
+    for back in copies:
         assert type(back) is type(value)
         assert back == value
-        assert repr(back) == repr(value)
-    kept_value = pickle.loads(pickles[-1])
-    kept = attributes(kept_value)
-    for name, attribute in attributes(value).items():
-        np.testing.assert_equal(kept[name], attribute, err_msg=name)
+        assert (repr(back), str(back)) == (repr(value), str(value))
+    for back in (copies[pickle.HIGHEST_PROTOCOL], copies[-1]):
+        for name, attribute in attributes(back).items():
+            if name not in OF_OTHERS:
+                np.testing.assert_equal(attribute, own[name], err_msg=name)
+                if isinstance(attribute, np.ndarray):
+                    assert attribute.tobytes() == own[name].tobytes(), name
+    for name, attribute in own.items():
         with pytest.raises(AttributeError):
             setattr(value, name, attribute)
     assert value != repr(value)
     assert value != 1.0
     assert value != None  # noqa: E711
     try:
-        own = hash(value)
+        digest = hash(value)
     except TypeError:
         return
-    assert hash(kept_value) == own
+    assert hash(copies[-1]) == digest
     with np.printoptions(precision=2):
-        assert hash(value) == own
+        assert hash(value) == digest
+
+
+def test_a_problem_comes_back_and_is_solved_alike(tmp_path: Path) -> None:
+    sticky = solved("sticky")
+    back = nacre.load(sticky.save(tmp_path / "a.nc"))
+    np.testing.assert_array_equal(back.state.load, sticky.load)
+
+
+STATES = json.loads((DATA / "states_0_1_0.json").read_text(encoding="utf-8"))["states"]
+"""States that version 0.1.0 wrote, before its release."""
+STORED: dict[str, tuple[Callable[[Any], object], tuple[Any, ...]]] = {
+    "creep_coefficients": (lambda one: one.c11, ("c11",)),
+    "life": (lambda one: one.l10, ("revolutions",)),  # those of L_10r, in millions
+    "one": (lambda one: one.radius, ("radius",)),
+    "maugis": (lambda one: one.outer_radius, ("outer_radius",)),
+    "volume": (lambda one: one.integral, ("integral",)),
+    "shakedown_map": (lambda one: one.limits, ("limits",)),
+    "fatigue": (lambda one: one.layers[0].depths, ("layers", 0, "depths")),
+    "summary": (
+        lambda one: one.to_dict()["layers"][0]["von_mises"]["value"],
+        ("layers", 0, "von_mises", "value"),
+    ),
+    "balls": (lambda one: one.loads, ("loads",)),
+    "line": (lambda one: one.pressure, ("pressure",)),
+}
+
+
+@pytest.mark.parametrize("name", STATES)
+def test_states_of_0_1_0_are_read_with_their_numbers(name: str) -> None:
+    result = values.decode(STATES[name])
+    number, keys = STORED[name]
+    np.testing.assert_array_equal(number(result), functools.reduce(getitem, keys, STATES[name]))
+    assert type(result).from_dict(result.to_dict()) == result
+    assert str(result)
 
 
 def test_a_notebook_shows_every_result_as_a_table() -> None:
@@ -157,6 +239,7 @@ def test_a_notebook_shows_every_result_as_a_table() -> None:
     state = test.at(load=[1e-3, 2e-3])
     shown = [
         *VALUES.values(),
+        *map(solved, results.LISTED),
         state.derivatives(["body.substrate.young"])["body.substrate.young"],
         test.curve(approach=[1e-8, 2e-8]),
         nacre.indent.Indentation(
@@ -185,7 +268,7 @@ def test_values_survive_as_plain_data(name: str) -> None:
 
 
 def test_different_values_differ() -> None:
-    for a, b in itertools.permutations(VALUES.values(), 2):
+    for a, b in itertools.permutations([*VALUES.values(), *map(solved, results.RESULTS)], 2):
         assert a != b
         assert not a == b
 

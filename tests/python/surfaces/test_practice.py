@@ -706,7 +706,11 @@ except MemoryError as error:
 @MARK("work", ["solve", "plan", "keep", "slide", "apply"])
 @MARK(
     ("limit", "used", "left"),
-    [("RLIMIT_AS", "VmSize:", 60), ("RLIMIT_AS", "VmSize:", 170), ("RLIMIT_DATA", "VmData:", 100)],
+    [
+        pytest.param("RLIMIT_AS", "VmSize:", 60, marks=pytest.mark.slow),
+        pytest.param("RLIMIT_AS", "VmSize:", 170, marks=pytest.mark.slow),
+        ("RLIMIT_DATA", "VmData:", 100),
+    ],
 )
 def test_a_limit_of_memory_is_an_error(limit: str, used: str, left: int, work: str) -> None:
     command = [sys.executable, "-c", LIMITED, limit, used, str(left), work]
