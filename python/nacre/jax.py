@@ -133,10 +133,10 @@ def solver(
             )
         names = tuple(sorted(parameters))
         contact.check(names, gap is not None)
-        parts = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
+        arrays = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
         if gap is not None:
-            parts.append(_checked("gap", gap, contact.grid.shape).ravel())
-        x = jnp.concatenate([jnp.atleast_1d(part) for part in parts] or [jnp.zeros(0)])
+            arrays.append(_checked("gap", gap, contact.grid.shape).ravel())
+        x = jnp.concatenate([jnp.atleast_1d(array) for array in arrays] or [jnp.zeros(0)])
         if names not in functions:
             functions[names] = _function(contact, names)
         flat = functions[names](x)

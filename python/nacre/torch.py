@@ -144,10 +144,10 @@ def solver(
             raise TypeError(f"parameters must be a dict of paths and numbers, got {parameters!r}")
         names = tuple(sorted(parameters))
         contact.check(names, gap is not None)
-        parts = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
+        tensors = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
         if gap is not None:
-            parts.append(_checked("gap", gap, contact.grid.shape))
-        flat = [part.reshape(-1) for part in parts]
+            tensors.append(_checked("gap", gap, contact.grid.shape))
+        flat = [tensor.reshape(-1) for tensor in tensors]
         x = torch.cat(flat or [torch.zeros(0, dtype=torch.float64)])
         pressure, values, in_contact = _Solve.apply(contact, names, x)
         shape = contact.grid.shape
@@ -248,7 +248,7 @@ class _Pull(_First):
         pressure: torch.Tensor,
         outputs: torch.Tensor,
     ) -> torch.Tensor:
-        x, pressure, outputs = (one.detach().numpy() for one in (x, pressure, outputs))
+        x, pressure, outputs = (tensor.detach().numpy() for tensor in (x, pressure, outputs))
         pulled = contact.pressure_pull(names, x, pressure)
         return _tensor(pulled + contact.outputs_pull(names, x, outputs))
 

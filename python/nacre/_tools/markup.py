@@ -35,7 +35,7 @@ class Parts:
     def __init__(self, text: str) -> None:
         _, *named = re.split(r"<!-- (\w+) -->\n", text)
         named_parts = zip(named[::2], named[1::2], strict=True)
-        self._parts = {name: Template(part.rstrip("\n")) for name, part in named_parts}
+        self._parts = {name: Template(snippet.rstrip("\n")) for name, snippet in named_parts}
 
     def __call__(self, name: str, /, **values: object) -> Markup:
         """Return a part with values in its places: markup, text, numbers, or several of them."""

@@ -353,17 +353,17 @@ def _ranges(
     materials = [*(layer.material for layer in body.layers), body.substrate]
     ranges: list[tuple[Model, float, float]] = []
     for k, name in enumerate(names):
-        if (one := models.get(name)) is None:
+        if (model := models.get(name)) is None:
             continue
         top, bottom = faces[k], faces[k + 1]
         if (
             ranges
-            and (ranges[-1][0], ranges[-1][2]) == (one, top)
+            and (ranges[-1][0], ranges[-1][2]) == (model, top)
             and materials[k - 1] == materials[k]
             and body.layers[k - 1].interface == "bonded"
         ):
             top = ranges.pop()[1]
-        ranges.append((one, top, bottom))
+        ranges.append((model, top, bottom))
     return ranges
 
 
@@ -419,17 +419,17 @@ def stress_volume(
     models: Mapping[int | str, Model] = (
         model if isinstance(model, Mapping) else {"substrate": model}
     )
-    if not models or not all(isinstance(one, Model) for one in models.values()):
+    if not models or not all(isinstance(rule, Model) for rule in models.values()):
         raise TypeError(f"model must be a model of a life, or models by layer, got {model!r}")
     plan = solution.stress_plan(body, threads)
     half, line = _half_width(solution), solution.grid.is_line
-    slopes = {one.slope(line=is_line(solution)) for one in models.values()}
+    slopes = {rule.slope(line=is_line(solution)) for rule in models.values()}
     if len(slopes) > 1:
         raise ValueError(f"models must have the same slope e, got {sorted(slopes)}")
     (slope,) = slopes
     total, change, largest = 0.0, 0.0, 0.0
     across = 1.0 if line else solution.grid.spacing[0]
-    for one, top, bottom in _ranges(plan.body, models, DEEPEST * half):
+    for rule, top, bottom in _ranges(plan.body, models, DEEPEST * half):
         begin = SHALLOWEST * half
         ranges = [(max(top, begin), bottom)]
         if top < begin:
@@ -442,12 +442,12 @@ def stress_volume(
             z, weights = _nodes(first, last)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)  # the change says it
-                highest = _highest(one.shear(plan.stress(z)))
+                highest = _highest(rule.shear(plan.stress(z)))
             highest = np.nan_to_num(highest)  # beyond a free end there is nothing
-            above = np.maximum(highest - one.limit, 0.0)
+            above = np.maximum(highest - rule.limit, 0.0)
             largest = max(largest, float(highest.max()))
-            inside = above ** one.power(slope) * z[:, None] ** -one.h
-            sums.append(float((weights[:, None] * inside).sum()) * across * one.weight)
+            inside = above ** rule.power(slope) * z[:, None] ** -rule.h
+            sums.append(float((weights[:, None] * inside).sum()) * across * rule.weight)
         total += sums[0]
         change += sum(sums[1:])
     extremes, notes = (0.0, 0.0, 0.0), tuple[str, ...]()
@@ -455,9 +455,9 @@ def stress_volume(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
             summary = plan.summary()
-        coats = [one.tension[0] for one in summary.layers[: len(plan.body.layers)]]
-        shears = [one.shear[0] for one in summary.interfaces]
-        tensions = [one.tension[0] for one in summary.interfaces]
+        coats = [layer.tension[0] for layer in summary.layers[: len(plan.body.layers)]]
+        shears = [interface.shear[0] for interface in summary.interfaces]
+        tensions = [interface.tension[0] for interface in summary.interfaces]
         notes = tuple(text for text in summary.warnings if "substrate" not in text)
         extremes = max(coats), max(shears), max(tensions)
     share = change / total if total > 0 else 0.0

@@ -244,9 +244,9 @@ def life_modification_factor(
     a, b = next((a, b) for end, a, b in known.ranges if kappa < end)
     # At κ = 0.1 the difference is 0 but for the rounding of the standard's numbers.
     oil = max(0.0, known.c - a / kappa**b) ** known.m
-    rest = 1 - oil * (ratio / (known.thrust if thrust else 1.0)) ** known.n
+    base = 1 - oil * (ratio / (known.thrust if thrust else 1.0)) ** known.n
     least = (0.1 / MOST_FACTOR) ** (1 / known.k)
-    return float(0.1 * max(rest, least) ** -known.k)
+    return float(0.1 * max(base, least) ** -known.k)
 
 
 def fatigue_load_limit(bearing: Bearing) -> float:

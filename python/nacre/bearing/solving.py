@@ -113,8 +113,8 @@ class BearingOptions:
         tolerance = above("tolerance", self.tolerance)
         if tolerance >= 1:
             raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
-        one, other = core.vector("cells", 2, self.cells)
-        cells = core.integer("cells", one), core.integer("cells", other)
+        along, across = core.vector("cells", 2, self.cells)
+        cells = core.integer("cells", along), core.integer("cells", across)
         multiple = bearing.cells_multiple
         if min(cells) < 8 or cells[0] % multiple:
             words = f", the first a multiple of {multiple}" if multiple > 1 else ""
@@ -148,12 +148,12 @@ def read_conditions(
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
-    others = ["displacement", "displacement", "displacement", "tilt", "tilt"]
+    motions = ["displacement", "displacement", "displacement", "tilt", "tilt"]
     axes = "xyzxy"
     for k in range(5):
         if loads[k] is not None and moved[k] is not None:
             raise ValueError(
-                f"{words[k]} and {others[k]} must not both be given "
+                f"{words[k]} and {motions[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
     return loads, moved
@@ -377,7 +377,7 @@ def solution_of(
     kinematics = problem.kinematics
     normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
     total = state.wanting + problem.loads
-    loaded = {key: one for key, one in contacts.items() if carrying(loads)[key]}
+    loaded = {key: contact for key, contact in contacts.items() if carrying(loads)[key]}
     notes = (
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),

@@ -75,9 +75,11 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
 
 def pair_verdict(bearings: Mapping[str, BearingSolution]) -> Verdict:
     """Return the verdict on bearings on one shaft, by name: the worst decides, and comes first."""
-    verdicts = [(name, bearing_verdict(one)) for name, one in bearings.items()]
+    verdicts = [(name, bearing_verdict(bearing)) for name, bearing in bearings.items()]
     verdicts.sort(key=lambda row: (LEVELS.index(row[1].level), row[1].factor or math.inf))
-    words, *lines = [f"{name} bearing: {s}" for name, one in verdicts for s in one.sentences]
+    words, *lines = [
+        f"{name} bearing: {s}" for name, verdict in verdicts for s in verdict.sentences
+    ]
     name, worst = verdicts[0]
     decided_by = worst.decided_by and f"{name} bearing, {worst.decided_by}"
     return replace(worst, words=words, lines=tuple(lines), decided_by=decided_by)

@@ -166,13 +166,13 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         results = results_of(case_file, case_file.arguments())
     solution = results["bearing"]
-    added = {name: one for name, one in results.items() if one is not solution}
+    added = {name: result for name, result in results.items() if result is not solution}
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         with shown_in(case_file.units):
             state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}
-        state |= {name: one._state() for name, one in added.items()}
+        state |= {name: result._state() for name, result in added.items()}
         print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
     else:
         with shown_in(case_file.units):
@@ -212,15 +212,19 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
         return record
 
     record = {"units": units} | converted(state, {row.name: row.si() for row in BEARING})
-    for name, one in added.items():
-        record[name] = converted(state[name], {row.name: one._si(row) for row in one._QUANTITIES})
+    for name, result in added.items():
+        record[name] = converted(
+            state[name], {row.name: result._si(row) for row in result._QUANTITIES}
+        )
     return record
 
 
 def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     """Return the verdicts on results, by the names of these; some have none."""
-    judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
-    verdicts = {name: one._state() for name, one in judged.items()}
+    judged = {
+        name: result.verdict for name, result in results.items() if hasattr(result, "verdict")
+    }
+    verdicts = {name: verdict._state() for name, verdict in judged.items()}
     return {"verdict": verdicts} if verdicts else {}
 
 
@@ -233,10 +237,10 @@ def _solve(
         results = results_of(case_file, arguments)
     outcome = results["solution"]
     solution = last_of(outcome)  # of a history, the last step is printed
-    summaries = {name: one for name, one in results.items() if one is not outcome}
+    summaries = {name: result for name, result in results.items() if result is not outcome}
     steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
-        extremes = {name: one.to_dict() for name, one in summaries.items()}
+        extremes = {name: result.to_dict() for name, result in summaries.items()}
         extremes |= _verdicts(summaries)
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
@@ -260,10 +264,10 @@ def _solve_wear(
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed history has them
         results = results_of(case_file, arguments)
     history = results["wear"]
-    summaries = {name: one for name, one in results.items() if one is not history}
+    summaries = {name: result for name, result in results.items() if result is not history}
     if as_json:
         numbers = _worn(history) | {"units": case_file.units}
-        extremes = {name: one.to_dict() for name, one in summaries.items()}
+        extremes = {name: result.to_dict() for name, result in summaries.items()}
         print(json.dumps(_plain(numbers | extremes | _verdicts(results)), indent=2))
     else:
         print(history, *summaries.values(), sep="\n\n")

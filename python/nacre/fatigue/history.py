@@ -154,11 +154,11 @@ class Rolling:
                 rows = COARSER if nx % COARSER == 0 and nx // COARSER >= ROWS else 1
                 across, nx = across * rows, nx // rows
                 sides = ((0, 0), ((count - count // COARSER) // 2,) * 2)
-                parts = [
+                averages = [
                     load.reshape(nx, rows, count // COARSER, COARSER).mean(axis=(1, 3))
                     for load in merged
                 ]
-                merged = [np.pad(part, sides) for part in parts]
+                merged = [np.pad(average, sides) for average in averages]
             if self.grid.is_line:
                 grid = core.Grid.line(count, count * step, middle)
             else:
@@ -193,15 +193,15 @@ class Rolling:
         """
         slides = (0.0, 1.0) if friction and not self.has_tractions else (0.0,)
         own = [self._own(depths, side, slide, self.x) for slide in slides]
-        ys, parts = [self.grid.y], [[self._array(field) for field in own]]
+        ys, blocks = [self.grid.y], [[self._array(field) for field in own]]
         for level in self.levels:
             ys.append(level.grid.y[level.used])
-            parts.append(
+            blocks.append(
                 [self._beyond(level, depths, side, slide)[:, level.used] for slide in slides]
             )
         y = np.concatenate(ys)
         order = np.argsort(y, kind="stable")
-        stresses = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
+        stresses = [np.concatenate(row, axis=1)[:, order] for row in zip(*blocks, strict=True)]
         added = (
             stresses[1] - stresses[0] if len(stresses) == 2 else np.zeros((len(depths), y.size, 6))
         )
@@ -268,7 +268,7 @@ class Rolling:
         inside = apart >= self.grid.spacing[1]
         states = States(states.y[inside], states.normal[:, inside], states.tangential[:, inside])
         for x, y in ends.tolist():
-            own, *slid = (self._array(self._own([0.0], "below", one, x, y)) for one in slides)
+            own, *slid = (self._array(self._own([0.0], "below", slide, x, y)) for slide in slides)
             at = int(np.searchsorted(states.y, y))
             added = slid[0] - own if slid else np.zeros_like(own)
             states = States(
@@ -296,13 +296,13 @@ def _lagrange(nodes: Array, at: object) -> Array:
     weights = [
         np.prod(
             [
-                (at - nodes[..., other]) / (nodes[..., one] - nodes[..., other])
-                for other in range(nodes.shape[-1])
-                if other != one
+                (at - nodes[..., m]) / (nodes[..., k] - nodes[..., m])
+                for m in range(nodes.shape[-1])
+                if m != k
             ],
             axis=0,
         )
-        for one in range(nodes.shape[-1])
+        for k in range(nodes.shape[-1])
     ]
     return np.stack(weights, axis=-1)
 

@@ -337,8 +337,8 @@ def contact_point(
         columns = [*[np.ones_like(x), x][:terms], np.maximum(x - zero, 0.0) ** exponent]
         matrix = np.stack(columns, axis=1)
         best = np.asarray(np.linalg.lstsq(matrix, y)[0], dtype=np.float64)
-        rest = y - matrix @ best
-        return (float(rest @ rest) if best[-1] > 0 else math.inf), best, matrix
+        misfit = y - matrix @ best
+        return (float(misfit @ misfit) if best[-1] > 0 else math.inf), best, matrix
 
     # A curve that starts in contact has its zero before the first point; the last needs some after.
     trials = np.linspace(-1.0, float(np.sort(x)[-3]), CANDIDATES, endpoint=False)

@@ -73,10 +73,10 @@ def tabor_parameter(
     974.7
     """
     ranges = {"distance": distance, "strength": strength}
-    one = {name: value for name, value in ranges.items() if value is not None}
-    if len(one) != 1:
+    choice = {name: value for name, value in ranges.items() if value is not None}
+    if len(choice) != 1:
         raise ValueError(f"exactly one of distance and strength must be given, got {ranges}")
-    numbers = {"radius": radius, "modulus": modulus, "work": work, **one}
+    numbers = {"radius": radius, "modulus": modulus, "work": work, **choice}
     for name, value in numbers.items():
         numbers[name] = core.real(name, value)
         if not 0 < numbers[name] < math.inf:
@@ -246,9 +246,9 @@ def gao_weights(ratio: float, poisson: float) -> tuple[float, float]:
     ``I1 = 2/π atan ξ + ξ/π ln(1 + 1/ξ²)``.
     """
     log = ratio * math.log1p(1 / ratio**2)
-    part = (1 - 2 * poisson) * log - ratio / (1 + ratio**2)
+    poisson_term = (1 - 2 * poisson) * log - ratio / (1 + ratio**2)
     base = 2 / math.pi * math.atan(ratio)
-    return base + part / (2 * math.pi * (1 - poisson)), base + log / math.pi
+    return base + poisson_term / (2 * math.pi * (1 - poisson)), base + log / math.pi
 
 
 def _dimitriadis(

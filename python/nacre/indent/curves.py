@@ -214,11 +214,11 @@ class Curve:
         """
         if self.time is None:
             raise ValueError("the curve must have a time for its drift to be known")
-        part = self._drift_hold()
-        if part is None:
+        hold = self._drift_hold()
+        if hold is None:
             first, last = arrival(self.force), departure(self.depth, self.force)
-            part = slice((first + last) // 2, last + 1)
-        time, depth = self.time[part], self.depth[part]
+            hold = slice((first + last) // 2, last + 1)
+        time, depth = self.time[hold], self.depth[hold]
         if time.size < LEAST_POINTS or np.ptp(time) == 0:
             raise ValueError(
                 f"the curve must have a hold of {LEAST_POINTS} points at different times, got "
@@ -226,8 +226,8 @@ class Curve:
             )
         since = time - time.mean()
         rate = float(since @ depth / (since @ since))
-        rest = depth - depth.mean() - rate * since
-        error = math.sqrt(float(rest @ rest) / (time.size - 2) / float(since @ since))
+        residuals = depth - depth.mean() - rate * since
+        error = math.sqrt(float(residuals @ residuals) / (time.size - 2) / float(since @ since))
         return Drift(rate, error, time.size)
 
     def between(
@@ -492,7 +492,7 @@ def read(
     is_spring = spring_constant is not None
     curves = []
     chosen = chosen_tables(
-        where, file_tables, segment, lambda one: has_curve(one, choices, is_spring)
+        where, file_tables, segment, lambda table: has_curve(table, choices, is_spring)
     )
     for number, table in chosen.items():
         depths, forces, times = quantities(where, table, choices, units, spring_constant)

@@ -16,7 +16,7 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import among
 from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
-from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
+from nacre.indent._profile import Estimate, estimated, interval, minimum, reasons, shifted_starts
 from nacre.indent._residuals import Examination, examine, likeliest
 from nacre.indent._result import UNFIT, Fit
 from nacre.indent.checks import check, contact_point, suspicious_units
@@ -192,7 +192,7 @@ def _fitted(
     best = _best(model, start)
     minima: list[tuple[Array, float]] = []
     if profile:
-        places = others(model, best.x) if starts is None else _places(model, starts, best.x)
+        places = shifted_starts(model, best.x) if starts is None else _places(model, starts, best.x)
         for number, place in enumerate(places, 1):
             tell(f"start {number} of {len(places)}")
             x = minimum(model, np.clip(place, model.low, model.high), rough=True)
@@ -248,7 +248,7 @@ def _doubts(curves: Sequence[Curve], system: System) -> list[str]:
         for curve in curves:
             check(curve)
             _check_units(curve, system)
-    return [str(one.message) for one in caught if one.category is core.NacreWarning]
+    return [str(warning.message) for warning in caught if warning.category is core.NacreWarning]
 
 
 def _check_units(curve: Curve, system: System) -> None:
@@ -268,9 +268,9 @@ def _check_units(curve: Curve, system: System) -> None:
         if max(moduli) > WEAK * min(moduli):
             return
         modulus = math.sqrt(max(moduli) * min(moduli))
-        other = system.counterbody
-        if other is not None and isinstance(other.substrate, core.Elastic):
-            modulus = 1 / (1 / modulus + 1 / other.substrate.plane_strain_modulus)
+        counterbody = system.counterbody
+        if counterbody is not None and isinstance(counterbody.substrate, core.Elastic):
+            modulus = 1 / (1 / modulus + 1 / counterbody.substrate.plane_strain_modulus)
     sentence = suspicious_units(curve, tip_size=size, modulus=modulus)
     if sentence is not None:
         name = f" of {curve.name!r}" if curve.name else ""
@@ -379,7 +379,7 @@ def _result(
         low, high = (_value(unknown.value, end) for end in pair)
         intervals[unknown.name] = low, high
     load, _ = model.loads(x)
-    rest = -model.at(x)[0][: load.size] / model.weight
+    residuals = -model.at(x)[0][: load.size] / model.weight
     approach = model.approach(x)
     sigma = 1 / float(model.weight[0]) * (1.0 if model.is_known else math.sqrt(best.variance))
     with np.errstate(invalid="ignore"):
@@ -397,9 +397,9 @@ def _result(
         reasons=reasons(model, best, ends, minima)
         | dict.fromkeys(model.free if examination.warnings else (), UNFIT),
         sensitivity=examination.sensitivity,
-        residuals=[rest[part] for part in model.parts],
-        loads=[load[part] for part in model.parts],
-        approaches=[approach[part] for part in model.parts],
+        residuals=[residuals[rows] for rows in model.parts],
+        loads=[load[rows] for rows in model.parts],
+        approaches=[approach[rows] for rows in model.parts],
         chi2=best.chi2,
         dof=model.dof,
         sigma=sigma,

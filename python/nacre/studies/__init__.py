@@ -308,10 +308,10 @@ def _describe(
             )
         return {"threads": 1, **arguments}, None
     if "rate" in arguments:
-        if others := arguments.keys() - WEAR:
+        if surplus := arguments.keys() - WEAR:
             raise TypeError(
                 f"case must give arguments of nacre.wear without store and progress beside a rate, "
-                f"got {sorted(others)}"
+                f"got {sorted(surplus)}"
             )
         return {"threads": 1, **arguments}, None
     unknown = set(arguments) - ARGUMENTS

@@ -42,14 +42,14 @@ def identity_of(
         name: output if isinstance(output, str) else _part(output, name, unknown)
         for name, output in outputs.items()
     }
-    parts: dict[str, object] = {"outputs": output_parts}
+    data: dict[str, object] = {"outputs": output_parts}
     if stress:
-        parts["stress"] = _part(dict(stress), "stress", unknown)
+        data["stress"] = _part(dict(stress), "stress", unknown)
     if fatigue:
-        parts["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
+        data["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
     if version is not None:
-        parts["version"] = version
-    return Identity(parts, unknown)
+        data["version"] = version
+    return Identity(data, unknown)
 
 
 def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
@@ -65,8 +65,8 @@ def _part(value: object, place: str, unknown: list[str], inside: tuple[object, .
     if any(value is outer for outer in inside):
         return "recursion"
 
-    def of(part: object, name: str = "") -> object:
-        return _part(part, place + name, unknown, (*inside, value))
+    def of(item: object, name: str = "") -> object:
+        return _part(item, place + name, unknown, (*inside, value))
 
     if isinstance(value, list | tuple):
         return [of(item, f"[{k}]") for k, item in enumerate(value)]

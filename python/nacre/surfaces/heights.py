@@ -431,11 +431,11 @@ def without_sentinels(heights: Array) -> Array:
         return heights
     measured = np.isfinite(heights)
     sentinels = measured & np.isin(heights, SENTINELS)
-    rest = heights[measured & ~sentinels]
-    if not sentinels.any() or rest.size < LEAST_MEASURED * heights.size:
+    values = heights[measured & ~sentinels]
+    if not sentinels.any() or values.size < LEAST_MEASURED * heights.size:
         return heights
-    away = np.maximum(rest.min() - heights, heights - rest.max())
-    return np.where(sentinels & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
+    away = np.maximum(values.min() - heights, heights - values.max())
+    return np.where(sentinels & (away > max(np.ptp(values), 1.0)), np.nan, heights)
 
 
 def extremes(heights: Array) -> tuple[float, float]:
@@ -469,9 +469,9 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
         return tuple(hits[0] for hits in columns)
     for pair in ((0, 1), (1, 2)):
         if _are_places(values[:, pair]):
-            rest = [k for k in range(width) if k not in pair]
-            rest = [k for k in rest if not (k == 0 and is_counter(values[:, 0]))]
-            return (*pair, *rest) if len(rest) == 1 else pair
+            indices = [k for k in range(width) if k not in pair]
+            indices = [k for k in indices if not (k == 0 and is_counter(values[:, 0]))]
+            return (*pair, *indices) if len(indices) == 1 else pair
     return None
 
 
@@ -561,8 +561,8 @@ def _is_profile(headings: Sequence[Column], values: Array) -> bool:
     """
     words = first_words(headings)
     places, across, up = (any(word in names for word in words) for names in AXES)
-    others = [word for word in words if word in TIMES | NUMBERED]
-    if places and up and not across and len(words) <= len(others) + 2:
+    counters = [word for word in words if word in TIMES | NUMBERED]
+    if places and up and not across and len(words) <= len(counters) + 2:
         return True
     if any(word in TIMES for word in words) and len(words) <= FEWEST_LINES:
         return True
@@ -604,11 +604,11 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
     left, top = values[corner:, 0], values[0, corner:]
     if corner and is_counter(top) and is_counter(left):
         return values[1:, 1:]
-    for which, line, others in (
+    for which, line, lines in (
         ("column", left, values[corner:, 1:].T),
         ("line", top, values[1:, corner:]),
     ):
-        if not _rises_evenly(line) or any(map(_rises_evenly, others)):
+        if not _rises_evenly(line) or any(map(_rises_evenly, lines)):
             continue
         first = headings[0].name.lower().strip("# .") if headings else None
         if which == "column" and is_counter(line) and first in NUMBERED:
@@ -651,7 +651,9 @@ def _headings(
         return [], near[-1]
     columns = [column_of(text) for text in names]
     if units:
-        columns = [one._replace(unit=_bare_unit(u)) for one, u in zip(columns, units, strict=True)]
+        columns = [
+            column._replace(unit=_bare_unit(u)) for column, u in zip(columns, units, strict=True)
+        ]
     return columns, near[-2] if len(near) > 1 else ""
 
 
@@ -686,7 +688,7 @@ def _content(
     for number, line in enumerate(decoded(path).replace("\u2212", "-").splitlines(), start=1):
         stripped = line.strip(" \r\n\f\v\0\x1a")
         if stripped.startswith(("#", "%")):
-            name, colon, value = (part.strip() for part in stripped[1:].partition(":"))
+            name, colon, value = (text.strip() for text in stripped[1:].partition(":"))
             is_title = name.lower() == "channel" and lines
             (lines if is_title else comments).append((number, stripped))
             if colon:

@@ -194,7 +194,7 @@ def _check_size(
         np.diff(heights[:: every[0]], axis=1) / dy,
     ]
     slopes = [np.abs(step[np.isfinite(step)]) for step in steps]
-    slope = min(float(np.median(one)) if one.size else 0.0 for one in slopes)
+    slope = min(float(np.median(steps)) if steps.size else 0.0 for steps in slopes)
     is_flat = side > WIDEST and span < FLATTEST * side
     if span > TALLEST * side or slope > STEEPEST or is_flat:
         remedy = (

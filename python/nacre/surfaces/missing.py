@@ -96,8 +96,8 @@ class _Level:
         for _ in range(SWEEPS - 1):
             field += DAMPING * (load - self.apply(field)) / self.degrees
         block, coarser = self._coarser
-        rest = _sums(block, load - self.apply(field), coarser.degrees.size)
-        field += STIFFER * coarser.cycle(rest)[block]
+        residual = _sums(block, load - self.apply(field), coarser.degrees.size)
+        field += STIFFER * coarser.cycle(residual)[block]
         for _ in range(SWEEPS):
             field += DAMPING * (load - self.apply(field)) / self.degrees
         return field
