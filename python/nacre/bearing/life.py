@@ -515,57 +515,68 @@ def life_ratio(
     if isinstance(solution, BearingSolution) != isinstance(reference, BearingSolution):
         raise TypeError("solution and reference must both be contacts, or both bearings")
     check_progress(progress)
-    if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
-        with lasting("stresses", progress) as tell:
-            one, other = (
-                _of_bearing(bearing, model, tell, k / 2)
-                for k, bearing in enumerate((solution, reference))
-            )
-        kinds = OF_RINGS
-    else:
-        one, other = (
-            stress_volume(contact, model, body=body)  # type: ignore[arg-type]
-            for contact in (solution, reference)
-        )
-        kinds = " of contacts, "
-    if one.slope != other.slope:
+    volume, standard = _stress_volumes(solution, reference, model, body, progress)
+    if volume.slope != standard.slope:
         raise ValueError(
-            f"solution and reference must have the same slope e, got {one.slope:.5g} and "
-            f"{other.slope:.5g}: give the model an e"
+            f"solution and reference must have the same slope e, got {volume.slope:.5g} and "
+            f"{standard.slope:.5g}: give the model an e"
         )
-    if not math.isfinite(one.integral + other.integral):
+    if not math.isfinite(volume.integral + standard.integral):
         raise ValueError("model must have smaller exponents: its integrals overflow")
-    if one.integral == 0 and other.integral == 0:
+    if volume.integral == 0 and standard.integral == 0:
         raise ValueError(
             "solution and reference must not both have infinite lives: the largest stresses, "
-            f"{one.largest:.4g} and {other.largest:.4g} Pa, are below the fatigue limit"
+            f"{volume.largest:.4g} and {standard.largest:.4g} Pa, are below the fatigue limit"
         )
-    notes = one.notes
-    if one.integral == 0:
+    notes = volume.notes
+    if volume.integral == 0:
         ratio = math.inf
         text = "the life is infinite in this model: no stress is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
         notes = (*notes, text)
     else:
-        ratio = (other.integral / one.integral) ** (1 / one.slope)
-    if other.integral == 0:
+        ratio = (standard.integral / volume.integral) ** (1 / volume.slope)
+    if standard.integral == 0:
         text = "the ratio is 0: no stress of the reference is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
         notes = (*notes, text)
     models = model.values() if isinstance(model, Mapping) else [model]
+    kinds = OF_RINGS if isinstance(solution, BearingSolution) else " of contacts, "
     names = " and ".join(dict.fromkeys(type(rule).__name__ for rule in models))
     return LifeRatio(
         ratio,
-        one.slope,
-        one.largest,
-        other.largest,
-        max(abs(one.change), abs(other.change)),
-        one.coating_tension,
-        one.interface_shear,
-        one.interface_tension,
+        volume.slope,
+        volume.largest,
+        standard.largest,
+        max(abs(volume.change), abs(standard.change)),
+        volume.coating_tension,
+        volume.interface_shear,
+        volume.interface_tension,
         f"{names}{kinds}a model: ratios of equal materials only",
         notes,
     )
+
+
+def _stress_volumes(
+    solution: Solution | BearingSolution,
+    reference: Solution | BearingSolution,
+    model: Models,
+    body: Member,
+    progress: Callable[[float], object] | None,
+) -> tuple[StressVolume, StressVolume]:
+    """Return the integrals of two contacts, or of two bearings."""
+    if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
+        with lasting("stresses", progress) as tell:
+            volume, standard = (
+                _of_bearing(bearing, model, tell, k / 2)
+                for k, bearing in enumerate((solution, reference))
+            )
+    else:
+        volume, standard = (
+            stress_volume(contact, model, body=body)  # type: ignore[arg-type]
+            for contact in (solution, reference)
+        )
+    return volume, standard
 
 
 def _of_bearing(

@@ -352,27 +352,9 @@ def solution_of(
 ) -> BearingSolution:
     """Return the solution that a state is."""
     places, force = state.places, state.reaction.force
-    loads = force[..., 0]
-    laminae, pressures, sizes = None, None, None
-    contacts: dict[tuple[int, int], Solution] = {}
-    if isinstance(problem.law, Solved):
-        contacts = dict(state.reaction.contacts)
-        peaks = np.zeros(loads.shape)
-        sizes = problem.law.sizes()
-        for key, contact in contacts.items():
-            peaks[key] = contact.peak_pressure
-        if isinstance(bearing, RollerBearing):
-            laminae, pressures = fields = np.zeros((2, *loads.shape, LAMINAE))
-            for key, contact in contacts.items():
-                fields[:, *key] = binned(bearing, contact)
-    elif isinstance(problem.law, Slices):
-        laminae = problem.law.loads(places)
-        assert isinstance(bearing, RollerBearing)
-        pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
-        peaks = pressures.max(-1)
-    else:
-        assert isinstance(problem.law, Hertzian)
-        peaks = problem.law.pressures(loads)
+    loads, contacts = force[..., 0], dict(state.reaction.contacts)
+    sizes = problem.law.sizes() if isinstance(problem.law, Solved) else None
+    peaks, laminae, pressures = _contact_fields(bearing, problem.law, state)
     edges = np.full(loads.shape, np.nan) if pressures is None else edge_pressure(pressures)
     kinematics = problem.kinematics
     normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
@@ -413,6 +395,29 @@ def solution_of(
         report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
         _contacts=dict(contacts),
     )
+
+
+def _contact_fields(
+    bearing: Bearing, law: Law, state: State
+) -> tuple[Array, Array | None, Array | None]:
+    """Return the peak pressures, and the loads and pressures of the laminae of rollers."""
+    loads = state.reaction.force[..., 0]
+    if isinstance(law, Slices):
+        assert isinstance(bearing, RollerBearing)
+        laminae = law.loads(state.places)
+        pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
+        return pressures.max(-1), laminae, pressures
+    if isinstance(law, Hertzian):
+        return law.pressures(loads), None, None
+    contacts, peaks = state.reaction.contacts, np.zeros(loads.shape)
+    for key, contact in contacts.items():
+        peaks[key] = contact.peak_pressure
+    if not isinstance(bearing, RollerBearing):
+        return peaks, None, None
+    fields = np.zeros((2, *loads.shape, LAMINAE))
+    for key, contact in contacts.items():
+        fields[:, *key] = binned(bearing, contact)
+    return peaks, *fields
 
 
 def _discretisation(
