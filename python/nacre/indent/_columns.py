@@ -64,7 +64,7 @@ def quantities(
         quantity: _signed_column(where, table, quantity, choice)
         for quantity, choice in choices.items()
     }
-    rows = _filled(table, [index for _, index in columns.values() if index is not None])
+    rows = _row_count(table, [index for _, index in columns.values() if index is not None])
     by_quantity: dict[str, Array | None] = {}
     for quantity, (sign, index) in columns.items():
         by_quantity[quantity] = None
@@ -86,7 +86,7 @@ def quantities(
     return depth, force, time
 
 
-def _filled(table: Table, columns: Sequence[int]) -> int:
+def _row_count(table: Table, columns: Sequence[int]) -> int:
     """Return the number of rows up to the last that is not blank in all of these columns."""
     rows = len(table.rows)
     while rows > 0 and not any(table.rows[rows - 1][index] for index in columns):
@@ -121,7 +121,7 @@ def _signed_column(
 ) -> tuple[float, int | None]:
     """Return the sign and the number of a quantity's column; none only for a time."""
     if choice is None:
-        index = _known(where, table, quantity)
+        index = _named_column(where, table, quantity)
         if index is None and quantity != "time":
             first = [column.name.lower().split()[:1] for column in table.columns]
             hint = ""
@@ -140,7 +140,7 @@ def _plain(name: str) -> str:
     return re.sub(r"[\W_]+", "", name.lower())
 
 
-def _known(where: str, table: Table, quantity: str) -> int | None:
+def _named_column(where: str, table: Table, quantity: str) -> int | None:
     """Return the column whose name is known, or None; several of the best name are an error."""
     columns = [
         (index, column)

@@ -213,10 +213,10 @@ class Model:
         if key not in self._loads:
             if len(self._loads) > KEPT:
                 self._loads.clear()
-            self._loads[key] = self._computed(x)
+            self._loads[key] = self._loads_at(x)
         return self._loads[key]
 
-    def _computed(self, x: Array) -> tuple[Array, Array]:
+    def _loads_at(self, x: Array) -> tuple[Array, Array]:
         self.evaluations += 1
         values = self._system_values(x)
         area = values.pop("tip.area", 1.0)

@@ -177,10 +177,10 @@ def _end(model: Model, best: Estimate, k: int, side: float) -> float:
         x = x + step * min(1.0, LONGEST / longest)
         if float(np.abs(x - best.x).max()) > REACH:
             return side * math.inf
-    return _bracketed(model, best, k, side, level)
+    return _bisected_end(model, best, k, side, level)
 
 
-def _bracketed(model: Model, best: Estimate, k: int, side: float, level: float) -> float:
+def _bisected_end(model: Model, best: Estimate, k: int, side: float, level: float) -> float:
     """Return an end by bisection of the least sum of squares over x[k], where steps do not settle.
 
     Contacts that jump, as with adhesion, make it rough.

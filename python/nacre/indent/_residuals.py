@@ -49,7 +49,7 @@ CLOSE = 1.4
 """Sum of squares that a remedy leaves over that of the best one, up to which it is named too."""
 
 
-def likeliest(model: Model, x: Array) -> tuple[Noise, float]:
+def likeliest_noise(model: Model, x: Array) -> tuple[Noise, float]:
     """Return the kind of noise by likelihood, and its floor over the largest force.
 
     The noise has the standard deviation σ·√(F² + c²): relative for c = 0, absolute for c → ∞. The

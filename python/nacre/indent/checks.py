@@ -241,7 +241,7 @@ def suspicious_units(curve: Curve, *, tip_size: float, modulus: float | None = N
 
 def _depth_in_contact(curve: Curve) -> tuple[float, float] | None:
     """Return depth from the contact, by Hertz' law, and force at the largest force."""
-    depth, force = (values[::-1] for values in _rising(curve))
+    depth, force = (values[::-1] for values in _rising_points(curve))
     below = np.flatnonzero(force < 0.5 * force[0])
     if force[0] <= 0 or not below.size:
         return None
@@ -367,14 +367,14 @@ def contact_point(
 
 def _first_part(curve: Curve, up_to: float) -> tuple[Array, Array]:
     """Return depth and force of the loading up to the last point below a share of the force."""
-    depth, force = _rising(curve)
+    depth, force = _rising_points(curve)
     least = float(force.min())
     below = np.flatnonzero(force <= least + up_to * (float(force.max()) - least))
     end = int(below[-1]) + 1
     return depth[:end], force[:end]
 
 
-def _rising(curve: Curve) -> tuple[Array, Array]:
+def _rising_points(curve: Curve) -> tuple[Array, Array]:
     """Return depth and force up to the largest force: of the loading, or of unloading backwards."""
     top = int(np.argmax(curve.force))
     side = slice(top + 1) if top >= max(2, SHORT * len(curve)) else slice(None, None, -1)

@@ -170,7 +170,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     if estimate is not None:
         apparent, radius = estimate
         rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
-        rows += _corrected(body, top, apparent, radius)
+        rows += _layer_modulus(body, top, apparent, radius)
     if series := _dimitriadis(body, top, depth, force, tip):
         rows.append(("Dimitriadis", series, "Dimitriadis et al. 2002, eq. (12)"))
     return [Classical(name, value, value / true - 1, source) for name, value, source in rows]
@@ -224,7 +224,7 @@ def _radius(tip: core.Tip, depth: float) -> float | None:
     return section(tip, depth)
 
 
-def _corrected(
+def _layer_modulus(
     body: core.HalfSpace, top: core.Elastic, apparent: float, radius: float
 ) -> list[tuple[str, float, str]]:
     """Return the modulus of the layer by a correction of an apparent modulus for the substrate."""

@@ -87,9 +87,9 @@ class Curve:
     ) -> None:
         if not isinstance(name, str):
             raise TypeError(f"name must be a text, got {name!r}")
-        arrays = {"depth": _checked("depth", depth), "force": _checked("force", force)}
+        arrays = {"depth": _frozen_array("depth", depth), "force": _frozen_array("force", force)}
         if time is not None:
-            arrays["time"] = _checked("time", time)
+            arrays["time"] = _frozen_array("time", time)
         for argument, array in arrays.items():
             if array.size != arrays["depth"].size:
                 raise ValueError(
@@ -144,7 +144,7 @@ class Curve:
         end = arrival(self.force)
         note = _cut(self, slice(end + 1, departure(self.depth, self.force) + 1), "cut")
         if (way := find_hold(self.force[end::-1])) is not None:
-            note = _joined(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
+            note = _notes(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
         return self._part(slice(0, end + 1), "up to its largest force", note)
 
     def hold(self) -> Curve:
@@ -161,7 +161,7 @@ class Curve:
         start, drifts = departure(self.depth, self.force), self._drift_hold()
         note = _cut(self, slice(arrival(self.force), start), "cut")
         if drifts is not None:
-            note = _joined(note, _cut(self, drifts, "cut with what follows"))
+            note = _notes(note, _cut(self, drifts, "cut with what follows"))
         end = None if drifts is None else drifts.start
         return self._part(slice(start, end), "from its largest force on", note)
 
@@ -335,7 +335,7 @@ def _curve(depth: Array, force: Array, time: Array | None, name: str, note: str 
     return curve
 
 
-def _joined(*notes: str) -> str:
+def _notes(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
@@ -356,7 +356,7 @@ def _cut(curve: Curve, hold: slice, what: str) -> str:
     )
 
 
-def _checked(name: str, values: npt.ArrayLike) -> Array:
+def _frozen_array(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
     array = core.real_array(name, values)
     if array.ndim != 1:

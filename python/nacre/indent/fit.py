@@ -17,7 +17,7 @@ from nacre._tools.typing import among
 from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, reasons, shifted_starts
-from nacre.indent._residuals import Examination, examine, likeliest
+from nacre.indent._residuals import Examination, examine, likeliest_noise
 from nacre.indent._result import UNFIT, Fit
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
@@ -170,11 +170,11 @@ def fit(
             f"{model.depth.size}"
         )
     with lasting("fit", progress) as tell:
-        best = _fitted(new_model, model, noise, starts, profile, tell or (lambda text: None))
+        best = _model_fit(new_model, model, noise, starts, profile, tell or (lambda text: None))
     return replace(best, warnings=(*doubts, *best.warnings))
 
 
-def _fitted(
+def _model_fit(
     new_model: Callable[..., Model],
     model: Model,
     noise: str,
@@ -187,9 +187,9 @@ def _fitted(
     start = _start(model)
     if noise == "auto":
         rough = minimum(model, start, rough=True)
-        model = new_model(*likeliest(model, rough))
+        model = new_model(*likeliest_noise(model, rough))
         start = rough if math.isfinite(model.chi2(rough)) else _start(model)
-    best = _best(model, start)
+    best = _weighed_minimum(model, start)
     minima: list[tuple[Array, float]] = []
     if profile:
         places = shifted_starts(model, best.x) if starts is None else _places(model, starts, best.x)
@@ -300,7 +300,7 @@ def _start(model: Model) -> Array:
                 zero_depth = min(zero_depth, float(curve.depth.min()) - 1e-3 * unknown.scale)
             guessed[k] = unknown.place(min(max(zero_depth, unknown.low), unknown.high))
     places = [x] if np.array_equal(x, guessed) else [x, guessed]
-    best = min((_scaled(model, place) for place in places), key=model.chi2)
+    best = min((_scaled_start(model, place) for place in places), key=model.chi2)
     if not math.isfinite(model.chi2(best)):
         load, _ = model.loads(best)
         apart = int((load <= 0).sum())
@@ -315,7 +315,7 @@ def _start(model: Model) -> Array:
     return best
 
 
-def _scaled(model: Model, x: Array) -> Array:
+def _scaled_start(model: Model, x: Array) -> Array:
     """Return x with the free moduli scaled to the mean force."""
     moduli = [k for k, name in enumerate(model.names) if name.endswith(".young")]
     if not moduli:
@@ -334,7 +334,7 @@ def _scaled(model: Model, x: Array) -> Array:
     return scaled if abs(shift) > 0.3 and model.chi2(scaled) < model.chi2(x) else x
 
 
-def _best(model: Model, start: Array) -> Estimate:
+def _weighed_minimum(model: Model, start: Array) -> Estimate:
     best = estimated(model, minimum(model, start))
     if model.prior and not model.is_known:
         # Priors are weighed against residuals, whose size the residuals themselves tell.

@@ -537,7 +537,7 @@ def _solve(
             notes = {"warnings": messages, "kinds": ["bearing"] * len(messages)}
             return {"values": plain(solved, outputs, "bearing"), "bears": True} | notes
         if "rate" in arguments:
-            return _worn(wear(**arguments), outputs)
+            return _wear_outputs(wear(**arguments), outputs)
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
@@ -570,7 +570,7 @@ def _marks(arguments: Mapping[str, Any]) -> Record:
     return {name: True for name, holds in marks.items() if holds}
 
 
-def _worn(history: WearHistory, outputs: dict[str, Output]) -> Record:
+def _wear_outputs(history: WearHistory, outputs: dict[str, Output]) -> Record:
     """Return the outputs and the warnings of a history of wear."""
     marks = {
         "wears": True,

@@ -119,7 +119,7 @@ def assemble(
             own = units[output] if kinds["bears"] else symbol(units[output])
             dataset[name].attrs["units"] = own
     names = {*outputs, *map(str, dataset.coords)}
-    for name, quantity in errors(outputs, names, _estimated(kinds)).items():
+    for name, quantity in errors(outputs, names, _estimated_outputs(kinds)).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         cause = "length of the steps" if kinds["wears"] else "size of the cells"
@@ -163,7 +163,7 @@ def _values(records: Sequence[Record], name: str) -> Array:
     return values
 
 
-def _estimated(kinds: Mapping[str, bool]) -> Sequence[str]:
+def _estimated_outputs(kinds: Mapping[str, bool]) -> Sequence[str]:
     """Return the outputs of cases of a kind that have an estimated error."""
     if kinds["indents"]:
         return ()

@@ -251,7 +251,7 @@ def output_values(
             else:
                 value = min(MARGINS[output](fatigue), default=np.nan)
         else:
-            value = _number(solution, output)
+            value = _attribute(solution, output)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     estimates = solution._normal.report.discretisation or {}
     tangential = (solution is not solution._normal and solution.report.discretisation) or {}
@@ -262,7 +262,7 @@ def output_values(
     return numbers
 
 
-def _number(solution: Any, name: str) -> object:
+def _attribute(solution: Any, name: str) -> object:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
     if name in OF_INDENT and name not in NUMBERS:
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")

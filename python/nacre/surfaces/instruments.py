@@ -52,15 +52,15 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
             return None
         return _table(text, channel)
 
-    return _first(path, channel, lambda reader: _heights(reader, channel), table)
+    return _first_content(path, channel, lambda reader: _heights(reader, channel), table)
 
 
 def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a line in an instrument's file, and the unit of the file."""
-    return _first(path, channel, lambda reader: _line(reader, channel), lambda likely: None)
+    return _first_content(path, channel, lambda reader: _line(reader, channel), lambda likely: None)
 
 
-def _first(
+def _first_content(
     path: Path,
     channel: str | int | None,
     take: Callable[[Reader], Content],
@@ -86,7 +86,7 @@ def _first(
     def read_first(candidates: Sequence[Any]) -> Content | None:
         for reader in candidates:
             try:
-                with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
+                with reader(_x3p_copy(path) if reader.format() == "x3p" else str(path)) as opened:
                     return take(opened)
             except Unfound as error:
                 raise ValueError(f"{error}, got {channel!r}") from None
@@ -159,7 +159,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
     return heights._replace(is_metric=False)
 
 
-def _mended(path: Path) -> str | io.BytesIO:
+def _x3p_copy(path: Path) -> str | io.BytesIO:
     """Return an X3P whose name of the standard has a hyphen, and that has no folder.
 
     Other programs write a dash there, and put all files in a folder.
@@ -210,7 +210,7 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
             f"it for a Roller"
         )
     if not maps:
-        names = ", ".join(repr(item.name) for item in reader.channels) or _others(reader) or "none"
+        names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
     map_channel = _channel(reader, channel)
     # A file without sizes needs some, which are not used.
@@ -238,7 +238,7 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
 
-def _others(reader: object) -> str:
+def _titles(reader: object) -> str:
     """Return the titles of channels of Gwyddion that hold no heights, with their units."""
     metadata = getattr(reader, "_metadata", {})
     fields = [name for name in metadata if re.fullmatch(r"/\d+/data", str(name))]

@@ -119,7 +119,7 @@ def read_map(
         spacing = sides[0] * factor, sides[1] * factor
     _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
-    heights = _filled(name, heights, detrend, wraps)
+    heights = _filled_heights(name, heights, detrend, wraps)
     try:
         heights -= _trend(heights, detrend)
         return core.HeightMap(heights, spacing, periodic=periodic)
@@ -211,7 +211,7 @@ def _span(heights: Array) -> float:
     return max(highest - lowest, 0.0)
 
 
-def _filled(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
+def _filled_heights(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
     """Return heights whose missing points are filled harmonically, without new peaks or pits.
 
     Where the surface repeats, its ends are neighbours once it has no trend.

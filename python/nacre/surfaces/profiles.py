@@ -121,7 +121,7 @@ def read_profile(
     else:
         places, drops = _scan(path, unit, x, drop, height)
     order = np.argsort(places, kind="stable")
-    places, drops = _measured(path, places[order], drops[order])
+    places, drops = _measured_points(path, places[order], drops[order])
     twice = np.flatnonzero(np.diff(places) <= 0)
     if twice.size:
         raise ValueError(
@@ -162,7 +162,7 @@ def _table(
         vertical = _column(path, table, "height", height, _word_column(words, AXES[2]))
     sizes = _sizes(path, table, unit, place, vertical)
     heights = without_sentinels(values[:, vertical]) * sizes[1]
-    return values[:, place] * sizes[0], heights if is_drop else _below(heights)
+    return values[:, place] * sizes[0], heights if is_drop else _depths(heights)
 
 
 def _sizes(
@@ -222,15 +222,15 @@ def _scan(
         raise ValueError(
             f"unit must be one of {', '.join(METRES)} for {str(path)!r}, which names {file_unit!r}"
         )
-    return places * sizes[0], _below(without_sentinels(heights) * sizes[1])
+    return places * sizes[0], _depths(without_sentinels(heights) * sizes[1])
 
 
-def _below(heights: Array) -> Array:
+def _depths(heights: Array) -> Array:
     """Return distances from the highest of the heights that were measured."""
     return float(heights.max(initial=-np.inf, where=np.isfinite(heights))) - heights
 
 
-def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
+def _measured_points(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
     """Return what was measured, and warn of the rest, and of a drop far from all others."""
     measured = np.isfinite(places) & np.isfinite(drops)
     count, points = int((~measured).sum()), places.size
