@@ -39,13 +39,13 @@ class Parts:
 
     def __call__(self, name: str, /, **values: object) -> Markup:
         """Return a part with values in its places: markup, text, numbers, or several of them."""
-        texts = {place: _written(value) for place, value in values.items()}
+        texts = {place: _html(value) for place, value in values.items()}
         return Markup(self._parts[name].substitute(texts))
 
 
-def _written(value: object) -> str:
+def _html(value: object) -> str:
     if isinstance(value, list):
-        return "".join(map(_written, value))
+        return "".join(map(_html, value))
     if isinstance(value, Markup):
         return value
     if isinstance(value, float):

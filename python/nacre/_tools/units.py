@@ -296,7 +296,7 @@ class Scale:
         1 and 1000 as far as prefixes go.
         """
         size, own = system().unit(unit)
-        return cls._chosen(largest, size, unit, own)
+        return cls._readable(largest, size, unit, own)
 
     @classmethod
     def in_unit(cls, largest: float, unit: str) -> Scale:
@@ -308,10 +308,10 @@ class Scale:
         if dimension_size is None:
             return cls(1.0, unit)
         dimension, size = dimension_size
-        return cls._chosen(largest, size, dimension, unit)
+        return cls._readable(largest, size, dimension, unit)
 
     @classmethod
-    def _chosen(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
+    def _readable(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
         if (
             not dimension

@@ -70,7 +70,7 @@ class Card:
                 raise FieldError(path, f"{path[:60]} is no field of this card")
             data = with_value(data, field, field.number(typed))
         check_size(data)
-        return Case(_adjusted(data) if self.name != "own" else data, self.name)
+        return Case(_solvable_case(data) if self.name != "own" else data, self.name)
 
 
 def with_value(data: Data, field: Field, value: float | None) -> Data:
@@ -123,7 +123,7 @@ def _sizes(data: Any) -> Iterator[tuple[str, float]]:
                 yield "steps", entry
 
 
-def _adjusted(data: Data) -> Data:
+def _solvable_case(data: Data) -> Data:
     """Return a case of a template without adhesion of no work, and a line on a grid that holds it.
 
     The grid is wide enough by Hertz's formula for the softest material.
@@ -161,7 +161,7 @@ def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
     main = [field_of(data, helps=helps, **description) for description in entry["fields"]]
     for field in main:
         data = with_value(data, field, field.default)
-    more = _others(data, CHOSEN | {field.path for field in main})
+    more = _other_fields(data, CHOSEN | {field.path for field in main})
     return Card(name, entry["group"], entry["title"], data, main, more)
 
 
@@ -182,14 +182,14 @@ def own_card(path: AnyPath) -> Card:
     elif case.kind in ("contact", "wear") and "grid" not in data:
         data["solve"] = {"max_cells": MOST["cells"]} | data["solve"]
     check_size(data)
-    fields = _others(data, measured.tables.keys())
+    fields = _other_fields(data, measured.tables.keys())
     ranks = {table: rank for rank, table in enumerate(FIRST)}
     fields.sort(key=lambda field: ranks.get(field.path.partition(".")[0], len(ranks)))
     main, more = fields[:MOST_FIELDS], fields[MOST_FIELDS:]
     return Card("own", "own file", case.name, data, main, more, measured)
 
 
-def _others(data: Data, left: AbstractSet[str]) -> list[Field]:
+def _other_fields(data: Data, left: AbstractSet[str]) -> list[Field]:
     """Return fields of all numbers, and of limits that are missing, but for some paths."""
     paths = [path for path, _ in core.numbers(data)]
     for name, table in data.get("materials", {}).items():

@@ -73,13 +73,13 @@ def _field(card: Card, field: Field) -> Markup:
 
 def _materials(card: Card) -> Iterator[Markup]:
     """Yield a menu of known materials for each material of a card."""
-    known = [_known(material) for material in nacre.materials.values()]
+    known = [_material_option(material) for material in nacre.materials.values()]
     for name in card.base.get("materials", {}):
         if f"materials.{name}.young" in card.by_path:
             yield markup("materials", name=name, known=known)
 
 
-def _known(material: nacre.types.Card) -> Markup:
+def _material_option(material: nacre.types.Card) -> Markup:
     """Return a known material as an option that holds its numbers in SI."""
     numbers = {key: number.value for key, number in material.numbers.items()}
     sources = "; ".join(dict.fromkeys(number.source for number in material.numbers.values()))

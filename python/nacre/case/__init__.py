@@ -102,7 +102,7 @@ class Case:
         self.folder = folder or Path()
         try:
             self.data = copy.deepcopy(dict(data))
-            self._table = self._checked(self.data)
+            self._table = self._keys_of(self.data)
         except RecursionError:
             raise CaseError(f"{name}: tables and lists are nested too deeply") from None
 
@@ -306,7 +306,7 @@ class Case:
                 f"nearest are {keys}"
             ) from error
 
-    def _checked(self, data: Mapping[str, object]) -> Keys:
+    def _keys_of(self, data: Mapping[str, object]) -> Keys:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:

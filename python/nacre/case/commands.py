@@ -242,7 +242,7 @@ def _solve(
     if as_json:
         extremes = {name: result.to_dict() for name, result in summaries.items()}
         extremes |= _verdicts(summaries)
-        history = {"steps": [_tangential(step) for step in steps]} if steps else {}
+        history = {"steps": [_friction_numbers(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
@@ -266,7 +266,7 @@ def _solve_wear(
     history = results["wear"]
     summaries = {name: result for name, result in results.items() if result is not history}
     if as_json:
-        numbers = _worn(history) | {"units": case_file.units}
+        numbers = _wear_numbers(history) | {"units": case_file.units}
         extremes = {name: result.to_dict() for name, result in summaries.items()}
         print(json.dumps(_plain(numbers | extremes | _verdicts(results)), indent=2))
     else:
@@ -329,16 +329,9 @@ def sweep(
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     for path in save or []:
         if path.suffix.lower() == ".html":
-            text = case.read_text(encoding="utf-8-sig")
-            save_report(
-                dataset,
-                path,
-                case=text,
-                inputs=[
-                    ("units of the case", case_file.units),
-                    *((row.label, row.text) for row in files_of(case_file)),
-                ],
-            )
+            paths = ((row.label, row.text) for row in files_of(case_file))
+            inputs = [("units of the case", case_file.units), *paths]
+            save_report(dataset, path, case=case.read_text(encoding="utf-8-sig"), inputs=inputs)
             continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
@@ -430,7 +423,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
+def _friction_numbers(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers of friction and the named state of its report."""
     return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
@@ -439,7 +432,7 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     }
 
 
-def _worn(history: nacre.types.WearHistory) -> dict[str, object]:
+def _wear_numbers(history: nacre.types.WearHistory) -> dict[str, object]:
     """Return the numbers of each state of a history of wear, its events and its report."""
     rows = [row for row in WEAR if row.dims[:1] == ("step",)]
     return {row.name: getattr(history, row.name).tolist() for row in rows} | {
@@ -454,7 +447,7 @@ def _worn(history: nacre.types.WearHistory) -> dict[str, object]:
 def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
-        return _numbers(solution.normal) | _tangential(solution)
+        return _numbers(solution.normal) | _friction_numbers(solution)
     state = solution.report.to_dict()
     state["units"] = system().name
     state.pop("kind")

@@ -116,7 +116,7 @@ class Indent(Table):
     )
 
     @model_validator(mode="after")
-    def _one(self) -> Indent:
+    def _check_target(self) -> Indent:
         if sum(v is not None for v in (self.load, self.approach, self.radius)) != 1:
             raise ValueError("must have exactly one of load, approach and radius")
         return self

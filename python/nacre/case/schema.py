@@ -338,14 +338,14 @@ class Keys(Table):
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
-            known = self._known(material)
+            known = self._material_table(material)
             if material not in self.materials:
                 return known.make()
             with at(f"materials.{material}"):
                 return known.make()
         return material.make()
 
-    def _known(self, material: str | Material) -> Material:
+    def _material_table(self, material: str | Material) -> Material:
         """Return the table of a material: its own, that of its name here, or that of a card."""
         if not isinstance(material, str):
             return material
@@ -472,7 +472,7 @@ class CaseTable(Bodies):
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self._known(entry) for entry in entries]
+        materials = [self._material_table(entry) for entry in entries]
         return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 

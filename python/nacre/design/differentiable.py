@@ -131,7 +131,7 @@ class Differentiable:
         """Return the solved contact at a vector."""
         x = np.ascontiguousarray(x, dtype=np.float64)
         digest = hashlib.sha256(x.tobytes()).digest()
-        return self.points.at((names, len(x), digest), lambda: self._solved(names, x))
+        return self.points.at((names, len(x), digest), lambda: self._solved_point(names, x))
 
     def values(self, names: tuple[str, ...], x: Array) -> tuple[Array, Array]:
         """Return the pressures of the cells and the outputs."""
@@ -196,7 +196,7 @@ class Differentiable:
         shape = {} if self.shape is None else {"shape": self.shape}
         return {**self.arguments, **shape}
 
-    def _solved(self, names: tuple[str, ...], x: Array) -> Point:
+    def _solved_point(self, names: tuple[str, ...], x: Array) -> Point:
         n = len(names)
         try:
             arguments = self._all_arguments()

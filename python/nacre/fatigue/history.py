@@ -192,12 +192,12 @@ class Rolling:
         With `friction`, the part of the tractions is there.
         """
         slides = (0.0, 1.0) if friction and not self.has_tractions else (0.0,)
-        own = [self._own(depths, side, slide, self.x) for slide in slides]
+        own = [self._contact_stress(depths, side, slide, self.x) for slide in slides]
         ys, blocks = [self.grid.y], [[self._array(field) for field in own]]
         for level in self.levels:
             ys.append(level.grid.y[level.used])
             blocks.append(
-                [self._beyond(level, depths, side, slide)[:, level.used] for slide in slides]
+                [self._far_states(level, depths, side, slide)[:, level.used] for slide in slides]
             )
         y = np.concatenate(ys)
         order = np.argsort(y, kind="stable")
@@ -214,10 +214,10 @@ class Rolling:
         if len(slides) == 2:
             errors[:, 1] -= errors[:, 0]
         if list(depths) == [0.0]:
-            states = self._with_edges(states, slides)
-        return self._unloaded(states), errors
+            states = self._with_edge_states(states, slides)
+        return self._with_unloaded_state(states), errors
 
-    def _own(
+    def _contact_stress(
         self,
         depths: Sequence[float],
         side: Side,
@@ -236,7 +236,7 @@ class Rolling:
         """Return the states ``(depths, y, 6)``."""
         return np.stack([field.components[name][:, 0, :] for name in NAMES], axis=-1)
 
-    def _beyond(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
+    def _far_states(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
         """Return the states on a wider grid, whose loads are uniform over cells."""
 
         def stress(plan: core.StressPlan, friction: float, way: Direction) -> Array:
@@ -250,7 +250,7 @@ class Rolling:
             total += stress(plan, 1.0, way) - stress(plan, 0.0, way)
         return total
 
-    def _with_edges(self, states: States, slides: Sequence[float]) -> States:
+    def _with_edge_states(self, states: States, slides: Sequence[float]) -> States:
         """Return the states at the surface with those at the edges of the contact.
 
         With friction, yy has a peak there of the square root of the distance, which cells cut off.
@@ -268,7 +268,9 @@ class Rolling:
         inside = apart >= self.grid.spacing[1]
         states = States(states.y[inside], states.normal[:, inside], states.tangential[:, inside])
         for x, y in ends.tolist():
-            own, *slid = (self._array(self._own([0.0], "below", slide, x, y)) for slide in slides)
+            own, *slid = (
+                self._array(self._contact_stress([0.0], "below", slide, x, y)) for slide in slides
+            )
             at = int(np.searchsorted(states.y, y))
             added = slid[0] - own if slid else np.zeros_like(own)
             states = States(
@@ -279,7 +281,7 @@ class Rolling:
             )
         return states
 
-    def _unloaded(self, states: States) -> States:
+    def _with_unloaded_state(self, states: States) -> States:
         """Return the states with the stress-free one, infinitely far away."""
         none = np.zeros((len(states.normal), 1, 6))
         return States(
