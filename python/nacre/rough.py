@@ -212,7 +212,7 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
         bend = 0 * ones[axis] if repeats[axis] else 0.5 * rate**2 * np.cos(axes[axis])
         waves = np.expand_dims(2 * np.pi * np.fft.rfftfreq(count, step), 1 - axis)
 
-        def derived(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
+        def derivative(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
             factors = (1j * waves) ** order
             if order == 1 and field.shape[axis] % 2 == 0:
                 factors[(slice(None),) * axis + (-1,)] = 0.0  # the highest wave has no direction
@@ -220,9 +220,9 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
             return np.asarray(np.fft.irfft(transform, field.shape[axis], axis=axis))
 
         weighted = window[axis] * residual
-        inclined = derived(weighted, 1) - slope * residual + trend * window[axis]
+        inclined = derivative(weighted, 1) - slope * residual + trend * window[axis]
         gradient.append(across * inclined)
-        curved = derived(weighted, 2) - 2 * derived(slope * residual, 1) + bend * residual
+        curved = derivative(weighted, 2) - 2 * derivative(slope * residual, 1) + bend * residual
         laplacian += across * curved
     power = float(np.mean((window[0] * window[1]) ** 2))
     return gradient[0], gradient[1], laplacian, power

@@ -172,12 +172,12 @@ def _diameter(
     largest = min(room, pitch * math.sin(ROOM * math.pi / count))
     low, high = max(SMALLEST, 0.01 * largest, 1.01 * pitch / WIDEST), largest
 
-    def rated(diameter: float) -> float:
+    def rating_of(diameter: float) -> float:
         return static_rating(DeepGrooveBall(count=count, diameter=diameter, **dimensions))
 
-    if not (low < high and rated(low) < static < rated(high)):
+    if not (low < high and rating_of(low) < static < rating_of(high)):
         return None
     while high / low - 1 > SETTLED:  # the rating rises with the diameter
         middle = math.sqrt(low * high)
-        low, high = (middle, high) if rated(middle) < static else (low, middle)
+        low, high = (middle, high) if rating_of(middle) < static else (low, middle)
     return low

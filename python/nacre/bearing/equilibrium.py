@@ -280,15 +280,17 @@ class Shaft(Elements):
         motions = [group.motion @ way for group, way in zip(groups, ways, strict=True)]
         offsets = [group.motion[:, :, 2] * z for group, z in zip(groups, set_to, strict=True)]
         self.motion, self.offsets = np.concatenate(motions), np.concatenate(offsets)
-        self.lengths = self._stacked([group.lengths for group in groups], 2)
-        self.half = self._stacked([group.half for group in groups], 1)
+        self.lengths = self._element_rows([group.lengths for group in groups], 2)
+        self.half = self._element_rows([group.half for group in groups], 1)
         self.arm = max(group.arm for group in groups)
         self.size = max(group.size for group in groups)
         along = [group.outward[1] * way[2, 2] for group, way in zip(groups, ways, strict=True)]
-        own = self._stacked([group.outward[0] for group in groups], 2)
-        self.outward = own, self._stacked(along, 1)
+        own = self._element_rows([group.outward[0] for group in groups], 2)
+        self.outward = own, self._element_rows(along, 1)
 
-    def _stacked(self, numbers: Sequence[Array | float | tuple[float, ...]], width: int) -> Array:
+    def _element_rows(
+        self, numbers: Sequence[Array | float | tuple[float, ...]], width: int
+    ) -> Array:
         """Return numbers of all parts for each element ``(Z, width)``."""
         rows = [np.zeros((len(group.motion), width)) for group in self.parts]
         return np.concatenate(
@@ -547,11 +549,11 @@ class Problem:
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
 
-        def reached(ring: Array, own: Array, balance: float) -> State:
+        def settled_state(ring: Array, own: Array, balance: float) -> State:
             mismatch = balance if self.costly else 0.0
             return self.settled(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
 
-        state, reach = reached(ring, own, math.inf), FARTHEST
+        state, reach = settled_state(ring, own, math.inf), FARTHEST
         # Steps must go below the lowest values so far: steps of rounding alone would never end.
         lowest, closest = state.energy, state.balance
         for done in range(max_iterations + 1):
@@ -565,7 +567,7 @@ class Problem:
             share = 1.0
             for _ in range(HALVINGS):
                 ring, own = state.ring + share * ring_step, state.own + share * own_step
-                trial = reached(ring, own, state.balance)
+                trial = settled_state(ring, own, state.balance)
                 rounding = SLACK * float(np.abs(trial.reaction.energy).sum())
                 if trial.energy < lowest or (
                     trial.energy <= state.energy + rounding and trial.balance < closest

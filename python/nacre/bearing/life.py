@@ -311,7 +311,7 @@ class LifeRatio(_Beside):
         return [Row("ratio", label, text, self.ratio), *super()._rows()]
 
 
-def _highest(values: Array) -> Array:
+def _maxima(values: Array) -> Array:
     """Return the maxima over y, by parabolas through three cells."""
     if values.shape[-1] < 3:
         return np.asarray(values.max(-1), dtype=np.float64)
@@ -442,7 +442,7 @@ def stress_volume(
             z, weights = _nodes(first, last)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)  # the change says it
-                highest = _highest(rule.shear(plan.stress(z)))
+                highest = _maxima(rule.shear(plan.stress(z)))
             highest = np.nan_to_num(highest)  # beyond a free end there is nothing
             above = np.maximum(highest - rule.limit, 0.0)
             largest = max(largest, float(highest.max()))
@@ -568,7 +568,7 @@ def _stress_volumes(
     if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
         with lasting("stresses", progress) as tell:
             volume, standard = (
-                _of_bearing(bearing, model, tell, k / 2)
+                _ring_volume(bearing, model, tell, k / 2)
                 for k, bearing in enumerate((solution, reference))
             )
     else:
@@ -579,7 +579,7 @@ def _stress_volumes(
     return volume, standard
 
 
-def _of_bearing(
+def _ring_volume(
     solution: BearingSolution, model: Models, tell: Callable[[float], object] | None, done: float
 ) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of one against the other.

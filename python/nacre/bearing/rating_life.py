@@ -286,7 +286,7 @@ def life_of(
         words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
-    return _combined(solution.bearing, terms, rates, (float(reliability), factor), words)
+    return _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
 
 
 def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:
@@ -298,7 +298,7 @@ def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> f
     return None
 
 
-def _combined(
+def _life_of_spectrum(
     bearing: Bearing,
     terms: _Terms,
     rates: Sequence[_Rate],
