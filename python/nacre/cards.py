@@ -139,8 +139,8 @@ class Card:
 def _card(name: str, entry: Mapping[str, Any]) -> Card:
     """Return the card that an entry of the file describes."""
     numbers = {
-        key: Number(one["value"], one.get("low"), one.get("high"), UNITS[key], one["source"])
-        for key, one in entry.items()
+        key: Number(row["value"], row.get("low"), row.get("high"), UNITS[key], row["source"])
+        for key, row in entry.items()
         if key in UNITS
     }
     elastic = core.Elastic(numbers["young"].value, numbers["poisson"].value)
@@ -150,9 +150,9 @@ def _card(name: str, entry: Mapping[str, Any]) -> Card:
 
 def unknown(name: object, known: Iterable[str]) -> str:
     """Return a message about a name that no card has, with those that are close."""
-    lower = {one.casefold(): one for one in known}
+    lower = {title.casefold(): title for title in known}
     close = difflib.get_close_matches(str(name).casefold(), lower)
-    names = ", ".join(repr(lower[one]) for one in close)
+    names = ", ".join(repr(lower[folded]) for folded in close)
     hint = f"; close to it are {names}" if close else ""
     return f"name must be one of nacre.materials, got {name!r}{hint}"
 

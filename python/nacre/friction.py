@@ -216,8 +216,25 @@ def creep_curve(
             solutions.append(contact.roll(shape, creepage=creepage, **keywords))
             if tell is not None:
                 tell(len(solutions) / values.size)
+    columns = _columns(solutions, lateral)
+    dataset = xarray.Dataset(
+        {name: ("creepage", np.asarray(column)) for name, (column, _) in columns.items()},
+        coords={"creepage": values},
+    )
+    for name, (_, unit) in columns.items():
+        dataset[name].attrs = {"units": unit}
+    dataset["creepage"].attrs = {
+        "units": "1",
+        "long_name": "lateral creepage" if lateral else "longitudinal creepage",
+    }
+    dataset.attrs = {"title": "creep curve", "source": f"nacre {core.__version__}"}
+    return dataset
+
+
+def _columns(solutions: Sequence[FrictionSolution], lateral: bool) -> dict[str, tuple[object, str]]:
+    """Return the columns of a creep curve with their units."""
     along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
-    axis, sign = along[solutions[0].direction]
+    axis, sign = along[str(solutions[0].direction)]
     # z x e: along +y for rolling towards +x, along -x for rolling towards +y.
     across = 1 - axis, sign if axis == 0 else -sign
     forces = np.array([s.force for s in solutions])
@@ -226,7 +243,7 @@ def creep_curve(
     bears[bears <= 0] = np.nan  # there is no ratio
     driven = across if lateral else (axis, sign)
     pulled = driven[1] * forces[:, driven[0]]
-    line = contact.grid.is_line
+    line = solutions[0].grid.is_line
     unit = symbol("N/m" if line else "N")
     touching = np.array([np.count_nonzero(s.pressure) for s in solutions])
     columns: dict[str, tuple[object, str]] = {
@@ -242,15 +259,4 @@ def creep_curve(
         quantity = "dissipated" if name == "power" else name
         errors = [(s.report.discretisation or {}).get(quantity, np.nan) for s in solutions]
         columns[name + "_discretisation"] = (errors, size)
-    dataset = xarray.Dataset(
-        {name: ("creepage", np.asarray(column)) for name, (column, _) in columns.items()},
-        coords={"creepage": values},
-    )
-    for name, (_, unit) in columns.items():
-        dataset[name].attrs = {"units": unit}
-    dataset["creepage"].attrs = {
-        "units": "1",
-        "long_name": "lateral creepage" if lateral else "longitudinal creepage",
-    }
-    dataset.attrs = {"title": "creep curve", "source": f"nacre {core.__version__}"}
-    return dataset
+    return columns

@@ -133,10 +133,10 @@ def solver(
             )
         names = tuple(sorted(parameters))
         contact.check(names, gap is not None)
-        parts = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
+        arrays = [_float_array(f"parameters[{name!r}]", parameters[name], ()) for name in names]
         if gap is not None:
-            parts.append(_checked("gap", gap, contact.grid.shape).ravel())
-        x = jnp.concatenate([jnp.atleast_1d(part) for part in parts] or [jnp.zeros(0)])
+            arrays.append(_float_array("gap", gap, contact.grid.shape).ravel())
+        x = jnp.concatenate([jnp.atleast_1d(array) for array in arrays] or [jnp.zeros(0)])
         if names not in functions:
             functions[names] = _function(contact, names)
         flat = functions[names](x)
@@ -147,7 +147,7 @@ def solver(
     return solve
 
 
-def _checked(name: str, value: Value, shape: tuple[int, ...]) -> jax.Array:
+def _float_array(name: str, value: Value, shape: tuple[int, ...]) -> jax.Array:
     """Return an array of float64."""
     array = value if isinstance(value, jax.Array) else jnp.asarray(core.real_array(name, value))
     if array.dtype != np.float64 or array.shape != shape:

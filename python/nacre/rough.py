@@ -198,8 +198,8 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     ]
     ones = [np.ones_like(place) for place in axes]
     window = [
-        one if so else 0.5 - 0.5 * np.cos(place)
-        for one, so, place in zip(ones, repeats, axes, strict=True)
+        flat if so else 0.5 - 0.5 * np.cos(place)
+        for flat, so, place in zip(ones, repeats, axes, strict=True)
     ]
     gradient, laplacian = [], np.zeros(shape)
     for axis, (count, step) in enumerate(zip(shape, surface.spacing, strict=True)):
@@ -207,22 +207,22 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
         trend, centred = 0.0, axes[axis] / rate - 0.5 * count * step
         if not repeats[axis]:
             trend = float((heights * centred).sum() / (centred**2 * np.ones(shape)).sum())
-        rest = heights - trend * centred
+        residual = heights - trend * centred
         slope = 0 * ones[axis] if repeats[axis] else 0.5 * rate * np.sin(axes[axis])
         bend = 0 * ones[axis] if repeats[axis] else 0.5 * rate**2 * np.cos(axes[axis])
         waves = np.expand_dims(2 * np.pi * np.fft.rfftfreq(count, step), 1 - axis)
 
-        def derived(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
+        def derivative(field: Array, order: int, axis: int = axis, waves: Array = waves) -> Array:
             factors = (1j * waves) ** order
             if order == 1 and field.shape[axis] % 2 == 0:
                 factors[(slice(None),) * axis + (-1,)] = 0.0  # the highest wave has no direction
             transform = np.fft.rfft(field, axis=axis) * factors
             return np.asarray(np.fft.irfft(transform, field.shape[axis], axis=axis))
 
-        weighted = window[axis] * rest
-        inclined = derived(weighted, 1) - slope * rest + trend * window[axis]
+        weighted = window[axis] * residual
+        inclined = derivative(weighted, 1) - slope * residual + trend * window[axis]
         gradient.append(across * inclined)
-        curved = derived(weighted, 2) - 2 * derived(slope * rest, 1) + bend * rest
+        curved = derivative(weighted, 2) - 2 * derivative(slope * residual, 1) + bend * residual
         laplacian += across * curved
     power = float(np.mean((window[0] * window[1]) ** 2))
     return gradient[0], gradient[1], laplacian, power

@@ -144,10 +144,10 @@ def solver(
             raise TypeError(f"parameters must be a dict of paths and numbers, got {parameters!r}")
         names = tuple(sorted(parameters))
         contact.check(names, gap is not None)
-        parts = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
+        tensors = [_float_tensor(f"parameters[{name!r}]", parameters[name], ()) for name in names]
         if gap is not None:
-            parts.append(_checked("gap", gap, contact.grid.shape))
-        flat = [part.reshape(-1) for part in parts]
+            tensors.append(_float_tensor("gap", gap, contact.grid.shape))
+        flat = [tensor.reshape(-1) for tensor in tensors]
         x = torch.cat(flat or [torch.zeros(0, dtype=torch.float64)])
         pressure, values, in_contact = _Solve.apply(contact, names, x)
         shape = contact.grid.shape
@@ -157,7 +157,7 @@ def solver(
     return solve
 
 
-def _checked(name: str, value: Value, shape: tuple[int, ...]) -> torch.Tensor:
+def _float_tensor(name: str, value: Value, shape: tuple[int, ...]) -> torch.Tensor:
     """Return a tensor of float64 on the CPU."""
     if not isinstance(value, torch.Tensor):
         try:
@@ -176,7 +176,7 @@ def _tensor(array: Array) -> torch.Tensor:
     return torch.tensor(array, dtype=torch.float64)
 
 
-def _looped(
+def _batch_results(
     function: Callable[..., Tensors], info: Batch, in_dims: Dimensions, *arguments: torch.Tensor
 ) -> Looped:
     """Return the results of a function for each element of a batch, stacked."""
@@ -218,7 +218,7 @@ class _Solve(torch.autograd.Function):  # type: ignore[misc]
 
     @staticmethod
     def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
-        return _looped(_Solve.apply, info, in_dims, *arguments)
+        return _batch_results(_Solve.apply, info, in_dims, *arguments)
 
 
 class _First(torch.autograd.Function):  # type: ignore[misc]
@@ -248,13 +248,13 @@ class _Pull(_First):
         pressure: torch.Tensor,
         outputs: torch.Tensor,
     ) -> torch.Tensor:
-        x, pressure, outputs = (one.detach().numpy() for one in (x, pressure, outputs))
+        x, pressure, outputs = (tensor.detach().numpy() for tensor in (x, pressure, outputs))
         pulled = contact.pressure_pull(names, x, pressure)
         return _tensor(pulled + contact.outputs_pull(names, x, outputs))
 
     @staticmethod
     def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
-        return _looped(_Pull.apply, info, in_dims, *arguments)
+        return _batch_results(_Pull.apply, info, in_dims, *arguments)
 
 
 class _Push(_First):
@@ -270,4 +270,4 @@ class _Push(_First):
 
     @staticmethod
     def vmap(info: Batch, in_dims: Dimensions, *arguments: torch.Tensor) -> Looped:
-        return _looped(_Push.apply, info, in_dims, *arguments)
+        return _batch_results(_Push.apply, info, in_dims, *arguments)

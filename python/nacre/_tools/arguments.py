@@ -48,4 +48,4 @@ def name_or_number(name: str, value: object) -> str | int:
 def keywords_of(function: Callable[..., object]) -> set[str]:
     """Return the names of the arguments that a function takes by name only."""
     parameters = inspect.signature(function).parameters.values()
-    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
+    return {parameter.name for parameter in parameters if parameter.kind is parameter.KEYWORD_ONLY}

@@ -35,17 +35,17 @@ class Parts:
     def __init__(self, text: str) -> None:
         _, *named = re.split(r"<!-- (\w+) -->\n", text)
         named_parts = zip(named[::2], named[1::2], strict=True)
-        self._parts = {name: Template(part.rstrip("\n")) for name, part in named_parts}
+        self._parts = {name: Template(snippet.rstrip("\n")) for name, snippet in named_parts}
 
     def __call__(self, name: str, /, **values: object) -> Markup:
         """Return a part with values in its places: markup, text, numbers, or several of them."""
-        texts = {place: _written(value) for place, value in values.items()}
+        texts = {place: _html(value) for place, value in values.items()}
         return Markup(self._parts[name].substitute(texts))
 
 
-def _written(value: object) -> str:
+def _html(value: object) -> str:
     if isinstance(value, list):
-        return "".join(map(_written, value))
+        return "".join(map(_html, value))
     if isinstance(value, Markup):
         return value
     if isinstance(value, float):

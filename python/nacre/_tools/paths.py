@@ -53,6 +53,6 @@ def holder(arguments: Mapping[str, object], path: str, names: str, of: str) -> d
 def with_half_spaces(arguments: Mapping[str, object]) -> dict[str, object]:
     """Return arguments as paths name their numbers: the material of a body is its substrate."""
     return {
-        name: core.HalfSpace(one) if name in BODIES and isinstance(one, core.Elastic) else one
-        for name, one in arguments.items()
+        name: core.HalfSpace(value) if name in BODIES and isinstance(value, core.Elastic) else value
+        for name, value in arguments.items()
     }

@@ -54,14 +54,14 @@ def case_progress(progress: bool | None, total: int, stored: int) -> Iterator[Ca
         yield lines.advance
         lines.end()
         return
-    parts = (
+    columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*parts, console=console) as bar:
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(f"solving{_stored_text(stored, total)}", total=total, completed=stored)
         yield lambda: bar.advance(task)
 
@@ -83,8 +83,8 @@ def lasting(what: str, progress: object = None) -> Iterator[Callable[..., object
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    parts = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    bar = Progress(*parts, console=Console(stderr=True), transient=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
     task, start = bar.add_task(what, total=None), time.monotonic()
 
     def tell(done: float | str) -> None:

@@ -91,7 +91,7 @@ def printable(text: str) -> str:
         text.encode(encoding)
     except UnicodeEncodeError:
         # Other letters, as in names of layers, become question marks.
-        text = "".join(one if _has(encoding, one) else PLAIN.get(one, "?") for one in text)
+        text = "".join(mark if _has(encoding, mark) else PLAIN.get(mark, "?") for mark in text)
     except LookupError:
         pass
     return text
@@ -120,8 +120,8 @@ class System:
     """
 
     def __init__(self, name: str) -> None:
-        parts = ("N-m-Pa" if name == "SI" else name).split("-") if isinstance(name, str) else []
-        sizes = [_simple(part) for part in parts]
+        units = ("N-m-Pa" if name == "SI" else name).split("-") if isinstance(name, str) else []
+        sizes = [_simple(unit) for unit in units]
         if [size and size[0] for size in sizes] != ["N", "m", "Pa"]:
             raise ValueError(
                 "units must be force-length-stress, such as 'N-m-Pa' (or 'SI'), 'N-mm-MPa', "
@@ -130,12 +130,12 @@ class System:
         force, length, stress = (size[1] for size in sizes if size)
         if not math.isclose(stress, force / length**2, rel_tol=1e-6):
             raise ValueError(
-                f"units must be consistent, stress = force/length²; 1 {parts[0]}/{parts[1]}² is "
-                f"{force / length**2 / stress:.6g} {parts[2]}, got {name!r}"
+                f"units must be consistent, stress = force/length²; 1 {units[0]}/{units[1]}² is "
+                f"{force / length**2 / stress:.6g} {units[2]}, got {name!r}"
             )
-        self.name = "SI" if parts == ["N", "m", "Pa"] else name
-        self.imperial = any(part in IMPERIAL for part in parts)
-        self._names = dict(zip(("N", "m", "Pa"), parts, strict=True))
+        self.name = "SI" if units == ["N", "m", "Pa"] else name
+        self.imperial = any(unit in IMPERIAL for unit in units)
+        self._names = dict(zip(("N", "m", "Pa"), units, strict=True))
         self._sizes = {"N": force, "m": length, "Pa": stress}
 
     def unit(self, dimension: str) -> tuple[float, str]:
@@ -146,8 +146,8 @@ class System:
         """
         if self.name != "SI":
             dimension = WORK.get(dimension, dimension)
-        parts = FACTORS.findall(dimension)
-        name = "".join(f"{mark}{self._names.get(one, one)}{power}" for mark, one, power in parts)
+        terms = FACTORS.findall(dimension)
+        name = "".join(f"{mark}{self._names.get(base, base)}{power}" for mark, base, power in terms)
         return _product(dimension, self._sizes), name
 
     @property
@@ -296,7 +296,7 @@ class Scale:
         1 and 1000 as far as prefixes go.
         """
         size, own = system().unit(unit)
-        return cls._chosen(largest, size, unit, own)
+        return cls._readable(largest, size, unit, own)
 
     @classmethod
     def in_unit(cls, largest: float, unit: str) -> Scale:
@@ -308,10 +308,10 @@ class Scale:
         if dimension_size is None:
             return cls(1.0, unit)
         dimension, size = dimension_size
-        return cls._chosen(largest, size, dimension, unit)
+        return cls._readable(largest, size, dimension, unit)
 
     @classmethod
-    def _chosen(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
+    def _readable(cls, largest: float, size: float, dimension: str, own: str) -> Scale:
         """Return the scale for numbers in units of `size` in SI, which are called `own`."""
         if (
             not dimension

@@ -60,27 +60,27 @@ class Card:
     @functools.cached_property
     def by_path(self) -> dict[str, Field]:
         """Fields by path."""
-        return {one.path: one for one in (*self.fields, *self.more)}
+        return {field.path: field for field in (*self.fields, *self.more)}
 
     def case(self, values: Mapping[str, object]) -> Case:
         """Return the case with the values of some fields, as they were typed."""
         data = self.base
         for path, typed in values.items():
-            if (one := self.by_path.get(path)) is None:
+            if (field := self.by_path.get(path)) is None:
                 raise FieldError(path, f"{path[:60]} is no field of this card")
-            data = with_value(data, one, one.number(typed))
+            data = with_value(data, field, field.number(typed))
         check_size(data)
-        return Case(_adjusted(data) if self.name != "own" else data, self.name)
+        return Case(_solvable_case(data) if self.name != "own" else data, self.name)
 
 
-def with_value(data: Data, one: Field, value: float | None) -> Data:
+def with_value(data: Data, field: Field, value: float | None) -> Data:
     """Return the data of a case with the value of a field, in the unit of the field."""
     entry: float | list[float] | None = None
     if value is not None:
-        entry = one.in_case(value, data.get("units", "SI"))
-        if one.path == "indent.load" and one.slides:
+        entry = field.in_case(value, data.get("units", "SI"))
+        if field.path == "indent.load" and field.slides:
             entry = [tidy(entry * (k / LOADS) ** 1.5) for k in range(1, LOADS + 1)]
-    return _with_entry(data, one.path, entry)
+    return _with_entry(data, field.path, entry)
 
 
 def _with_entry(data: Data, path: str, entry: object) -> Data:
@@ -106,8 +106,8 @@ def check_size(data: Data) -> None:
 def _sizes(data: Any) -> Iterator[tuple[str, float]]:
     """Yield the sizes of a case that take time, by what they are."""
     if isinstance(data, list):
-        for one in data:
-            yield from _sizes(one)
+        for item in data:
+            yield from _sizes(item)
     for key, entry in data.items() if isinstance(data, dict) else ():
         yield from _sizes(entry)
         match key, entry:
@@ -123,7 +123,7 @@ def _sizes(data: Any) -> Iterator[tuple[str, float]]:
                 yield "steps", entry
 
 
-def _adjusted(data: Data) -> Data:
+def _solvable_case(data: Data) -> Data:
     """Return a case of a template without adhesion of no work, and a line on a grid that holds it.
 
     The grid is wide enough by Hertz's formula for the softest material.
@@ -132,7 +132,10 @@ def _adjusted(data: Data) -> Data:
         return _with_entry(data, "adhesion", None)
     if "width" not in data.get("grid", {}):
         return data
-    compliance = max((1 - one["poisson"] ** 2) / one["young"] for one in data["materials"].values())
+    compliance = max(
+        (1 - material["poisson"] ** 2) / material["young"]
+        for material in data["materials"].values()
+    )
     load, radius = data["solve"]["load"], data["shape"]["radius"]
     width = MARGIN * 2 * math.sqrt(4 * load * radius * 2 * compliance / math.pi)
     return _with_entry(data, "grid.width", float(f"{width:.3g}"))
@@ -143,7 +146,7 @@ def cards() -> dict[str, Card]:
     """Return the cards of the templates by name."""
     text = (resources.files(__package__) / "cards.toml").read_text("utf-8")
     table = tomllib.loads(text)
-    return {name: _card(name, one, table["help"]) for name, one in table["cards"].items()}
+    return {name: _card(name, entry, table["help"]) for name, entry in table["cards"].items()}
 
 
 def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
@@ -151,14 +154,14 @@ def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
     data = tomllib.loads(templates.texts()[name])
     for path in entry.get("without", ()):
         data = _with_entry(data, path, None)
-    for path, other in entry.get("changes", {}).items():
-        data = _with_entry(data, path, other)
+    for path, value in entry.get("changes", {}).items():
+        data = _with_entry(data, path, value)
     for layer in data.get("body", {}).get("layers", ()):
         layer["name"] = layer["material"]
-    main = [field_of(data, helps=helps, **one) for one in entry["fields"]]
-    for one in main:
-        data = with_value(data, one, one.default)
-    more = _others(data, CHOSEN | {one.path for one in main})
+    main = [field_of(data, helps=helps, **description) for description in entry["fields"]]
+    for field in main:
+        data = with_value(data, field, field.default)
+    more = _other_fields(data, CHOSEN | {field.path for field in main})
     return Card(name, entry["group"], entry["title"], data, main, more)
 
 
@@ -179,14 +182,14 @@ def own_card(path: AnyPath) -> Card:
     elif case.kind in ("contact", "wear") and "grid" not in data:
         data["solve"] = {"max_cells": MOST["cells"]} | data["solve"]
     check_size(data)
-    fields = _others(data, measured.tables.keys())
+    fields = _other_fields(data, measured.tables.keys())
     ranks = {table: rank for rank, table in enumerate(FIRST)}
-    fields.sort(key=lambda one: ranks.get(one.path.partition(".")[0], len(ranks)))
+    fields.sort(key=lambda field: ranks.get(field.path.partition(".")[0], len(ranks)))
     main, more = fields[:MOST_FIELDS], fields[MOST_FIELDS:]
     return Card("own", "own file", case.name, data, main, more, measured)
 
 
-def _others(data: Data, left: AbstractSet[str]) -> list[Field]:
+def _other_fields(data: Data, left: AbstractSet[str]) -> list[Field]:
     """Return fields of all numbers, and of limits that are missing, but for some paths."""
     paths = [path for path, _ in core.numbers(data)]
     for name, table in data.get("materials", {}).items():

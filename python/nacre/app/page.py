@@ -34,54 +34,54 @@ def files(cards: Mapping[str, Card]) -> Files:
 
 def _form(card: Card, cards: Iterable[Card]) -> Markup:
     """Return the form of a card: variants, materials, main fields, and all others."""
-    kinds = [one for one in cards if one.group == card.group]
-    options = [markup("kind", name=one.name, title=one.title) for one in kinds]
+    kinds = [variant for variant in cards if variant.group == card.group]
+    options = [markup("kind", name=variant.name, title=variant.title) for variant in kinds]
     tables: dict[str, list[Markup]] = {}
-    for one in card.more:
-        tables.setdefault(one.path.partition(".")[0], []).append(_field(card, one))
+    for field in card.more:
+        tables.setdefault(field.path.partition(".")[0], []).append(_field(card, field))
     return markup(
         "form",
         name=card.name,
         group=card.group,
         menu=markup("menu", options=options) if len(kinds) > 1 else "",
         materials=list(_materials(card)),
-        fields=[_field(card, one) for one in card.fields],
+        fields=[_field(card, field) for field in card.fields],
         tables=[
             markup("table", name=name, fields=fields) for name, fields in sorted(tables.items())
         ],
     )
 
 
-def _field(card: Card, one: Field) -> Markup:
+def _field(card: Card, field: Field) -> Markup:
     """Return label, input, unit and slider of a field.
 
     Its key in a link is its last name, where no other field of the card has that.
     """
     lasts = Counter(path.rpartition(".")[2] for path in card.by_path)
-    last = one.path.rpartition(".")[2]
-    least, most = (one.low, one.high) if one.slides == "linear" else (-1, 1)
+    last = field.path.rpartition(".")[2]
+    least, most = (field.low, field.high) if field.slides == "linear" else (-1, 1)
     return markup(
         "field",
-        **one._asdict(),
-        id=f"{card.name}:{one.path}",
-        key=last if lasts[last] == 1 else one.path,
-        size=one.size,
-        placeholder="unknown" if one.may_be_empty else "",
-        slider=markup("slider", **one._asdict(), least=least, most=most) if one.slides else "",
+        **field._asdict(),
+        id=f"{card.name}:{field.path}",
+        key=last if lasts[last] == 1 else field.path,
+        size=field.size,
+        placeholder="unknown" if field.may_be_empty else "",
+        slider=markup("slider", **field._asdict(), least=least, most=most) if field.slides else "",
     )
 
 
 def _materials(card: Card) -> Iterator[Markup]:
     """Yield a menu of known materials for each material of a card."""
-    known = [_known(one) for one in nacre.materials.values()]
+    known = [_material_option(material) for material in nacre.materials.values()]
     for name in card.base.get("materials", {}):
         if f"materials.{name}.young" in card.by_path:
             yield markup("materials", name=name, known=known)
 
 
-def _known(material: nacre.types.Card) -> Markup:
+def _material_option(material: nacre.types.Card) -> Markup:
     """Return a known material as an option that holds its numbers in SI."""
-    numbers = {key: one.value for key, one in material.numbers.items()}
-    sources = "; ".join(dict.fromkeys(one.source for one in material.numbers.values()))
+    numbers = {key: number.value for key, number in material.numbers.items()}
+    sources = "; ".join(dict.fromkeys(number.source for number in material.numbers.values()))
     source = f"{material.title}. {sources}"
     return markup("known", name=material.name, numbers=json.dumps(numbers), source=source)

@@ -198,9 +198,9 @@ class Handler(BaseHTTPRequestHandler):
 def open_server(port: int, cards: Mapping[str, Card]) -> Server:
     """Return a server on a port, or on the first free one of those after it."""
     warnings.simplefilter("ignore", nacre.NacreWarning)  # answers have them
-    for one in range(port, min(port + PORTS, 65536)):
+    for candidate in range(port, min(port + PORTS, 65536)):
         try:
-            return Server(one, cards)
+            return Server(candidate, cards)
         except OSError as error:
             reason = error
     raise CaseError(f"--port: none of {port} to {port + PORTS - 1} is free: {reason.strerror}")

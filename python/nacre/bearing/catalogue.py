@@ -143,13 +143,14 @@ def estimated_balls(
     """
     bore, outside = above("bore", bore), above("outside_diameter", outside_diameter, bore)
     capacity, static = above("capacity", capacity), above("static_capacity", static_capacity)
-    pitch, others = (bore + outside) / 2, {"pitch_diameter": (bore + outside) / 2, **others}
+    pitch = (bore + outside) / 2
+    dimensions = {"pitch_diameter": pitch, **others}
     candidates = []
     for count in range(FEWEST, MOST + 1):
-        diameter = _diameter(count, static, pitch, (outside - bore) / 2, others)
+        diameter = _diameter(count, static, pitch, (outside - bore) / 2, dimensions)
         if diameter is not None:
-            candidates.append(DeepGrooveBall(count=count, diameter=diameter, **others))
-    best = min(candidates, key=lambda one: abs(rating(one) / capacity - 1), default=None)
+            candidates.append(DeepGrooveBall(count=count, diameter=diameter, **dimensions))
+    best = min(candidates, key=lambda bearing: abs(rating(bearing) / capacity - 1), default=None)
     if best is None or abs(rating(best) / capacity - 1) > TOLERANCE:
         raise ValueError(
             f"capacity and static_capacity must be those of balls between the rings within "
@@ -164,17 +165,19 @@ def estimated_balls(
     return best
 
 
-def _diameter(count: int, static: float, pitch: float, room: float, others: Any) -> float | None:
+def _diameter(
+    count: int, static: float, pitch: float, room: float, dimensions: Any
+) -> float | None:
     """Return the diameter with which balls have a static rating; None where rings hold none."""
     largest = min(room, pitch * math.sin(ROOM * math.pi / count))
     low, high = max(SMALLEST, 0.01 * largest, 1.01 * pitch / WIDEST), largest
 
-    def rated(diameter: float) -> float:
-        return static_rating(DeepGrooveBall(count=count, diameter=diameter, **others))
+    def rating_of(diameter: float) -> float:
+        return static_rating(DeepGrooveBall(count=count, diameter=diameter, **dimensions))
 
-    if not (low < high and rated(low) < static < rated(high)):
+    if not (low < high and rating_of(low) < static < rating_of(high)):
         return None
     while high / low - 1 > SETTLED:  # the rating rises with the diameter
         middle = math.sqrt(low * high)
-        low, high = (middle, high) if rated(middle) < static else (low, middle)
+        low, high = (middle, high) if rating_of(middle) < static else (low, middle)
     return low

@@ -92,7 +92,7 @@ def _change(generators: Array, load: Array, k: int) -> float | None:
     return None
 
 
-def _rounded(bound: float, change: float) -> float:
+def _rounded_bound(bound: float, change: float) -> float:
     """Return a bound of `DIGITS` digits that lies farther along a change."""
     unit = 10.0 ** (math.floor(math.log10(max(abs(bound), OUTSIDE * abs(change)))) + 1 - DIGITS)
     return (math.ceil(bound / unit) if change > 0 else math.floor(bound / unit)) * unit
@@ -127,7 +127,7 @@ def check_carried(
         for k, row in enumerate(rows):
             if row in axes and (change := _change(cone, load, k)) is not None:
                 bound = loads[row] + change / units[row]
-                bound = 0.0 if abs(bound) < OUTSIDE * abs(change) else _rounded(bound, change)
+                bound = 0.0 if abs(bound) < OUTSIDE * abs(change) else _rounded_bound(bound, change)
                 side = "least" if change > 0 else "most"
                 bounds.append(
                     f"{WORDS[row]} must be at {side} {bound:.{DIGITS}g} {UNITS[row]}, "

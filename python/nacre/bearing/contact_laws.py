@@ -75,11 +75,11 @@ class Several:
         """Take the laws, and the number of elements of each."""
         self.laws = laws
         self.slices = slices_of(counts)
-        self.costly = any(isinstance(one, Solved) for one in laws)
+        self.costly = any(isinstance(law, Solved) for law in laws)
 
     def __call__(self, places: Array) -> Reaction:
         """Return the reaction of all contacts."""
-        reactions = [one(places[rows]) for one, rows in zip(self.laws, self.slices, strict=True)]
+        reactions = [law(places[rows]) for law, rows in zip(self.laws, self.slices, strict=True)]
         contacts = {
             (element + rows.start, ring): contact
             for reaction, rows in zip(reactions, self.slices, strict=True)
@@ -168,7 +168,7 @@ class Hertzian:
     def __init__(self, bearing: BallBearing) -> None:
         self.diameter = bearing.diameter
         self.unit = [bearing.ellipse(ring, 1.0) for ring in RINGS]
-        self.spring = np.array([one.approach**-1.5 for one in self.unit])
+        self.spring = np.array([ellipse.approach**-1.5 for ellipse in self.unit])
 
     def heaviest(self, places: Array) -> Array:
         """Return the loads of the contacts ``(Z, 2)`` [N]."""
@@ -185,7 +185,7 @@ class Hertzian:
 
     def pressures(self, loads: Array) -> Array:
         """Return the peak pressures under loads ``(Z, 2)`` [Pa]."""
-        return np.array([one.peak_pressure for one in self.unit]) * np.cbrt(loads)
+        return np.array([ellipse.peak_pressure for ellipse in self.unit]) * np.cbrt(loads)
 
     def __call__(self, places: Array) -> Reaction:
         """Return the reaction of all contacts."""

@@ -272,24 +272,27 @@ class Shaft(Elements):
     Each ring has a displacement along its own z of its own, which the shaft's adds to.
     """
 
-    def __init__(self, parts: Sequence[Elements], ways: Sequence[Array], set_to: Array) -> None:
+    def __init__(self, groups: Sequence[Elements], ways: Sequence[Array], set_to: Array) -> None:
         """Take how each ring moves with the shaft ``(5, 5)``, and where it is without that [m]."""
-        self.parts, self.ways, self.set_to = parts, ways, set_to
-        counts = [len(part.motion) for part in parts]
+        self.parts, self.ways, self.set_to = groups, ways, set_to
+        counts = [len(group.motion) for group in groups]
         self.slices = slices_of(counts)
-        motions = [part.motion @ way for part, way in zip(parts, ways, strict=True)]
-        offsets = [part.motion[:, :, 2] * z for part, z in zip(parts, set_to, strict=True)]
+        motions = [group.motion @ way for group, way in zip(groups, ways, strict=True)]
+        offsets = [group.motion[:, :, 2] * z for group, z in zip(groups, set_to, strict=True)]
         self.motion, self.offsets = np.concatenate(motions), np.concatenate(offsets)
-        self.lengths = self._stacked([part.lengths for part in parts], 2)
-        self.half = self._stacked([part.half for part in parts], 1)
-        self.arm, self.size = max(one.arm for one in parts), max(one.size for one in parts)
-        along = [part.outward[1] * way[2, 2] for part, way in zip(parts, ways, strict=True)]
-        own = self._stacked([part.outward[0] for part in parts], 2)
-        self.outward = own, self._stacked(along, 1)
+        self.lengths = self._element_rows([group.lengths for group in groups], 2)
+        self.half = self._element_rows([group.half for group in groups], 1)
+        self.arm = max(group.arm for group in groups)
+        self.size = max(group.size for group in groups)
+        along = [group.outward[1] * way[2, 2] for group, way in zip(groups, ways, strict=True)]
+        own = self._element_rows([group.outward[0] for group in groups], 2)
+        self.outward = own, self._element_rows(along, 1)
 
-    def _stacked(self, numbers: Sequence[Array | float | tuple[float, ...]], width: int) -> Array:
+    def _element_rows(
+        self, numbers: Sequence[Array | float | tuple[float, ...]], width: int
+    ) -> Array:
         """Return numbers of all parts for each element ``(Z, width)``."""
-        rows = [np.zeros((len(one.motion), width)) for one in self.parts]
+        rows = [np.zeros((len(group.motion), width)) for group in self.parts]
         return np.concatenate(
             [row + np.asarray(number) for row, number in zip(rows, numbers, strict=True)]
         )
@@ -302,7 +305,7 @@ class Shaft(Elements):
     def generators(self) -> Array:
         """Return forces ``(5, n)`` on the shaft, of which those of contacts are sums."""
         forces = [
-            way.T @ part.generators() for part, way in zip(self.parts, self.ways, strict=True)
+            way.T @ group.generators() for group, way in zip(self.parts, self.ways, strict=True)
         ]
         return np.concatenate(forces, axis=1)
 
@@ -310,21 +313,21 @@ class Shaft(Elements):
         """Return positions of elements midway, or on the outer rings to which they are pressed."""
         approaches = np.zeros(len(ring_motion)) + pressed
         middles = [
-            part.neutral(ring_motion[rows], float(approaches[rows.start]))
-            for part, rows in zip(self.parts, self.slices, strict=True)
+            group.neutral(ring_motion[rows], float(approaches[rows.start]))
+            for group, rows in zip(self.parts, self.slices, strict=True)
         ]
         return np.concatenate(middles)
 
     def places(self, ring_motion: Array, own: Array) -> Places:
         """Return the coordinates of all contacts."""
-        parts = zip(self.parts, self.slices, strict=True)
-        places = [part.places(ring_motion[rows], own[rows]) for part, rows in parts]
+        pairs = zip(self.parts, self.slices, strict=True)
+        places = [group.places(ring_motion[rows], own[rows]) for group, rows in pairs]
         return Places(*map(np.concatenate, zip(*places, strict=True)))
 
     def angles(self, ring_motion: Array, own: Array) -> Array:
         """Return the contact angles ``(Z, 2)`` [rad]."""
-        parts = zip(self.parts, self.slices, strict=True)
-        angles = [part.angles(ring_motion[rows], own[rows]) for part, rows in parts]
+        pairs = zip(self.parts, self.slices, strict=True)
+        angles = [group.angles(ring_motion[rows], own[rows]) for group, rows in pairs]
         return np.concatenate(angles)
 
 
@@ -546,11 +549,11 @@ class Problem:
     ) -> tuple[State, int, str]:
         """Return the equilibrium, the number of steps, and how the iteration ended."""
 
-        def reached(ring: Array, own: Array, balance: float) -> State:
+        def settled_state(ring: Array, own: Array, balance: float) -> State:
             mismatch = balance if self.costly else 0.0
             return self.settled(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
 
-        state, reach = reached(ring, own, math.inf), FARTHEST
+        state, reach = settled_state(ring, own, math.inf), FARTHEST
         # Steps must go below the lowest values so far: steps of rounding alone would never end.
         lowest, closest = state.energy, state.balance
         for done in range(max_iterations + 1):
@@ -564,7 +567,7 @@ class Problem:
             share = 1.0
             for _ in range(HALVINGS):
                 ring, own = state.ring + share * ring_step, state.own + share * own_step
-                trial = reached(ring, own, state.balance)
+                trial = settled_state(ring, own, state.balance)
                 rounding = SLACK * float(np.abs(trial.reaction.energy).sum())
                 if trial.energy < lowest or (
                     trial.energy <= state.energy + rounding and trial.balance < closest

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,6 +124,60 @@ def _isoviscous(elastic: float, k: float) -> float:
     return max(rigid, soft)
 
 
+def _viscosity_regime(
+    u: float, g: float, w: float, k: float, minimum: float
+) -> tuple[float, float, bool]:
+    """Return g_V and g_E, and whether the pressure thickens the oil of a film H_min."""
+    if math.isinf(k):
+        viscous, elastic, unit = g * w**1.5 / u**0.5, w / u**0.5, w / u
+    else:
+        viscous, elastic, unit = g * w**3 / u**2, w ** (8 / 3) / u**2, (w / u) ** 2
+    return viscous, elastic, minimum * unit >= _isoviscous(elastic, k)
+
+
+def _excesses(parameters: dict[str, float]) -> list[str]:
+    """Return which parameters are out of the range of Hamrock and Dowson's fit, in words."""
+    return [
+        f"{name} = {parameters[name]:.3g} is out of {low:g} to {high:g}"
+        for name, (low, high) in FITTED.items()
+        if not 0.99 * low <= parameters[name] <= 1.01 * high  # k is right to a part of a cell
+    ]
+
+
+def _doubts(
+    regime: str, viscous: float, elastic: float, excesses: list[str], ratio: float, coated: bool
+) -> Iterator[str]:
+    """Yield where a film is out of what its formula was made for."""
+    if regime != "piezoviscous-elastic":
+        yield (
+            f"the regime is {regime}, and the formula is for the piezoviscous-elastic one "
+            f"(g_V = {viscous:.3g}, g_E = {elastic:.3g})"
+        )
+    if excesses:
+        yield f"Hamrock and Dowson's fit is extrapolated: {', '.join(excesses)}"
+    if ratio < SEPARATED:
+        yield f"λ = {ratio:.3g} is below {SEPARATED:g}: asperities touch through the film"
+    if coated:
+        yield (
+            "layers are thicker than half of the half-width b: how they move the film is not known"
+        )
+
+
+def _check_contact(solution: Solution) -> None:
+    """Raise an error unless bodies touch, elastically, on a grid that is not periodic."""
+    if any(solution.grid.periodic):
+        raise ValueError("solution must be one on a grid that is not periodic")
+    if not solution.load > 0:
+        raise ValueError(f"solution must be one in contact, got a load of {solution.load:g}")
+    check_unyielded(solution)
+
+
+def _coat_thickness(solution: Solution) -> float:
+    """Return the thickness of the layers of a body, the larger one of both; 0 without layers."""
+    bodies = (solution.report.body, solution.report.counterbody)
+    return float(max([0.0, *(z for body in bodies for z in getattr(body, "interfaces", ()))]))
+
+
 def _curvature(solution: Solution, section: int) -> float:
     """Return the curvature 1/R of the undeformed shape along y, where a section is in contact.
 
@@ -218,11 +273,7 @@ def film_thickness(
     pressure_viscosity = above("pressure_viscosity", pressure_viscosity)
     roughness = None if roughness is None else above("roughness", roughness)
     radius = None if radius is None else above("radius", radius)
-    if any(solution.grid.periodic):
-        raise ValueError("solution must be one on a grid that is not periodic")
-    if not solution.load > 0:
-        raise ValueError(f"solution must be one in contact, got a load of {solution.load:g}")
-    check_unyielded(solution)
+    _check_contact(solution)
     modulus = _modulus(solution)
     if pressure_viscosity * modulus > THICKEST:
         raise ValueError(
@@ -244,37 +295,13 @@ def film_thickness(
         )
     w = load / (modulus * radius ** (1 if line else 2))
     central, minimum = _line(u, g, w) if line else _point(u, g, w, k)
-    if line:
-        viscous, elastic, unit = g * w**1.5 / u**0.5, w / u**0.5, w / u
-    else:
-        viscous, elastic, unit = g * w**3 / u**2, w ** (8 / 3) / u**2, (w / u) ** 2
-    thin = minimum * unit >= _isoviscous(elastic, k)
     flat = central <= (along / (2 * radius)) ** 2  # thinner than b²/R, by which bodies flatten
-    regime = f"{'piezoviscous' if thin else 'isoviscous'}-{'elastic' if flat else 'rigid'}"
-    notes = []
-    if not (thin and flat):
-        notes.append(
-            f"the regime is {regime}, and the formula is for the piezoviscous-elastic one "
-            f"(g_V = {viscous:.3g}, g_E = {elastic:.3g})"
-        )
-    if not line:
-        parameters = {"U": u, "W": w, "G": g, "k": k}
-        beyond = [
-            f"{name} = {parameters[name]:.3g} is out of {low:g} to {high:g}"
-            for name, (low, high) in FITTED.items()
-            if not 0.99 * low <= parameters[name] <= 1.01 * high  # k is right to a part of a cell
-        ]
-        if beyond:
-            notes.append(f"Hamrock and Dowson's fit is extrapolated: {', '.join(beyond)}")
+    viscous, elastic, thickens = _viscosity_regime(u, g, w, k, minimum)
+    regime = f"{'piezoviscous' if thickens else 'isoviscous'}-{'elastic' if flat else 'rigid'}"
     ratio = math.inf if roughness is None else minimum * radius / roughness
-    if ratio < SEPARATED:
-        notes.append(f"λ = {ratio:.3g} is below {SEPARATED:g}: asperities touch through the film")
-    bodies = (solution.report.body, solution.report.counterbody)
-    coat = max([0.0, *(face for body in bodies for face in getattr(body, "interfaces", ()))])
-    if coat > along / 4:
-        notes.append(
-            "layers are thicker than half of the half-width b: how they move the film is not known"
-        )
+    coat = _coat_thickness(solution)
+    excesses = [] if line else _excesses({"U": u, "W": w, "G": g, "k": k})
+    notes = list(_doubts(regime, viscous, elastic, excesses, ratio, coat > along / 4))
     for text in notes:
         warnings.warn(text, core.NacreWarning, stacklevel=2)
     if 0 < coat <= along / 4:

@@ -261,7 +261,8 @@ class Bearing(ABC):
             layers = body.layers if isinstance(body, core.HalfSpace) else ()
             moduli = [(name, substrate(body), SOFTEST)]
             moduli += [
-                (f"{name}.layers[{k}]", one.material, SOFTEST_LAYER) for k, one in enumerate(layers)
+                (f"{name}.layers[{k}]", layer.material, SOFTEST_LAYER)
+                for k, layer in enumerate(layers)
             ]
             for place, material, least in moduli:
                 if isinstance(material, core.Elastic) and not least <= material.young <= STIFFEST:
@@ -269,11 +270,11 @@ class Bearing(ABC):
                         f"{place} must have a modulus from {least:g} to {STIFFEST:g} Pa: {_si()}; "
                         f"got {material.young:g} Pa"
                     )
-            for k, one in enumerate(layers):
-                if one.thickness > self.diameter / 2:
+            for k, layer in enumerate(layers):
+                if layer.thickness > self.diameter / 2:
                     raise ValueError(
                         f"{name}.layers[{k}] must be thinner than an element, "
-                        f"{self.diameter / 2:g} m: {_si()}; got {one.thickness:g} m"
+                        f"{self.diameter / 2:g} m: {_si()}; got {layer.thickness:g} m"
                     )
         if not LIGHTEST <= self.density <= HEAVIEST:
             raise ValueError(
@@ -461,8 +462,8 @@ class Bearing(ABC):
     def modulus(self) -> tuple[float, float]:
         """Contact moduli E* of the substrates, of elements and both rings [Pa]."""
         element = substrate(self.element)
-        one, other = (contact_modulus(element, substrate(getattr(self, ring))) for ring in RINGS)
-        return one, other
+        inner, outer = (contact_modulus(element, substrate(getattr(self, ring))) for ring in RINGS)
+        return inner, outer
 
     @property
     def layered(self) -> bool:

@@ -182,11 +182,11 @@ def capacities(bearing: Bearing, capacity: float) -> tuple[float, float]:
         share = (1.0 if thrust else 1.044) * ratio**1.72 * _conformity(bearing.osculation)
         share **= 10 / 3
         base = capacity / (count * (math.sin(bearing.nominal_angle) if thrust else cos))
-        one, other = (1.0, 1.0) if thrust else (0.407, 0.389)
-        factors = ((one, share), (other, 1 / share))
+        inner, outer = (1.0, 1.0) if thrust else (0.407, 0.389)
+        factors = ((inner, share), (outer, 1 / share))
         power = 0.3
-    one, other = (base / factor * (1 + inside) ** power for factor, inside in factors)
-    return one, other
+    inner, outer = (base / factor * (1 + inside) ** power for factor, inside in factors)
+    return inner, outer
 
 
 def edge_factors(count: int) -> Array:

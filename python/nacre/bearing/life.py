@@ -311,7 +311,7 @@ class LifeRatio(_Beside):
         return [Row("ratio", label, text, self.ratio), *super()._rows()]
 
 
-def _highest(values: Array) -> Array:
+def _maxima(values: Array) -> Array:
     """Return the maxima over y, by parabolas through three cells."""
     if values.shape[-1] < 3:
         return np.asarray(values.max(-1), dtype=np.float64)
@@ -353,17 +353,17 @@ def _ranges(
     materials = [*(layer.material for layer in body.layers), body.substrate]
     ranges: list[tuple[Model, float, float]] = []
     for k, name in enumerate(names):
-        if (one := models.get(name)) is None:
+        if (model := models.get(name)) is None:
             continue
         top, bottom = faces[k], faces[k + 1]
         if (
             ranges
-            and (ranges[-1][0], ranges[-1][2]) == (one, top)
+            and (ranges[-1][0], ranges[-1][2]) == (model, top)
             and materials[k - 1] == materials[k]
             and body.layers[k - 1].interface == "bonded"
         ):
             top = ranges.pop()[1]
-        ranges.append((one, top, bottom))
+        ranges.append((model, top, bottom))
     return ranges
 
 
@@ -419,17 +419,17 @@ def stress_volume(
     models: Mapping[int | str, Model] = (
         model if isinstance(model, Mapping) else {"substrate": model}
     )
-    if not models or not all(isinstance(one, Model) for one in models.values()):
+    if not models or not all(isinstance(rule, Model) for rule in models.values()):
         raise TypeError(f"model must be a model of a life, or models by layer, got {model!r}")
     plan = solution.stress_plan(body, threads)
     half, line = _half_width(solution), solution.grid.is_line
-    slopes = {one.slope(line=is_line(solution)) for one in models.values()}
+    slopes = {rule.slope(line=is_line(solution)) for rule in models.values()}
     if len(slopes) > 1:
         raise ValueError(f"models must have the same slope e, got {sorted(slopes)}")
     (slope,) = slopes
     total, change, largest = 0.0, 0.0, 0.0
     across = 1.0 if line else solution.grid.spacing[0]
-    for one, top, bottom in _ranges(plan.body, models, DEEPEST * half):
+    for rule, top, bottom in _ranges(plan.body, models, DEEPEST * half):
         begin = SHALLOWEST * half
         ranges = [(max(top, begin), bottom)]
         if top < begin:
@@ -442,12 +442,12 @@ def stress_volume(
             z, weights = _nodes(first, last)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)  # the change says it
-                highest = _highest(one.shear(plan.stress(z)))
+                highest = _maxima(rule.shear(plan.stress(z)))
             highest = np.nan_to_num(highest)  # beyond a free end there is nothing
-            above = np.maximum(highest - one.limit, 0.0)
+            above = np.maximum(highest - rule.limit, 0.0)
             largest = max(largest, float(highest.max()))
-            inside = above ** one.power(slope) * z[:, None] ** -one.h
-            sums.append(float((weights[:, None] * inside).sum()) * across * one.weight)
+            inside = above ** rule.power(slope) * z[:, None] ** -rule.h
+            sums.append(float((weights[:, None] * inside).sum()) * across * rule.weight)
         total += sums[0]
         change += sum(sums[1:])
     extremes, notes = (0.0, 0.0, 0.0), tuple[str, ...]()
@@ -455,9 +455,9 @@ def stress_volume(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)
             summary = plan.summary()
-        coats = [one.tension[0] for one in summary.layers[: len(plan.body.layers)]]
-        shears = [one.shear[0] for one in summary.interfaces]
-        tensions = [one.tension[0] for one in summary.interfaces]
+        coats = [layer.tension[0] for layer in summary.layers[: len(plan.body.layers)]]
+        shears = [interface.shear[0] for interface in summary.interfaces]
+        tensions = [interface.tension[0] for interface in summary.interfaces]
         notes = tuple(text for text in summary.warnings if "substrate" not in text)
         extremes = max(coats), max(shears), max(tensions)
     share = change / total if total > 0 else 0.0
@@ -515,60 +515,71 @@ def life_ratio(
     if isinstance(solution, BearingSolution) != isinstance(reference, BearingSolution):
         raise TypeError("solution and reference must both be contacts, or both bearings")
     check_progress(progress)
-    if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
-        with lasting("stresses", progress) as tell:
-            one, other = (
-                _of_bearing(bearing, model, tell, k / 2)
-                for k, bearing in enumerate((solution, reference))
-            )
-        kinds = OF_RINGS
-    else:
-        one, other = (
-            stress_volume(contact, model, body=body)  # type: ignore[arg-type]
-            for contact in (solution, reference)
-        )
-        kinds = " of contacts, "
-    if one.slope != other.slope:
+    volume, standard = _stress_volumes(solution, reference, model, body, progress)
+    if volume.slope != standard.slope:
         raise ValueError(
-            f"solution and reference must have the same slope e, got {one.slope:.5g} and "
-            f"{other.slope:.5g}: give the model an e"
+            f"solution and reference must have the same slope e, got {volume.slope:.5g} and "
+            f"{standard.slope:.5g}: give the model an e"
         )
-    if not math.isfinite(one.integral + other.integral):
+    if not math.isfinite(volume.integral + standard.integral):
         raise ValueError("model must have smaller exponents: its integrals overflow")
-    if one.integral == 0 and other.integral == 0:
+    if volume.integral == 0 and standard.integral == 0:
         raise ValueError(
             "solution and reference must not both have infinite lives: the largest stresses, "
-            f"{one.largest:.4g} and {other.largest:.4g} Pa, are below the fatigue limit"
+            f"{volume.largest:.4g} and {standard.largest:.4g} Pa, are below the fatigue limit"
         )
-    notes = one.notes
-    if one.integral == 0:
+    notes = volume.notes
+    if volume.integral == 0:
         ratio = math.inf
         text = "the life is infinite in this model: no stress is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
         notes = (*notes, text)
     else:
-        ratio = (other.integral / one.integral) ** (1 / one.slope)
-    if other.integral == 0:
+        ratio = (standard.integral / volume.integral) ** (1 / volume.slope)
+    if standard.integral == 0:
         text = "the ratio is 0: no stress of the reference is above the fatigue limit"
         warnings.warn(text, core.NacreWarning, stacklevel=2)
         notes = (*notes, text)
     models = model.values() if isinstance(model, Mapping) else [model]
+    kinds = OF_RINGS if isinstance(solution, BearingSolution) else " of contacts, "
     names = " and ".join(dict.fromkeys(type(rule).__name__ for rule in models))
     return LifeRatio(
         ratio,
-        one.slope,
-        one.largest,
-        other.largest,
-        max(abs(one.change), abs(other.change)),
-        one.coating_tension,
-        one.interface_shear,
-        one.interface_tension,
+        volume.slope,
+        volume.largest,
+        standard.largest,
+        max(abs(volume.change), abs(standard.change)),
+        volume.coating_tension,
+        volume.interface_shear,
+        volume.interface_tension,
         f"{names}{kinds}a model: ratios of equal materials only",
         notes,
     )
 
 
-def _of_bearing(
+def _stress_volumes(
+    solution: Solution | BearingSolution,
+    reference: Solution | BearingSolution,
+    model: Models,
+    body: Member,
+    progress: Callable[[float], object] | None,
+) -> tuple[StressVolume, StressVolume]:
+    """Return the integrals of two contacts, or of two bearings."""
+    if isinstance(solution, BearingSolution) and isinstance(reference, BearingSolution):
+        with lasting("stresses", progress) as tell:
+            volume, standard = (
+                _ring_volume(bearing, model, tell, k / 2)
+                for k, bearing in enumerate((solution, reference))
+            )
+    else:
+        volume, standard = (
+            stress_volume(contact, model, body=body)  # type: ignore[arg-type]
+            for contact in (solution, reference)
+        )
+    return volume, standard
+
+
+def _ring_volume(
     solution: BearingSolution, model: Models, tell: Callable[[float], object] | None, done: float
 ) -> StressVolume:
     """Return the integral of both rings of a bearing, in revolutions of one against the other.

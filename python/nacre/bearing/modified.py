@@ -244,9 +244,9 @@ def life_modification_factor(
     a, b = next((a, b) for end, a, b in known.ranges if kappa < end)
     # At κ = 0.1 the difference is 0 but for the rounding of the standard's numbers.
     oil = max(0.0, known.c - a / kappa**b) ** known.m
-    rest = 1 - oil * (ratio / (known.thrust if thrust else 1.0)) ** known.n
+    base = 1 - oil * (ratio / (known.thrust if thrust else 1.0)) ** known.n
     least = (0.1 / MOST_FACTOR) ** (1 / known.k)
-    return float(0.1 * max(rest, least) ** -known.k)
+    return float(0.1 * max(base, least) ** -known.k)
 
 
 def fatigue_load_limit(bearing: Bearing) -> float:
@@ -291,7 +291,7 @@ def fatigue_load_limit(bearing: Bearing) -> float:
             stacklevel=2,
         )
         return simple_fatigue_load_limit(bearing)
-    return total_load(bearing, load, bearing.standards.limit_share) * _smaller(bearing)
+    return total_load(bearing, load, bearing.standards.limit_share) * _size_factor(bearing)
 
 
 def simple_fatigue_load_limit(bearing: Bearing) -> float:
@@ -317,10 +317,10 @@ def simple_fatigue_load_limit(bearing: Bearing) -> float:
     >>> round(simple_fatigue_load_limit(bearing))
     6102
     """
-    return static_rating(bearing) / bearing.standards.static_over_limit * _smaller(bearing)
+    return static_rating(bearing) / bearing.standards.static_over_limit * _size_factor(bearing)
 
 
-def _smaller(bearing: Bearing) -> float:
+def _size_factor(bearing: Bearing) -> float:
     """Return the factor by which limits of larger bearings are smaller."""
     return float(min(1.0, LARGE / bearing.pitch) ** bearing.standards.size_power)
 

@@ -200,13 +200,13 @@ def _duties(
 ) -> list[tuple[float, dict[str, object], float]]:
     """Return the parts of a spectrum, checked, with shares that sum to 1."""
     duties = list(spectrum) if isinstance(spectrum, Iterable) else []
-    if not duties or not all(isinstance(one, Sequence) and len(one) == 3 for one in duties):
+    if not duties or not all(isinstance(duty, Sequence) and len(duty) == 3 for duty in duties):
         raise TypeError(
             f"spectrum must be a list of shares, forces and speeds, such as "
             f"(0.5, (1000.0, 0.0, None), 100.0), got {spectrum!r}"
         )
     places = [f"spectrum[{k}]" for k in range(len(duties))]
-    shares = [above(f"share of {at}", one[0]) for at, one in zip(places, duties, strict=True)]
+    shares = [above(f"share of {at}", duty[0]) for at, duty in zip(places, duties, strict=True)]
     if abs(sum(shares) - 1) > ROUNDED:
         raise ValueError(f"spectrum must have shares that sum to 1, got {sum(shares):g}")
     checked = []
@@ -286,7 +286,7 @@ def life_of(
         words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
-    return _combined(solution.bearing, terms, rates, (float(reliability), factor), words)
+    return _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
 
 
 def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:
@@ -298,7 +298,7 @@ def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> f
     return None
 
 
-def _combined(
+def _life_of_spectrum(
     bearing: Bearing,
     terms: _Terms,
     rates: Sequence[_Rate],
@@ -306,10 +306,10 @@ def _combined(
     words: str,
 ) -> BearingLife:
     """Return the life under all loads, of which each uses up its share: Miner."""
-    turned, is_known = sum(one.cycles for one in rates), terms.lubrication.is_known
-    shares = [one.cycles / turned for one in rates] if turned else [1.0]
-    l10 = _harmonic(shares, [one.reference.l10 for one in rates])
-    modified = _harmonic(shares, [one.reference.l10 * one.factor for one in rates])
+    turned, is_known = sum(rate.cycles for rate in rates), terms.lubrication.is_known
+    shares = [rate.cycles / turned for rate in rates] if turned else [1.0]
+    l10 = _harmonic(shares, [rate.reference.l10 for rate in rates])
+    modified = _harmonic(shares, [rate.reference.l10 * rate.factor for rate in rates])
     revolutions = reliability[1] * modified * 1e6
     return BearingLife(
         revolutions=revolutions,
@@ -323,7 +323,7 @@ def _combined(
         modification_factor=(
             (modified / l10 if math.isfinite(l10) else rates[0].factor) if is_known else None
         ),
-        viscosity_ratio=min((one.kappa for one in rates if one.kappa is not None), default=None),
+        viscosity_ratio=min((rate.kappa for rate in rates if rate.kappa is not None), default=None),
         contamination_factor=terms.lubrication.cleanliness(bearing)[0] if is_known else None,
         fatigue_load_limit=terms.limit,
         simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,

@@ -113,8 +113,8 @@ class BearingOptions:
         tolerance = above("tolerance", self.tolerance)
         if tolerance >= 1:
             raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
-        one, other = core.vector("cells", 2, self.cells)
-        cells = core.integer("cells", one), core.integer("cells", other)
+        along, across = core.vector("cells", 2, self.cells)
+        cells = core.integer("cells", along), core.integer("cells", across)
         multiple = bearing.cells_multiple
         if min(cells) < 8 or cells[0] % multiple:
             words = f", the first a multiple of {multiple}" if multiple > 1 else ""
@@ -148,12 +148,12 @@ def read_conditions(
     loads = values["force"] + values["moment"]
     moved = values["displacement"] + values["tilt"]
     words = ["force", "force", "force", "moment", "moment"]
-    others = ["displacement", "displacement", "displacement", "tilt", "tilt"]
+    motions = ["displacement", "displacement", "displacement", "tilt", "tilt"]
     axes = "xyzxy"
     for k in range(5):
         if loads[k] is not None and moved[k] is not None:
             raise ValueError(
-                f"{words[k]} and {others[k]} must not both be given "
+                f"{words[k]} and {motions[k]} must not both be given "
                 f"{'about' if k > 2 else 'along'} {axes[k]}, got {loads[k]!r} and {moved[k]!r}"
             )
     return loads, moved
@@ -352,32 +352,14 @@ def solution_of(
 ) -> BearingSolution:
     """Return the solution that a state is."""
     places, force = state.places, state.reaction.force
-    loads = force[..., 0]
-    laminae, pressures, sizes = None, None, None
-    contacts: dict[tuple[int, int], Solution] = {}
-    if isinstance(problem.law, Solved):
-        contacts = dict(state.reaction.contacts)
-        peaks = np.zeros(loads.shape)
-        sizes = problem.law.sizes()
-        for key, contact in contacts.items():
-            peaks[key] = contact.peak_pressure
-        if isinstance(bearing, RollerBearing):
-            laminae, pressures = fields = np.zeros((2, *loads.shape, LAMINAE))
-            for key, contact in contacts.items():
-                fields[:, *key] = binned(bearing, contact)
-    elif isinstance(problem.law, Slices):
-        laminae = problem.law.loads(places)
-        assert isinstance(bearing, RollerBearing)
-        pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
-        peaks = pressures.max(-1)
-    else:
-        assert isinstance(problem.law, Hertzian)
-        peaks = problem.law.pressures(loads)
+    loads, contacts = force[..., 0], dict(state.reaction.contacts)
+    sizes = problem.law.sizes() if isinstance(problem.law, Solved) else None
+    peaks, laminae, pressures = _contact_fields(bearing, problem.law, state)
     edges = np.full(loads.shape, np.nan) if pressures is None else edge_pressure(pressures)
     kinematics = problem.kinematics
     normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
     total = state.wanting + problem.loads
-    loaded = {key: one for key, one in contacts.items() if carrying(loads)[key]}
+    loaded = {key: contact for key, contact in contacts.items() if carrying(loads)[key]}
     notes = (
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
@@ -413,6 +395,29 @@ def solution_of(
         report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
         _contacts=dict(contacts),
     )
+
+
+def _contact_fields(
+    bearing: Bearing, law: Law, state: State
+) -> tuple[Array, Array | None, Array | None]:
+    """Return the peak pressures, and the loads and pressures of the laminae of rollers."""
+    loads = state.reaction.force[..., 0]
+    if isinstance(law, Slices):
+        assert isinstance(bearing, RollerBearing)
+        laminae = law.loads(state.places)
+        pressures = hertz_pressures(bearing, laminae, np.full(2, STANDARD))
+        return pressures.max(-1), laminae, pressures
+    if isinstance(law, Hertzian):
+        return law.pressures(loads), None, None
+    contacts, peaks = state.reaction.contacts, np.zeros(loads.shape)
+    for key, contact in contacts.items():
+        peaks[key] = contact.peak_pressure
+    if not isinstance(bearing, RollerBearing):
+        return peaks, None, None
+    fields = np.zeros((2, *loads.shape, LAMINAE))
+    for key, contact in contacts.items():
+        fields[:, *key] = binned(bearing, contact)
+    return peaks, *fields
 
 
 def _discretisation(

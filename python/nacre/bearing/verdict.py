@@ -54,7 +54,7 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     if not peak.value > 0:
         return Verdict("unknown", lives, tuple(bare))
     factor = solution.bearing.standards.static_pressure / peak.value
-    level, pressure = level_of(factor, peak.share), _compared(peak, factor)
+    level, pressure = level_of(factor, peak.share), _static_comparison(peak, factor)
     sentences = [pressure, lives] if level == "bad" else [lives, pressure]
     has_edge_stress = edge.value + (edge.error or 0.0) >= peak.value
     if not math.isnan(edge.value):
@@ -75,9 +75,11 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
 
 def pair_verdict(bearings: Mapping[str, BearingSolution]) -> Verdict:
     """Return the verdict on bearings on one shaft, by name: the worst decides, and comes first."""
-    verdicts = [(name, bearing_verdict(one)) for name, one in bearings.items()]
+    verdicts = [(name, bearing_verdict(bearing)) for name, bearing in bearings.items()]
     verdicts.sort(key=lambda row: (LEVELS.index(row[1].level), row[1].factor or math.inf))
-    words, *lines = [f"{name} bearing: {s}" for name, one in verdicts for s in one.sentences]
+    words, *lines = [
+        f"{name} bearing: {s}" for name, verdict in verdicts for s in verdict.sentences
+    ]
     name, worst = verdicts[0]
     decided_by = worst.decided_by and f"{name} bearing, {worst.decided_by}"
     return replace(worst, words=words, lines=tuple(lines), decided_by=decided_by)
@@ -98,7 +100,7 @@ def _lives(life: BearingLife) -> str:
     return f"Lives {plain(life.hours, DIGITS)} h ({name} {turns} at {rate}/min; {basis})."
 
 
-def _compared(peak: Demand, factor: float) -> str:
+def _static_comparison(peak: Demand, factor: float) -> str:
     """Return the largest pressure against that of the static rating."""
     limit, ratio = f"the {beside(peak.value, factor * peak.value)} of ISO 76", times(factor)
     comparisons = f"above {limit} ({ratio})", f"about {limit} ({ratio})", f"{ratio} below {limit}"

@@ -102,7 +102,7 @@ class Case:
         self.folder = folder or Path()
         try:
             self.data = copy.deepcopy(dict(data))
-            self._table = self._checked(self.data)
+            self._table = self._keys_of(self.data)
         except RecursionError:
             raise CaseError(f"{name}: tables and lists are nested too deeply") from None
 
@@ -280,7 +280,7 @@ class Case:
         """Return the path of a store, which must be in the folder of the case, as its journal."""
         path, folder = self.folder / store, self.folder.resolve()
         try:
-            ends = [one.resolve() for one in (path, path.with_suffix(".journal"))]
+            ends = [file.resolve() for file in (path, path.with_suffix(".journal"))]
         except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
             raise CaseError(f"{self.name}: {key}: {error}") from error
         if not all(end.is_relative_to(folder) for end in ends):
@@ -306,7 +306,7 @@ class Case:
                 f"nearest are {keys}"
             ) from error
 
-    def _checked(self, data: Mapping[str, object]) -> Keys:
+    def _keys_of(self, data: Mapping[str, object]) -> Keys:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:
@@ -337,7 +337,7 @@ def _first(error: ValidationError, data: object) -> str:
     errors = error.errors(include_url=False)
     # A misspelt key is often also a missing one; the misspelt one says more. Of the errors of
     # alternatives, the innermost belongs to the one that was meant.
-    places = [(one, place(data, one["loc"])) for one in errors]
+    places = [(entry, place(data, entry["loc"])) for entry in errors]
     misspelt = [pair for pair in places if pair[0]["type"] == "extra_forbidden"]
     first, here = misspelt[0] if misspelt else max(places, key=lambda pair: len(pair[1].path))
     kind = first["type"]

@@ -76,8 +76,8 @@ UNITS: dict[str, str] = (
 def sizes_of(units: str) -> dict[str, float]:
     """Return the sizes in SI of the units that are consistent with those of a case."""
     system = System(units)  # which checks them
-    parts = ("N", "m", "Pa") if system.name == "SI" else tuple(units.split("-"))
-    force, length, stress = (size[1] for part in parts if (size := size_of(part)))
+    names = ("N", "m", "Pa") if system.name == "SI" else tuple(units.split("-"))
+    force, length, stress = (size[1] for name in names if (size := size_of(name)))
     return {
         "N": force,
         "m": length,
@@ -250,19 +250,19 @@ def _table(kind: str, base: type[SingleKind], suffix: str) -> Any:
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
-    for one in dataclasses.fields(bearing_class):
-        hint, default = TYPES.get(one.name, Number), one.default
-        if one.name in FOLLOWS.get(kind, ()):
+    for field in dataclasses.fields(bearing_class):
+        hint, default = TYPES.get(field.name, Number), field.default
+        if field.name in FOLLOWS.get(kind, ()):
             continue
         if default is dataclasses.MISSING:
-            fields[one.name] = (hint, Field(description=descriptions.get(one.name, "")))
+            fields[field.name] = (hint, Field(description=descriptions.get(field.name, "")))
             continue
-        if default is None or one.name in ("element", "inner", "outer", "raceway_crown"):
+        if default is None or field.name in ("element", "inner", "outer", "raceway_crown"):
             hint, default = hint | None, None
         default_value = list(default) if isinstance(default, tuple) else default
-        fields[one.name] = (
+        fields[field.name] = (
             hint,
-            Field(default=default_value, description=descriptions.get(one.name, "")),
+            Field(default=default_value, description=descriptions.get(field.name, "")),
         )
     summary = inspect.cleandoc(bearing_class.__doc__ or "").partition("\n")[0]
     name = bearing_class.__name__ + suffix

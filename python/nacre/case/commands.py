@@ -166,13 +166,13 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         results = results_of(case_file, case_file.arguments())
     solution = results["bearing"]
-    added = {name: one for name, one in results.items() if one is not solution}
+    added = {name: result for name, result in results.items() if result is not solution}
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
         with shown_in(case_file.units):
             state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}
-        state |= {name: one._state() for name, one in added.items()}
+        state |= {name: result._state() for name, result in added.items()}
         print(json.dumps(_plain(_in_units(state, added, case_file.units)), indent=2))
     else:
         with shown_in(case_file.units):
@@ -212,15 +212,19 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
         return record
 
     record = {"units": units} | converted(state, {row.name: row.si() for row in BEARING})
-    for name, one in added.items():
-        record[name] = converted(state[name], {row.name: one._si(row) for row in one._QUANTITIES})
+    for name, result in added.items():
+        record[name] = converted(
+            state[name], {row.name: result._si(row) for row in result._QUANTITIES}
+        )
     return record
 
 
 def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     """Return the verdicts on results, by the names of these; some have none."""
-    judged = {name: one.verdict for name, one in results.items() if hasattr(one, "verdict")}
-    verdicts = {name: one._state() for name, one in judged.items()}
+    judged = {
+        name: result.verdict for name, result in results.items() if hasattr(result, "verdict")
+    }
+    verdicts = {name: verdict._state() for name, verdict in judged.items()}
     return {"verdict": verdicts} if verdicts else {}
 
 
@@ -233,12 +237,12 @@ def _solve(
         results = results_of(case_file, arguments)
     outcome = results["solution"]
     solution = last_of(outcome)  # of a history, the last step is printed
-    summaries = {name: one for name, one in results.items() if one is not outcome}
+    summaries = {name: result for name, result in results.items() if result is not outcome}
     steps = outcome if isinstance(outcome, nacre.types.History) else None
     if as_json:
-        extremes = {name: one.to_dict() for name, one in summaries.items()}
+        extremes = {name: result.to_dict() for name, result in summaries.items()}
         extremes |= _verdicts(summaries)
-        history = {"steps": [_tangential(step) for step in steps]} if steps else {}
+        history = {"steps": [_friction_numbers(step) for step in steps]} if steps else {}
         print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
@@ -260,10 +264,10 @@ def _solve_wear(
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed history has them
         results = results_of(case_file, arguments)
     history = results["wear"]
-    summaries = {name: one for name, one in results.items() if one is not history}
+    summaries = {name: result for name, result in results.items() if result is not history}
     if as_json:
-        numbers = _worn(history) | {"units": case_file.units}
-        extremes = {name: one.to_dict() for name, one in summaries.items()}
+        numbers = _wear_numbers(history) | {"units": case_file.units}
+        extremes = {name: result.to_dict() for name, result in summaries.items()}
         print(json.dumps(_plain(numbers | extremes | _verdicts(results)), indent=2))
     else:
         print(history, *summaries.values(), sep="\n\n")
@@ -325,16 +329,9 @@ def sweep(
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     for path in save or []:
         if path.suffix.lower() == ".html":
-            text = case.read_text(encoding="utf-8-sig")
-            save_report(
-                dataset,
-                path,
-                case=text,
-                inputs=[
-                    ("units of the case", case_file.units),
-                    *((row.label, row.text) for row in files_of(case_file)),
-                ],
-            )
+            paths = ((row.label, row.text) for row in files_of(case_file))
+            inputs = [("units of the case", case_file.units), *paths]
+            save_report(dataset, path, case=case.read_text(encoding="utf-8-sig"), inputs=inputs)
             continue
         with replacing(path) as temporary:
             dataset.to_dataframe().to_csv(temporary)
@@ -426,7 +423,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
+def _friction_numbers(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers of friction and the named state of its report."""
     return {row.name: value for row, value in tables.numbers(solution)} | {
         "friction_report": {
@@ -435,7 +432,7 @@ def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, object]:
     }
 
 
-def _worn(history: nacre.types.WearHistory) -> dict[str, object]:
+def _wear_numbers(history: nacre.types.WearHistory) -> dict[str, object]:
     """Return the numbers of each state of a history of wear, its events and its report."""
     rows = [row for row in WEAR if row.dims[:1] == ("step",)]
     return {row.name: getattr(history, row.name).tolist() for row in rows} | {
@@ -450,7 +447,7 @@ def _worn(history: nacre.types.WearHistory) -> dict[str, object]:
 def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, object]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
     if isinstance(solution, nacre.types.FrictionSolution):
-        return _numbers(solution.normal) | _tangential(solution)
+        return _numbers(solution.normal) | _friction_numbers(solution)
     state = solution.report.to_dict()
     state["units"] = system().name
     state.pop("kind")

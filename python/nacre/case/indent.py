@@ -60,12 +60,12 @@ def _table(name: str) -> type[MethodTable]:
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
-    for one in parameters:
-        hint, description = KEYS[one]
-        if one == "slope" or kind == "berkovich":  # the radius of its end may be left out
-            fields[one] = (hint | None, Field(None, description=description))
+    for parameter in parameters:
+        hint, description = KEYS[parameter]
+        if parameter == "slope" or kind == "berkovich":  # the radius of its end may be left out
+            fields[parameter] = (hint | None, Field(None, description=description))
         else:
-            fields[one] = (hint, Field(description=description))
+            fields[parameter] = (hint, Field(description=description))
     if sloped:
         fields["half_angle"] = (Number | None, Field(None, description=HALF_ANGLE))
     summary = " ".join((make.__doc__ or "").split())
@@ -116,7 +116,7 @@ class Indent(Table):
     )
 
     @model_validator(mode="after")
-    def _one(self) -> Indent:
+    def _check_target(self) -> Indent:
         if sum(v is not None for v in (self.load, self.approach, self.radius)) != 1:
             raise ValueError("must have exactly one of load, approach and radius")
         return self

@@ -49,8 +49,8 @@ def options(node: Node) -> Iterator[Node]:
     if "$ref" in node:
         yield from options(schema()["$defs"][node["$ref"].rpartition("/")[2]])
     elif inner := node.get("anyOf", node.get("oneOf")):
-        for one in inner:
-            yield from options(one)
+        for option in inner:
+            yield from options(option)
     elif node.get("type") != "null":
         yield node
 
@@ -68,7 +68,7 @@ def words(node: Node) -> str:
     if "oneOf" in node:
         return "a table with the key kind"
     if "anyOf" in node:
-        inner = [one for one in node["anyOf"] if one.get("type") != "null"]
+        inner = [option for option in node["anyOf"] if option.get("type") != "null"]
         return alternatives(dict.fromkeys(map(words, inner)))
     if "$ref" in node:
         return "a table"
@@ -101,12 +101,12 @@ def alternatives(names: Iterable[str]) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> list[str]:
     """Return names, those that are most like `name` first."""
-    return sorted(names, key=lambda one: -SequenceMatcher(None, name, one).ratio())
+    return sorted(names, key=lambda candidate: -SequenceMatcher(None, name, candidate).ratio())
 
 
 def tables(node: Node) -> Iterator[Node]:
     """Yield the tables that a part allows."""
-    return (one for one in options(node) if "properties" in one)
+    return (option for option in options(node) if "properties" in option)
 
 
 def sections() -> Iterator[tuple[str, Node]]:
@@ -114,8 +114,8 @@ def sections() -> Iterator[tuple[str, Node]]:
     definitions = schema()["$defs"]
 
     def kinds(table: str, key: str, title: str) -> Iterator[tuple[str, Node]]:
-        for one in tables(definitions[table]["properties"][key]):
-            yield f'`[{title}]` with `kind = "{kind_of(one)}"`', one
+        for option in tables(definitions[table]["properties"][key]):
+            yield f'`[{title}]` with `kind = "{kind_of(option)}"`', option
 
     yield "Whole file of a contact", definitions["CaseTable"]
     yield "Whole file of an indentation", definitions["IndentCase"]
@@ -137,8 +137,8 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[wear]`", definitions["Wear"]
     yield "`[stress]`", definitions["Stress"]
     yield "`[fatigue]`", definitions["Fatigue"]
-    for one in tables(definitions["Fatigue"]["properties"]["criteria"]["items"]):
-        yield f'`[[fatigue.criteria]]` with `kind = "{kind_of(one)}"`', one
+    for option in tables(definitions["Fatigue"]["properties"]["criteria"]["items"]):
+        yield f'`[[fatigue.criteria]]` with `kind = "{kind_of(option)}"`', option
     yield from kinds("IndentCase", "tip", "tip")
     yield from kinds("IndentCase", "adhesion", "adhesion")
     yield "`[indent]`", definitions["Indent"]
@@ -203,44 +203,46 @@ class Place:
     @property
     def key(self) -> str:
         """Key as users write it: names with dots, numbers in brackets."""
-        dotted = "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in self.path)
+        dotted = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in self.path)
         return dotted.removeprefix(".")
 
     def tables(self) -> list[Node]:
         """Return the tables that the value may be; by its kind, where it has one."""
         nodes = list(tables(self.node))
         kind = self.value.get("kind") if isinstance(self.value, dict) else None
-        return [one for one in nodes if kind and kind_of(one) == kind] or nodes
+        return [table for table in nodes if kind and kind_of(table) == kind] or nodes
 
     def keys(self) -> list[str]:
         """Return the keys that a table here may have."""
-        return list(dict.fromkeys(name for one in self.tables() for name in one["properties"]))
+        return list(dict.fromkeys(name for table in self.tables() for name in table["properties"]))
 
     def kinds(self) -> list[str]:
         """Return the kinds that a table here may have."""
-        return [kind for one in tables(self.node) if (kind := kind_of(one))]
+        return [kind for table in tables(self.node) if (kind := kind_of(table))]
 
     def words(self) -> str:
         """Return the words for the values that are possible here."""
         return words(self.node)
 
-    def inside(self, part: int | str) -> Place | None:
+    def inside(self, step: int | str) -> Place | None:
         """Return the place of an item or of a key of the value, if there is one."""
         value, node = self.value, None
-        if isinstance(part, int) and isinstance(value, list):
-            lists = [one["items"] for one in options(self.node) if "items" in one]
+        if isinstance(step, int) and isinstance(value, list):
+            lists = [option["items"] for option in options(self.node) if "items" in option]
             # Numbers in a list are described with the list.
-            node = next((one for one in lists if list(tables(one))), None)
-            value = value[part]
-        elif isinstance(part, str) and isinstance(value, dict):
-            properties = [one["properties"] for one in self.tables() if part in one["properties"]]
-            others = [one.get("additionalProperties") for one in options(self.node)]
+            node = next((item for item in lists if list(tables(item))), None)
+            value = value[step]
+        elif isinstance(step, str) and isinstance(value, dict):
+            properties = [
+                table["properties"] for table in self.tables() if step in table["properties"]
+            ]
+            extras = [option.get("additionalProperties") for option in options(self.node)]
             if properties:
-                node = properties[0][part]
-            elif part in value:
-                node = next((one for one in others if one), None)
-            value = value.get(part)
-        return None if node is None else Place((*self.path, part), node, value)
+                node = properties[0][step]
+            elif step in value:
+                node = next((extra for extra in extras if extra), None)
+            value = value.get(step)
+        return None if node is None else Place((*self.path, step), node, value)
 
 
 def place(data: object, location: Iterable[int | str]) -> Place:
@@ -249,6 +251,6 @@ def place(data: object, location: Iterable[int | str]) -> Place:
     A location may hold names of alternatives between its keys, which are passed over.
     """
     here = Place((), schema()["$defs"][table_for(data).__name__], data)
-    for part in location:
-        here = here.inside(part) or here
+    for step in location:
+        here = here.inside(step) or here
     return here

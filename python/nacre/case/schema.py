@@ -226,9 +226,9 @@ class Fatigue(OfBody):
         """Return the keywords."""
         arguments = super().keywords()
         criteria = []
-        for number, one in enumerate(self.criteria):
+        for number, criterion in enumerate(self.criteria):
             with at(f"fatigue.criteria[{number}]"):
-                limits: Any = one
+                limits: Any = criterion
                 make = nacre.fatigue.CRITERIA[limits.kind]
                 criteria.append(make(bending=limits.bending, torsion=limits.torsion))
         return arguments | {"criteria": tuple(criteria)}
@@ -338,14 +338,14 @@ class Keys(Table):
 
     def _material(self, material: str | Material) -> nacre.Elastic:
         if isinstance(material, str):
-            known = self._known(material)
+            known = self._material_table(material)
             if material not in self.materials:
                 return known.make()
             with at(f"materials.{material}"):
                 return known.make()
         return material.make()
 
-    def _known(self, material: str | Material) -> Material:
+    def _material_table(self, material: str | Material) -> Material:
         """Return the table of a material: its own, that of its name here, or that of a card."""
         if not isinstance(material, str):
             return material
@@ -429,8 +429,8 @@ class CaseTable(Bodies):
         if self.slide is not None and self.roll is not None:
             raise WrongValue("roll", "must not be given beside the table slide")
         parameters = inspect.signature(getattr(nacre, name)).parameters
-        if others := sorted(self.solve.model_fields_set - parameters.keys()):
-            raise WrongValue(f"solve.{others[0]}", f"must not be given beside the table {name}")
+        if surplus := sorted(self.solve.model_fields_set - parameters.keys()):
+            raise WrongValue(f"solve.{surplus[0]}", f"must not be given beside the table {name}")
         return self._wear() if self.wear else self._friction(name)
 
     def _wear(self) -> dict[str, object]:
@@ -442,16 +442,16 @@ class CaseTable(Bodies):
                 with at(f"wear.{key}"):
                     keywords[key] = rates(keywords[key], self._names(body))
         motions = (("slide", self.slide), ("roll", self.roll))
-        return keywords | {name: one.keywords() for name, one in motions if one is not None}
+        return keywords | {name: table.keywords() for name, table in motions if table is not None}
 
     @staticmethod
     def _names(body: Body | None) -> list[list[str]]:
         """Return the names of the layers of a body and of its substrate, the first their own."""
         if body is None:
             return []
-        parts = [(str(k), layer.name, layer.material) for k, layer in enumerate(body.layers)]
-        parts.append(("substrate", None, body.substrate))
-        return [[name for name in part if isinstance(name, str)] for part in parts]
+        regions = [(str(k), layer.name, layer.material) for k, layer in enumerate(body.layers)]
+        regions.append(("substrate", None, body.substrate))
+        return [[name for name in region if isinstance(name, str)] for region in regions]
 
     def _friction(self, name: str) -> dict[str, object]:
         """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
@@ -472,7 +472,7 @@ class CaseTable(Bodies):
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self._known(one) for one in entries]
+        materials = [self._material_table(entry) for entry in entries]
         return {name: [getattr(material, name, None) for material in materials] for name in names}
 
 

@@ -186,9 +186,9 @@ class Sum(Shape):
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
-        first, *others = (part.make(folder, metres) for part in self.parts)
-        for other in others:
-            first = first + other
+        first, *addends = (shape.make(folder, metres) for shape in self.parts)
+        for addend in addends:
+            first = first + addend
         return first
 
 

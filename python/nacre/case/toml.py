@@ -49,7 +49,7 @@ def _text(words: str) -> str:
 def _value(value: object) -> str:
     """Return a value: a text, true or false, a number, or a list or a table in one line."""
     if isinstance(value, Mapping):
-        items = (f"{_key(key)} = {_value(one)}" for key, one in value.items())
+        items = (f"{_key(key)} = {_value(item)}" for key, item in value.items())
         return f"{{ {', '.join(items)} }}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_value, value))}]"

@@ -53,9 +53,9 @@ def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> 
         return rate
     if not names:
         raise ValueError("must be a number, as the shape is rigid without a counterbody")
-    known = list(dict.fromkeys(name for part in names for name in part))
-    if others := [key for key in rate if key not in known]:
-        raise ValueError(f"must have keys among {', '.join(known)}, got {others[0]!r}")
-    own_names = [next((name for name in part if name in rate), None) for part in names]
-    keys = [int(part[0]) if part[0].isdigit() else part[0] for part in names]
+    known = list(dict.fromkeys(name for aliases in names for name in aliases))
+    if unknown := [key for key in rate if key not in known]:
+        raise ValueError(f"must have keys among {', '.join(known)}, got {unknown[0]!r}")
+    own_names = [next((name for name in aliases if name in rate), None) for aliases in names]
+    keys = [int(aliases[0]) if aliases[0].isdigit() else aliases[0] for aliases in names]
     return {key: rate[name] for key, name in zip(keys, own_names, strict=True) if name is not None}

@@ -131,20 +131,22 @@ class Differentiable:
         """Return the solved contact at a vector."""
         x = np.ascontiguousarray(x, dtype=np.float64)
         digest = hashlib.sha256(x.tobytes()).digest()
-        return self.points.at((names, len(x), digest), lambda: self._solved(names, x))
+        return self.points.at((names, len(x), digest), lambda: self._solved_point(names, x))
 
     def values(self, names: tuple[str, ...], x: Array) -> tuple[Array, Array]:
         """Return the pressures of the cells and the outputs."""
         point = self.point(names, x)
         hard = [
-            name for name, one in self.outputs.items() if not (isinstance(one, str) and one in READ)
+            name
+            for name, output in self.outputs.items()
+            if not (isinstance(output, str) and output in READ)
         ]
         gradients = self._gradients(point, hard)
         by_name = {name: gradient.value for name, gradient in gradients.items()}
-        for name, one in self.outputs.items():
+        for name, output in self.outputs.items():
             if name not in by_name:
-                by_name[name] = READ[str(one)](point.solution)
-            if one == "approach":
+                by_name[name] = READ[str(output)](point.solution)
+            if output == "approach":
                 by_name[name] += point.lowest
         pressure: Array = point.solution.pressure.ravel()
         return pressure, np.array([by_name[name] for name in self.outputs], dtype=np.float64)
@@ -194,7 +196,7 @@ class Differentiable:
         shape = {} if self.shape is None else {"shape": self.shape}
         return {**self.arguments, **shape}
 
-    def _solved(self, names: tuple[str, ...], x: Array) -> Point:
+    def _solved_point(self, names: tuple[str, ...], x: Array) -> Point:
         n = len(names)
         try:
             arguments = self._all_arguments()
@@ -247,7 +249,7 @@ def _outputs_by_name(outputs: Outputs) -> dict[str, Output]:
     elif isinstance(outputs, str) or not isinstance(outputs, Sequence):
         raise TypeError(f"outputs must be a list of words or a dict of names, got {outputs!r}")
     else:
-        by_name = {one: one for one in outputs if isinstance(one, str)}
+        by_name = {word: word for word in outputs if isinstance(word, str)}
         if len(by_name) < len(outputs):
             raise TypeError(
                 f"outputs must be different words, or a dict that names the others, "

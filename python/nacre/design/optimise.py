@@ -6,7 +6,7 @@ import math
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -255,7 +255,7 @@ def optimise(
     {'shape.radius': 0.008}
     """
     with extra("design"):
-        from scipy.optimize import minimize
+        import scipy.optimize  # noqa: F401
     if not tolerance > 0:
         raise ValueError(f"tolerance must be above 0, got {tolerance!r}")
     scales = scales_of(start, bounds or {})
@@ -267,78 +267,103 @@ def optimise(
         [grid] if isinstance(grid, core.Grid) else grid or [None, None]
     )
     x = np.array([scale.x(start[scale.name]) for scale in scales])
-    box = [(scale.low, scale.high) for scale in scales]
-    options: dict[str, object] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
-    if constraints:
-        slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
-        options["constraints"] = [{"type": "ineq", **slack}]
-    sides = np.array(box, dtype=np.float64).T  # None becomes NaN
-    sides = np.where(np.isnan(sides), [[-np.inf], [np.inf]], sides)
-    least = tolerance / 10
+    course = _Course(problem, progress)
     termination = "converged"
-    rows: list[dict[str, float]] = []
-
-    def keep(x: Array) -> None:
-        point = problem.at(x)
-        row = {"solves": float(problem.solves), "objective": point.value * problem.unit}
-        row |= {"excess": -float(point.slack.min(initial=math.inf)), **problem.by_name(x)}
-        if rows and row == rows[-1]:
-            return
-        rows.append(row)
-        if progress is True:
-            text = ", ".join(f"{name} {value:.5g}" for name, value in row.items())
-            print(f"nacre.design.optimise: {text}", file=sys.stderr, flush=True)
-        elif callable(progress):
-            progress(row)
-        elif tell is not None:
-            tell(f"{problem.solves} solves, objective {row['objective']:.5g}")
-
     quiet = (lambda _: None) if isinstance(progress, bool) else progress
-    with lasting("optimum", quiet) as tell, warnings.catch_warnings():
+    with lasting("optimum", quiet) as course.tell, warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the optimum has them
         try:
             for stage in grids:
                 problem.begin(x, stage)
-                if not rows:
-                    keep(x)
-                for _ in range(1 + RESTARTS):
-                    before = problem.at(x).value
-                    # The first step of both methods is the slope: it is made as long as 1.
-                    slope = problem.at(x).slope
-                    steepest = float(np.abs(np.clip(x - slope, *sides) - x).max())
-                    factor = max(1.0, 1.0 / max(steepest, least))
-                    ends = {"ftol": least}
-                    ends |= {"ftol": factor * least} if constraints else {"gtol": factor * least}
-                    minimum = minimize(
-                        lambda x, factor=factor: problem.scaled(x, factor),
-                        x,
-                        jac=True,
-                        bounds=box,
-                        callback=keep,
-                        options=ends,
-                        **options,
-                    )
-                    x = problem.best().x
-                    termination = "converged" if minimum.success else "line search"
-                    if before - problem.at(x).value < tolerance:
-                        break
+                if not course.rows:
+                    course.add(x)
+                x, termination = _search(problem, x, course)
         except Enough:
             termination = "solve limit"
+    return _optimum(problem, course, termination)
+
+
+@dataclass
+class _Course:
+    """Rows of the course of a search, which are shown as they come."""
+
+    problem: Problem
+    progress: Callable[[dict[str, float]], object] | bool | None
+    tell: Callable[[str], object] | None = None
+    rows: list[dict[str, float]] = field(default_factory=list)
+
+    def add(self, x: Array) -> None:
+        """Add a row for a point, unless it is the last one's."""
+        point = self.problem.at(x)
+        row = {"solves": float(self.problem.solves), "objective": point.value * self.problem.unit}
+        row |= {"excess": -float(point.slack.min(initial=math.inf)), **self.problem.by_name(x)}
+        if self.rows and row == self.rows[-1]:
+            return
+        self.rows.append(row)
+        if self.progress is True:
+            text = ", ".join(f"{name} {value:.5g}" for name, value in row.items())
+            print(f"nacre.design.optimise: {text}", file=sys.stderr, flush=True)
+        elif callable(self.progress):
+            self.progress(row)
+        elif self.tell is not None:
+            self.tell(f"{self.problem.solves} solves, objective {row['objective']:.5g}")
+
+
+def _search(problem: Problem, x: Array, course: _Course) -> tuple[Array, str]:
+    """Return where SciPy ends on these cells, and how; it starts afresh while that gains."""
+    from scipy.optimize import minimize
+
+    box = [(scale.low, scale.high) for scale in problem.scales]
+    sides = np.array(box, dtype=np.float64).T  # None becomes NaN
+    sides = np.where(np.isnan(sides), [[-np.inf], [np.inf]], sides)
+    options: dict[str, object] = {"method": "SLSQP" if problem.limits else "L-BFGS-B"}
+    if problem.limits:
+        slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
+        options["constraints"] = [{"type": "ineq", **slack}]
+    least = problem.tolerance / 10
+    for _ in range(1 + RESTARTS):
+        before = problem.at(x).value
+        # The first step of both methods is the slope: it is made as long as 1.
+        slope = problem.at(x).slope
+        steepest = float(np.abs(np.clip(x - slope, *sides) - x).max())
+        factor = max(1.0, 1.0 / max(steepest, least))
+        ends = {"ftol": least}
+        ends |= {"ftol": factor * least} if problem.limits else {"gtol": factor * least}
+        minimum = minimize(
+            lambda x, factor=factor: problem.scaled(x, factor),
+            x,
+            jac=True,
+            bounds=box,
+            callback=course.add,
+            options=ends,
+            **options,
+        )
+        x = problem.best().x
+        if before - problem.at(x).value < problem.tolerance:
+            break
+    return x, "converged" if minimum.success else "line search"
+
+
+def _optimum(problem: Problem, course: _Course, termination: str) -> Optimum:
+    """Return the best point of a search, with what is to be said of it."""
     point = problem.best()
-    table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    values = problem.by_name(point.x)
+    table = {name: np.array([row[name] for row in course.rows]) for name in course.rows[0]}
     reached = point.outputs[:, 1:].T.tolist()
     limits = [(*pair, tuple(r)) for pair, r in zip(problem.limits, reached, strict=True)]
-    slopes = dict(zip(problem.by_name(x), point.slope, strict=True))
+    slopes = dict(zip(values, point.slope, strict=True))
     warning_lines = [line for solution in point.solutions for line in solution.report.warnings]
     warning_lines = list(dict.fromkeys([*warning_lines, *point.warnings]))
     warning_lines += [
-        f"{s.name} does not change the objective there" for s in scales if not slopes[s.name]
+        f"{s.name} does not change the objective there"
+        for s in problem.scales
+        if not slopes[s.name]
     ]
     excess = -float(point.slack.min(initial=math.inf))
-    if excess > tolerance:
+    if excess > problem.tolerance:
         termination = "infeasible" if termination == "line search" else termination
         warning_lines += [f"a limit is exceeded: the output is {1 + excess:.3g} times as large"]
-    best = problem.by_name(point.x), point.value * problem.unit, tuple(limits), table
+    best = values, point.value * problem.unit, tuple(limits), table
     return Optimum(*best, point.solutions, problem.solves, termination, warning_lines)
 
 

@@ -158,7 +158,7 @@ class Problem:
         keywords = {"tolerance": ACCURATE, **keywords, "grid": self.grids[k]}
         names = ("body", "counterbody", "grid", "threads")
         plan_keywords = {name: keywords.pop(name) for name in names if name in keywords}
-        plan = next((p for p, other in self.plans.values() if other == plan_keywords), None)
+        plan = next((p for p, settings in self.plans.values() if settings == plan_keywords), None)
         plan = plan or Contact(**plan_keywords)
         keywords.pop("max_cells", None)  # of the grid, which is chosen by now
         self.plans[k] = plan, plan_keywords

@@ -154,11 +154,11 @@ class Rolling:
                 rows = COARSER if nx % COARSER == 0 and nx // COARSER >= ROWS else 1
                 across, nx = across * rows, nx // rows
                 sides = ((0, 0), ((count - count // COARSER) // 2,) * 2)
-                parts = [
+                averages = [
                     load.reshape(nx, rows, count // COARSER, COARSER).mean(axis=(1, 3))
                     for load in merged
                 ]
-                merged = [np.pad(part, sides) for part in parts]
+                merged = [np.pad(average, sides) for average in averages]
             if self.grid.is_line:
                 grid = core.Grid.line(count, count * step, middle)
             else:
@@ -192,16 +192,16 @@ class Rolling:
         With `friction`, the part of the tractions is there.
         """
         slides = (0.0, 1.0) if friction and not self.has_tractions else (0.0,)
-        own = [self._own(depths, side, slide, self.x) for slide in slides]
-        ys, parts = [self.grid.y], [[self._array(field) for field in own]]
+        own = [self._contact_stress(depths, side, slide, self.x) for slide in slides]
+        ys, blocks = [self.grid.y], [[self._array(field) for field in own]]
         for level in self.levels:
             ys.append(level.grid.y[level.used])
-            parts.append(
-                [self._beyond(level, depths, side, slide)[:, level.used] for slide in slides]
+            blocks.append(
+                [self._far_states(level, depths, side, slide)[:, level.used] for slide in slides]
             )
         y = np.concatenate(ys)
         order = np.argsort(y, kind="stable")
-        stresses = [np.concatenate(part, axis=1)[:, order] for part in zip(*parts, strict=True)]
+        stresses = [np.concatenate(row, axis=1)[:, order] for row in zip(*blocks, strict=True)]
         added = (
             stresses[1] - stresses[0] if len(stresses) == 2 else np.zeros((len(depths), y.size, 6))
         )
@@ -214,10 +214,10 @@ class Rolling:
         if len(slides) == 2:
             errors[:, 1] -= errors[:, 0]
         if list(depths) == [0.0]:
-            states = self._with_edges(states, slides)
-        return self._unloaded(states), errors
+            states = self._with_edge_states(states, slides)
+        return self._with_unloaded_state(states), errors
 
-    def _own(
+    def _contact_stress(
         self,
         depths: Sequence[float],
         side: Side,
@@ -236,7 +236,7 @@ class Rolling:
         """Return the states ``(depths, y, 6)``."""
         return np.stack([field.components[name][:, 0, :] for name in NAMES], axis=-1)
 
-    def _beyond(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
+    def _far_states(self, level: Level, depths: Sequence[float], side: Side, slide: float) -> Array:
         """Return the states on a wider grid, whose loads are uniform over cells."""
 
         def stress(plan: core.StressPlan, friction: float, way: Direction) -> Array:
@@ -250,7 +250,7 @@ class Rolling:
             total += stress(plan, 1.0, way) - stress(plan, 0.0, way)
         return total
 
-    def _with_edges(self, states: States, slides: Sequence[float]) -> States:
+    def _with_edge_states(self, states: States, slides: Sequence[float]) -> States:
         """Return the states at the surface with those at the edges of the contact.
 
         With friction, yy has a peak there of the square root of the distance, which cells cut off.
@@ -268,7 +268,9 @@ class Rolling:
         inside = apart >= self.grid.spacing[1]
         states = States(states.y[inside], states.normal[:, inside], states.tangential[:, inside])
         for x, y in ends.tolist():
-            own, *slid = (self._array(self._own([0.0], "below", one, x, y)) for one in slides)
+            own, *slid = (
+                self._array(self._contact_stress([0.0], "below", slide, x, y)) for slide in slides
+            )
             at = int(np.searchsorted(states.y, y))
             added = slid[0] - own if slid else np.zeros_like(own)
             states = States(
@@ -279,7 +281,7 @@ class Rolling:
             )
         return states
 
-    def _unloaded(self, states: States) -> States:
+    def _with_unloaded_state(self, states: States) -> States:
         """Return the states with the stress-free one, infinitely far away."""
         none = np.zeros((len(states.normal), 1, 6))
         return States(
@@ -296,13 +298,13 @@ def _lagrange(nodes: Array, at: object) -> Array:
     weights = [
         np.prod(
             [
-                (at - nodes[..., other]) / (nodes[..., one] - nodes[..., other])
-                for other in range(nodes.shape[-1])
-                if other != one
+                (at - nodes[..., m]) / (nodes[..., k] - nodes[..., m])
+                for m in range(nodes.shape[-1])
+                if m != k
             ],
             axis=0,
         )
-        for one in range(nodes.shape[-1])
+        for k in range(nodes.shape[-1])
     ]
     return np.stack(weights, axis=-1)
 

@@ -61,9 +61,10 @@ def quantities(
     if spring_constant is not None and choices["depth"] is None:
         choices = {**choices, "depth": _height(where, table)}
     columns = {
-        quantity: _signed_column(where, table, quantity, one) for quantity, one in choices.items()
+        quantity: _signed_column(where, table, quantity, choice)
+        for quantity, choice in choices.items()
     }
-    rows = _filled(table, [index for _, index in columns.values() if index is not None])
+    rows = _row_count(table, [index for _, index in columns.values() if index is not None])
     by_quantity: dict[str, Array | None] = {}
     for quantity, (sign, index) in columns.items():
         by_quantity[quantity] = None
@@ -85,7 +86,7 @@ def quantities(
     return depth, force, time
 
 
-def _filled(table: Table, columns: Sequence[int]) -> int:
+def _row_count(table: Table, columns: Sequence[int]) -> int:
     """Return the number of rows up to the last that is not blank in all of these columns."""
     rows = len(table.rows)
     while rows > 0 and not any(table.rows[rows - 1][index] for index in columns):
@@ -120,7 +121,7 @@ def _signed_column(
 ) -> tuple[float, int | None]:
     """Return the sign and the number of a quantity's column; none only for a time."""
     if choice is None:
-        index = _known(where, table, quantity)
+        index = _named_column(where, table, quantity)
         if index is None and quantity != "time":
             first = [column.name.lower().split()[:1] for column in table.columns]
             hint = ""
@@ -139,7 +140,7 @@ def _plain(name: str) -> str:
     return re.sub(r"[\W_]+", "", name.lower())
 
 
-def _known(where: str, table: Table, quantity: str) -> int | None:
+def _named_column(where: str, table: Table, quantity: str) -> int | None:
     """Return the column whose name is known, or None; several of the best name are an error."""
     columns = [
         (index, column)
@@ -276,10 +277,10 @@ def chosen_tables(
         except TypeError:
             raise TypeError(f"segment must be a number or 'all', got {segment!r}") from None
     if len(tables) == 1 and segment in (None, "all"):
-        parts = _parts(tables[0]) if segment else []
-        return dict(enumerate(parts or tables))
-    if len(tables) == 1 and (parts := _parts(tables[0])):
-        tables = parts
+        segments = _segments(tables[0]) if segment else []
+        return dict(enumerate(segments or tables))
+    if len(tables) == 1 and (segments := _segments(tables[0])):
+        tables = segments
     if isinstance(segment, int):
         if 0 <= segment < len(tables):
             return {segment: tables[segment]}
@@ -301,20 +302,20 @@ def chosen_tables(
     )
 
 
-def _parts(table: Table) -> list[Table]:
+def _segments(table: Table) -> list[Table]:
     """Return the parts of a table that a column of segments tells apart by text or number."""
     for index, column in enumerate(table.columns):
         labels = [row[index] for row in table.rows]
-        changes = sum(one != other for one, other in pairwise(labels))
+        changes = sum(before != after for before, after in pairwise(labels))
         kinds = list(dict.fromkeys(labels))
         if _plain(column.name) != "segment" or len(kinds) < 2 or not all(kinds):
             continue
         if changes != len(kinds) - 1:  # a segment comes again
             continue
-        parts = []
+        segments = []
         for label in kinds:
-            indices = [k for k, one in enumerate(labels) if one == label]
+            indices = [k for k, text in enumerate(labels) if text == label]
             rows, lines = [table.rows[k] for k in indices], [table.lines[k] for k in indices]
-            parts.append(replace(table, rows=rows, lines=lines, title=label))
-        return parts
+            segments.append(replace(table, rows=rows, lines=lines, title=label))
+        return segments
     return []

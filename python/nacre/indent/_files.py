@@ -62,7 +62,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
         "approach": fit.approaches,
         "residual": fit.residuals,
     }
-    columns |= {name: ("point", np.concatenate(parts)) for name, parts in points.items()}
+    columns |= {name: ("point", np.concatenate(arrays)) for name, arrays in points.items()}
     numbers = np.repeat(np.arange(len(fit.curves)), [len(curve) for curve in fit.curves])
     coords = {"parameter": names, "other_parameter": names, "curve": ("point", numbers)}
     noise = {"residual": "N" if fit.noise == "absolute" else ""}

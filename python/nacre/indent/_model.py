@@ -193,8 +193,8 @@ class Model:
         depth = self.depth.copy()
         for k, unknown in enumerate(self.unknowns):
             if unknown.kind and unknown.kind not in OF_FORCE:
-                part = self.parts[unknown.curve]
-                depth[part] -= unknown.value(float(x[k])) * self._lever(unknown)
+                rows = self.parts[unknown.curve]
+                depth[rows] -= unknown.value(float(x[k])) * self._lever(unknown)
         return depth
 
     def _lever(self, unknown: Unknown) -> Array | float:
@@ -213,10 +213,10 @@ class Model:
         if key not in self._loads:
             if len(self._loads) > KEPT:
                 self._loads.clear()
-            self._loads[key] = self._computed(x)
+            self._loads[key] = self._loads_at(x)
         return self._loads[key]
 
-    def _computed(self, x: Array) -> tuple[Array, Array]:
+    def _loads_at(self, x: Array) -> tuple[Array, Array]:
         self.evaluations += 1
         values = self._system_values(x)
         area = values.pop("tip.area", 1.0)
@@ -233,13 +233,13 @@ class Model:
         place = 0
         for k, unknown in enumerate(self.unknowns):
             if unknown.kind:
-                part = self.parts[unknown.curve]
+                rows = self.parts[unknown.curve]
                 if unknown.kind in OF_FORCE:
-                    load[part] += unknown.value(float(x[k])) * self._lever(unknown)
-                    columns[part, k] = unknown.scale * self._lever(unknown)
+                    load[rows] += unknown.value(float(x[k])) * self._lever(unknown)
+                    columns[rows, k] = unknown.scale * self._lever(unknown)
                     continue
-                rate = wider * curve.slope[part] * self._lever(unknown)
-                columns[part, k] = -unknown.scale * rate
+                rate = wider * curve.slope[rows] * self._lever(unknown)
+                columns[rows, k] = -unknown.scale * rate
                 continue
             factor = unknown.rate(float(x[k]))
             if area != 1:

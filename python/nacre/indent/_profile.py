@@ -106,15 +106,15 @@ def minimum(model: Model, x: Array, *, rough: bool = False, fixed: int | None = 
     if not varied.any():
         return x
 
-    def whole(part: Array) -> Array:
+    def whole(values: Array) -> Array:
         place = x.copy()
-        place[varied] = part
+        place[varied] = values
         return place
 
     optimum = least_squares(
-        lambda part: model.at(whole(part))[0],
+        lambda values: model.at(whole(values))[0],
         x[varied],
-        jac=lambda part: model.at(whole(part))[1][:, varied],
+        jac=lambda values: model.at(whole(values))[1][:, varied],
         bounds=(model.low[varied], model.high[varied]),
         method="trf",
         ftol=1e-4 if rough else 1e-9,
@@ -145,7 +145,7 @@ def _end(model: Model, best: Estimate, k: int, side: float) -> float:
     if width > REACH:
         return side * math.inf
     level = best.chi2 + best.quantile**2 * best.variance
-    others = np.arange(best.x.size) != k
+    varied = np.arange(best.x.size) != k
     whole = side * best.quantile * best.covariance[:, k] / spread
     x = best.x + whole * min(1.0, LONGEST / float(np.abs(whole).max()))
     for _ in range(STEPS):
@@ -154,18 +154,18 @@ def _end(model: Model, best: Estimate, k: int, side: float) -> float:
         if not np.isfinite(residuals).all():
             x = 0.5 * (x + best.x)
             continue
-        basis, triangle = np.linalg.qr(jacobian[:, others])
+        basis, triangle = np.linalg.qr(jacobian[:, varied])
         column = jacobian[:, k]
         own = column - basis @ (basis.T @ column)
-        rest = residuals - basis @ (basis.T @ residuals)
-        square, mixed = float(own @ own), float(own @ rest)
+        remainder = residuals - basis @ (basis.T @ residuals)
+        square, mixed = float(own @ own), float(own @ remainder)
         if square == 0:
             return side * math.inf
-        inside = mixed**2 - square * (float(rest @ rest) - level)
+        inside = mixed**2 - square * (float(remainder @ remainder) - level)
         along = (side * math.sqrt(max(inside, 0.0)) - mixed) / square
         step = np.empty_like(x)
         step[k] = along
-        step[others] = -np.linalg.lstsq(triangle, basis.T @ (residuals + column * along))[0]
+        step[varied] = -np.linalg.lstsq(triangle, basis.T @ (residuals + column * along))[0]
         longest = float(np.abs(step).max())
         if not math.isfinite(longest):
             return side * math.inf
@@ -177,10 +177,10 @@ def _end(model: Model, best: Estimate, k: int, side: float) -> float:
         x = x + step * min(1.0, LONGEST / longest)
         if float(np.abs(x - best.x).max()) > REACH:
             return side * math.inf
-    return _bracketed(model, best, k, side, level)
+    return _bisected_end(model, best, k, side, level)
 
 
-def _bracketed(model: Model, best: Estimate, k: int, side: float, level: float) -> float:
+def _bisected_end(model: Model, best: Estimate, k: int, side: float, level: float) -> float:
     """Return an end by bisection of the least sum of squares over x[k], where steps do not settle.
 
     Contacts that jump, as with adhesion, make it rough.
@@ -210,7 +210,7 @@ def _least(model: Model, x: Array, k: int) -> float:
     return model.chi2(minimum(model, x, rough=True, fixed=k))
 
 
-def others(model: Model, start: Array) -> list[Array]:
+def shifted_starts(model: Model, start: Array) -> list[Array]:
     """Return other places to start from: three times and a third of each free thickness.
 
     Where no thickness is free, of the first modulus.
@@ -300,8 +300,8 @@ def _partner(model: Model, best: Estimate, k: int) -> str:
     row[k] = 0.0
     if row.size < 2 or row.max() < 0.5:
         return ""
-    other = int(row.argmax())
-    return f"; it trades with {model.names[other]} (correlation {best.correlation[k, other]:.3f})"
+    rival = int(row.argmax())
+    return f"; it trades with {model.names[rival]} (correlation {best.correlation[k, rival]:.3f})"
 
 
 def _structure(model: Model, best: Estimate, k: int) -> str:

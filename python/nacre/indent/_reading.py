@@ -51,10 +51,10 @@ def apparent_modulus(solution: IndentSolution) -> Reading | None:
         return None
     film, depths = body.layers[0].material, largest * np.geomspace(SHALLOWEST, 1.0, DEPTHS)
     loads, bare = (
-        core.Indentation(one, solution.tip, solution.counterbody, None)
+        core.Indentation(sample, solution.tip, solution.counterbody, None)
         .at("stable", approach=depths)
         .number("load")
-        for one in (body, core.HalfSpace(film))
+        for sample in (body, core.HalfSpace(film))
     )
     tip = solution.counterbody and solution.counterbody.substrate
     compliance = 1 / tip.plane_strain_modulus if isinstance(tip, core.Elastic) else 0.0

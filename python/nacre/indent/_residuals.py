@@ -49,7 +49,7 @@ CLOSE = 1.4
 """Sum of squares that a remedy leaves over that of the best one, up to which it is named too."""
 
 
-def likeliest(model: Model, x: Array) -> tuple[Noise, float]:
+def likeliest_noise(model: Model, x: Array) -> tuple[Noise, float]:
     """Return the kind of noise by likelihood, and its floor over the largest force.
 
     The noise has the standard deviation σ·√(F² + c²): relative for c = 0, absolute for c → ∞. The
@@ -63,8 +63,8 @@ def likeliest(model: Model, x: Array) -> tuple[Noise, float]:
             continue
         least = floor * model.top
         value, rate = uniform(model.force, least)
-        rest = value - uniform(load, least)[0]
-        square = np.concatenate([np.diff(rest[part], 2) ** 2 / 6 for part in model.parts]).mean()
+        misfit = value - uniform(load, least)[0]
+        square = np.concatenate([np.diff(misfit[rows], 2) ** 2 / 6 for rows in model.parts]).mean()
         size = model.force.size * math.log(square + (0.01 * ROUNDING) ** 2)
         likelihoods.append(0.5 * (float(np.log(rate).sum()) - 0.5 * size))
     best = int(np.argmax(likelihoods))
@@ -135,8 +135,8 @@ def examine(model: Model, best: Estimate) -> Examination:
         if name in model.free
     }
     basis, _ = np.linalg.qr(jacobian)
-    rest = residuals - basis @ (basis.T @ residuals)
-    chi2, dof, count = float(rest @ rest), model.dof, model.depth.size
+    remainder = residuals - basis @ (basis.T @ residuals)
+    chi2, dof, count = float(remainder @ remainder), model.dof, model.depth.size
     size = math.sqrt(chi2 / dof)
     if dof < 3 or size < ROUNDING:
         return Examination(best, [], sensitivity)
@@ -145,13 +145,13 @@ def examine(model: Model, best: Estimate) -> Examination:
     lengths = np.linalg.norm(own, axis=0)
     independent = lengths > 1e-6 * np.linalg.norm(fixed.columns, axis=0)
     share = np.zeros(len(fixed.names))
-    share[independent] = own[:, independent].T @ rest / lengths[independent]
+    share[independent] = own[:, independent].T @ remainder / lengths[independent]
     if model.is_known:
         chances = 2 * ndtr(-np.abs(share))
     else:
         left = np.maximum(chi2 - share**2, 1e-30 * chi2) / (dof - 1)
         chances = 2 * stdtr(dof - 1, -np.abs(share) / np.sqrt(left))
-    ratio, due, chance = durbin_watson(rest[:count], basis[:count], model.parts)
+    ratio, due, chance = durbin_watson(remainder[:count], basis[:count], model.parts)
     is_structured = chance < LEVEL and not (model.is_known and chi2 < 0.5 * dof)
     is_large = model.is_known and float(chdtrc(dof, chi2)) < LEVEL
     is_explained = bool((chances[independent] < LEVEL / max(independent.sum(), 1)).any())
@@ -162,7 +162,7 @@ def examine(model: Model, best: Estimate) -> Examination:
     change[independent] = -share[independent] / lengths[independent]
     left = chi2 - share**2
     remedies = _remedies(fixed.names, chances, np.abs(change), left)
-    text, shift = _sentence(model, rest[:count], size, ratio), np.zeros_like(best.x)
+    text, shift = _sentence(model, remainder[:count], size, ratio), np.zeros_like(best.x)
     if remedies:
         listing = ", ".join(
             f"{fixed.names[k]} (leaves {_share(model, math.sqrt(left[k] / dof))})" for k in remedies
@@ -170,7 +170,7 @@ def examine(model: Model, best: Estimate) -> Examination:
         text += f"; free, where it is not sure, {listing}"
         first = min(remedies, key=lambda k: float(left[k]))
         shift = moves[:, first] * change[first]
-        after = rest - own[:, first] * share[first] / lengths[first]
+        after = remainder - own[:, first] * share[first] / lengths[first]
         if durbin_watson(after[:count], basis[:count], model.parts)[2] < LEVEL:
             text += f"; none of these alone makes the rest noise: {OTHERWISE}"
     else:
@@ -182,7 +182,9 @@ def examine(model: Model, best: Estimate) -> Examination:
     return Examination(replace(best, covariance=covariance), [text], sensitivity)
 
 
-def durbin_watson(rest: Array, basis: Array, parts: Sequence[slice]) -> tuple[float, float, float]:
+def durbin_watson(
+    residuals: Array, basis: Array, slices: Sequence[slice]
+) -> tuple[float, float, float]:
     """Return Durbin and Watson's ratio of residuals, its mean, and the chance of less.
 
     Neighbours are within a part. The chance is that of a beta variable on 0 to 4 that has the exact
@@ -194,22 +196,22 @@ def durbin_watson(rest: Array, basis: Array, parts: Sequence[slice]) -> tuple[fl
     def differences(values: Array) -> Array:
         """Return A·values, where rᵀAr is the sum of squared differences of neighbours."""
         product = np.zeros_like(values)
-        for part in parts:
-            step = np.diff(values[part], axis=0)
-            product[part][:-1] -= step
-            product[part][1:] += step
+        for rows in slices:
+            step = np.diff(values[rows], axis=0)
+            product[rows][:-1] -= step
+            product[rows][1:] += step
         return product
 
-    dof = rest.size - basis.shape[1]
+    dof = residuals.size - basis.shape[1]
     mapped = differences(basis)
     inner = basis.T @ mapped
-    first = sum(2 * (part.stop - part.start - 1) for part in parts) - np.trace(inner)
+    first = sum(2 * (rows.stop - rows.start - 1) for rows in slices) - np.trace(inner)
     second = (
-        sum(6 * (part.stop - part.start) - 8 for part in parts)
+        sum(6 * (rows.stop - rows.start) - 8 for rows in slices)
         - 2 * float((mapped**2).sum())
         + float((inner**2).sum())
     )
-    ratio = float(rest @ differences(rest) / (rest @ rest))
+    ratio = float(residuals @ differences(residuals) / (residuals @ residuals))
     mean = float(first) / dof
     variance = 2 * (second - float(first) * mean) / (dof * (dof + 2))
     a = 0.25 * mean
@@ -235,8 +237,8 @@ def _share(model: Model, size: float) -> str:
     return f"{percent:.2g} %"
 
 
-def _sentence(model: Model, rest: Array, size: float, ratio: float) -> str:
-    local = np.concatenate([np.diff(rest[part], 2) for part in model.parts])
+def _sentence(model: Model, residuals: Array, size: float, ratio: float) -> str:
+    local = np.concatenate([np.diff(residuals[rows], 2) for rows in model.parts])
     near = math.sqrt(float(local @ local) / (6 * local.size))
     of = "largest force" if model.noise == "absolute" else "force"
     return (

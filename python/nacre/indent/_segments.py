@@ -70,8 +70,8 @@ def _misfit(rise: Array, end: int) -> float:
     """Return the sum of squares about a parabola up to a point and its value from there on."""
     x = np.minimum(np.arange(rise.size) - end, 0) / rise.size
     basis = np.stack([np.ones_like(x), x, x**2], axis=1)
-    rest = rise - basis @ np.linalg.lstsq(basis, rise)[0]
-    return float(rest @ rest)
+    misfit = rise - basis @ np.linalg.lstsq(basis, rise)[0]
+    return float(misfit @ misfit)
 
 
 def departure(depth: Array, force: Array) -> int:

@@ -27,10 +27,10 @@ def fit_verdict(fit: Fit) -> Verdict:
     shares = {name: _share(fit, name) for name in dict.fromkeys((*fit.free, *fit.reasons))}
     if not shares:
         return Verdict("unknown", "No parameter was fitted.")
-    worst, *others = sorted(shares, key=lambda name: -shares[name])
+    worst, *better = sorted(shares, key=lambda name: -shares[name])
     share, owners = shares[worst], dict(_owners(fit))
     level: Level = "bad" if share > FAIR else "fair" if share > GOOD or fit.warnings else "good"
-    words, *lines = [_sentence(fit, name, owners) for name in (worst, *others)]
+    words, *lines = [_sentence(fit, name, owners) for name in (worst, *better)]
     uncertainty = share if math.isfinite(share) else None
     return Verdict(level, words, tuple(lines), None, _words(worst, owners), uncertainty)
 

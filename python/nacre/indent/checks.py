@@ -241,7 +241,7 @@ def suspicious_units(curve: Curve, *, tip_size: float, modulus: float | None = N
 
 def _depth_in_contact(curve: Curve) -> tuple[float, float] | None:
     """Return depth from the contact, by Hertz' law, and force at the largest force."""
-    depth, force = (values[::-1] for values in _rising(curve))
+    depth, force = (values[::-1] for values in _rising_points(curve))
     below = np.flatnonzero(force < 0.5 * force[0])
     if force[0] <= 0 or not below.size:
         return None
@@ -337,8 +337,8 @@ def contact_point(
         columns = [*[np.ones_like(x), x][:terms], np.maximum(x - zero, 0.0) ** exponent]
         matrix = np.stack(columns, axis=1)
         best = np.asarray(np.linalg.lstsq(matrix, y)[0], dtype=np.float64)
-        rest = y - matrix @ best
-        return (float(rest @ rest) if best[-1] > 0 else math.inf), best, matrix
+        misfit = y - matrix @ best
+        return (float(misfit @ misfit) if best[-1] > 0 else math.inf), best, matrix
 
     # A curve that starts in contact has its zero before the first point; the last needs some after.
     trials = np.linspace(-1.0, float(np.sort(x)[-3]), CANDIDATES, endpoint=False)
@@ -367,14 +367,14 @@ def contact_point(
 
 def _first_part(curve: Curve, up_to: float) -> tuple[Array, Array]:
     """Return depth and force of the loading up to the last point below a share of the force."""
-    depth, force = _rising(curve)
+    depth, force = _rising_points(curve)
     least = float(force.min())
     below = np.flatnonzero(force <= least + up_to * (float(force.max()) - least))
     end = int(below[-1]) + 1
     return depth[:end], force[:end]
 
 
-def _rising(curve: Curve) -> tuple[Array, Array]:
+def _rising_points(curve: Curve) -> tuple[Array, Array]:
     """Return depth and force up to the largest force: of the loading, or of unloading backwards."""
     top = int(np.argmax(curve.force))
     side = slice(top + 1) if top >= max(2, SHORT * len(curve)) else slice(None, None, -1)

@@ -73,10 +73,10 @@ def tabor_parameter(
     974.7
     """
     ranges = {"distance": distance, "strength": strength}
-    one = {name: value for name, value in ranges.items() if value is not None}
-    if len(one) != 1:
+    choice = {name: value for name, value in ranges.items() if value is not None}
+    if len(choice) != 1:
         raise ValueError(f"exactly one of distance and strength must be given, got {ranges}")
-    numbers = {"radius": radius, "modulus": modulus, "work": work, **one}
+    numbers = {"radius": radius, "modulus": modulus, "work": work, **choice}
     for name, value in numbers.items():
         numbers[name] = core.real(name, value)
         if not 0 < numbers[name] < math.inf:
@@ -170,7 +170,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     if estimate is not None:
         apparent, radius = estimate
         rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
-        rows += _corrected(body, top, apparent, radius)
+        rows += _layer_modulus(body, top, apparent, radius)
     if series := _dimitriadis(body, top, depth, force, tip):
         rows.append(("Dimitriadis", series, "Dimitriadis et al. 2002, eq. (12)"))
     return [Classical(name, value, value / true - 1, source) for name, value, source in rows]
@@ -224,7 +224,7 @@ def _radius(tip: core.Tip, depth: float) -> float | None:
     return section(tip, depth)
 
 
-def _corrected(
+def _layer_modulus(
     body: core.HalfSpace, top: core.Elastic, apparent: float, radius: float
 ) -> list[tuple[str, float, str]]:
     """Return the modulus of the layer by a correction of an apparent modulus for the substrate."""
@@ -246,9 +246,9 @@ def gao_weights(ratio: float, poisson: float) -> tuple[float, float]:
     ``I1 = 2/π atan ξ + ξ/π ln(1 + 1/ξ²)``.
     """
     log = ratio * math.log1p(1 / ratio**2)
-    part = (1 - 2 * poisson) * log - ratio / (1 + ratio**2)
+    poisson_term = (1 - 2 * poisson) * log - ratio / (1 + ratio**2)
     base = 2 / math.pi * math.atan(ratio)
-    return base + part / (2 * math.pi * (1 - poisson)), base + log / math.pi
+    return base + poisson_term / (2 * math.pi * (1 - poisson)), base + log / math.pi
 
 
 def _dimitriadis(

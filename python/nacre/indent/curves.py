@@ -87,9 +87,9 @@ class Curve:
     ) -> None:
         if not isinstance(name, str):
             raise TypeError(f"name must be a text, got {name!r}")
-        arrays = {"depth": _checked("depth", depth), "force": _checked("force", force)}
+        arrays = {"depth": _frozen_array("depth", depth), "force": _frozen_array("force", force)}
         if time is not None:
-            arrays["time"] = _checked("time", time)
+            arrays["time"] = _frozen_array("time", time)
         for argument, array in arrays.items():
             if array.size != arrays["depth"].size:
                 raise ValueError(
@@ -144,7 +144,7 @@ class Curve:
         end = arrival(self.force)
         note = _cut(self, slice(end + 1, departure(self.depth, self.force) + 1), "cut")
         if (way := find_hold(self.force[end::-1])) is not None:
-            note = _joined(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
+            note = _notes(note, _cut(self, slice(end + 1 - way.stop, end + 1 - way.start), "kept"))
         return self._part(slice(0, end + 1), "up to its largest force", note)
 
     def hold(self) -> Curve:
@@ -161,7 +161,7 @@ class Curve:
         start, drifts = departure(self.depth, self.force), self._drift_hold()
         note = _cut(self, slice(arrival(self.force), start), "cut")
         if drifts is not None:
-            note = _joined(note, _cut(self, drifts, "cut with what follows"))
+            note = _notes(note, _cut(self, drifts, "cut with what follows"))
         end = None if drifts is None else drifts.start
         return self._part(slice(start, end), "from its largest force on", note)
 
@@ -214,11 +214,11 @@ class Curve:
         """
         if self.time is None:
             raise ValueError("the curve must have a time for its drift to be known")
-        part = self._drift_hold()
-        if part is None:
+        hold = self._drift_hold()
+        if hold is None:
             first, last = arrival(self.force), departure(self.depth, self.force)
-            part = slice((first + last) // 2, last + 1)
-        time, depth = self.time[part], self.depth[part]
+            hold = slice((first + last) // 2, last + 1)
+        time, depth = self.time[hold], self.depth[hold]
         if time.size < LEAST_POINTS or np.ptp(time) == 0:
             raise ValueError(
                 f"the curve must have a hold of {LEAST_POINTS} points at different times, got "
@@ -226,8 +226,8 @@ class Curve:
             )
         since = time - time.mean()
         rate = float(since @ depth / (since @ since))
-        rest = depth - depth.mean() - rate * since
-        error = math.sqrt(float(rest @ rest) / (time.size - 2) / float(since @ since))
+        residuals = depth - depth.mean() - rate * since
+        error = math.sqrt(float(residuals @ residuals) / (time.size - 2) / float(since @ since))
         return Drift(rate, error, time.size)
 
     def between(
@@ -335,7 +335,7 @@ def _curve(depth: Array, force: Array, time: Array | None, name: str, note: str 
     return curve
 
 
-def _joined(*notes: str) -> str:
+def _notes(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
@@ -356,7 +356,7 @@ def _cut(curve: Curve, hold: slice, what: str) -> str:
     )
 
 
-def _checked(name: str, values: npt.ArrayLike) -> Array:
+def _frozen_array(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
     array = core.real_array(name, values)
     if array.ndim != 1:
@@ -492,7 +492,7 @@ def read(
     is_spring = spring_constant is not None
     curves = []
     chosen = chosen_tables(
-        where, file_tables, segment, lambda one: has_curve(one, choices, is_spring)
+        where, file_tables, segment, lambda table: has_curve(table, choices, is_spring)
     )
     for number, table in chosen.items():
         depths, forces, times = quantities(where, table, choices, units, spring_constant)

@@ -16,8 +16,8 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import among
 from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
-from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
-from nacre.indent._residuals import Examination, examine, likeliest
+from nacre.indent._profile import Estimate, estimated, interval, minimum, reasons, shifted_starts
+from nacre.indent._residuals import Examination, examine, likeliest_noise
 from nacre.indent._result import UNFIT, Fit
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
@@ -170,11 +170,11 @@ def fit(
             f"{model.depth.size}"
         )
     with lasting("fit", progress) as tell:
-        best = _fitted(new_model, model, noise, starts, profile, tell or (lambda text: None))
+        best = _model_fit(new_model, model, noise, starts, profile, tell or (lambda text: None))
     return replace(best, warnings=(*doubts, *best.warnings))
 
 
-def _fitted(
+def _model_fit(
     new_model: Callable[..., Model],
     model: Model,
     noise: str,
@@ -187,12 +187,12 @@ def _fitted(
     start = _start(model)
     if noise == "auto":
         rough = minimum(model, start, rough=True)
-        model = new_model(*likeliest(model, rough))
+        model = new_model(*likeliest_noise(model, rough))
         start = rough if math.isfinite(model.chi2(rough)) else _start(model)
-    best = _best(model, start)
+    best = _weighed_minimum(model, start)
     minima: list[tuple[Array, float]] = []
     if profile:
-        places = others(model, best.x) if starts is None else _places(model, starts, best.x)
+        places = shifted_starts(model, best.x) if starts is None else _places(model, starts, best.x)
         for number, place in enumerate(places, 1):
             tell(f"start {number} of {len(places)}")
             x = minimum(model, np.clip(place, model.low, model.high), rough=True)
@@ -248,7 +248,7 @@ def _doubts(curves: Sequence[Curve], system: System) -> list[str]:
         for curve in curves:
             check(curve)
             _check_units(curve, system)
-    return [str(one.message) for one in caught if one.category is core.NacreWarning]
+    return [str(warning.message) for warning in caught if warning.category is core.NacreWarning]
 
 
 def _check_units(curve: Curve, system: System) -> None:
@@ -268,9 +268,9 @@ def _check_units(curve: Curve, system: System) -> None:
         if max(moduli) > WEAK * min(moduli):
             return
         modulus = math.sqrt(max(moduli) * min(moduli))
-        other = system.counterbody
-        if other is not None and isinstance(other.substrate, core.Elastic):
-            modulus = 1 / (1 / modulus + 1 / other.substrate.plane_strain_modulus)
+        counterbody = system.counterbody
+        if counterbody is not None and isinstance(counterbody.substrate, core.Elastic):
+            modulus = 1 / (1 / modulus + 1 / counterbody.substrate.plane_strain_modulus)
     sentence = suspicious_units(curve, tip_size=size, modulus=modulus)
     if sentence is not None:
         name = f" of {curve.name!r}" if curve.name else ""
@@ -300,7 +300,7 @@ def _start(model: Model) -> Array:
                 zero_depth = min(zero_depth, float(curve.depth.min()) - 1e-3 * unknown.scale)
             guessed[k] = unknown.place(min(max(zero_depth, unknown.low), unknown.high))
     places = [x] if np.array_equal(x, guessed) else [x, guessed]
-    best = min((_scaled(model, place) for place in places), key=model.chi2)
+    best = min((_scaled_start(model, place) for place in places), key=model.chi2)
     if not math.isfinite(model.chi2(best)):
         load, _ = model.loads(best)
         apart = int((load <= 0).sum())
@@ -315,7 +315,7 @@ def _start(model: Model) -> Array:
     return best
 
 
-def _scaled(model: Model, x: Array) -> Array:
+def _scaled_start(model: Model, x: Array) -> Array:
     """Return x with the free moduli scaled to the mean force."""
     moduli = [k for k, name in enumerate(model.names) if name.endswith(".young")]
     if not moduli:
@@ -334,7 +334,7 @@ def _scaled(model: Model, x: Array) -> Array:
     return scaled if abs(shift) > 0.3 and model.chi2(scaled) < model.chi2(x) else x
 
 
-def _best(model: Model, start: Array) -> Estimate:
+def _weighed_minimum(model: Model, start: Array) -> Estimate:
     best = estimated(model, minimum(model, start))
     if model.prior and not model.is_known:
         # Priors are weighed against residuals, whose size the residuals themselves tell.
@@ -379,7 +379,7 @@ def _result(
         low, high = (_value(unknown.value, end) for end in pair)
         intervals[unknown.name] = low, high
     load, _ = model.loads(x)
-    rest = -model.at(x)[0][: load.size] / model.weight
+    residuals = -model.at(x)[0][: load.size] / model.weight
     approach = model.approach(x)
     sigma = 1 / float(model.weight[0]) * (1.0 if model.is_known else math.sqrt(best.variance))
     with np.errstate(invalid="ignore"):
@@ -397,9 +397,9 @@ def _result(
         reasons=reasons(model, best, ends, minima)
         | dict.fromkeys(model.free if examination.warnings else (), UNFIT),
         sensitivity=examination.sensitivity,
-        residuals=[rest[part] for part in model.parts],
-        loads=[load[part] for part in model.parts],
-        approaches=[approach[part] for part in model.parts],
+        residuals=[residuals[rows] for rows in model.parts],
+        loads=[load[rows] for rows in model.parts],
+        approaches=[approach[rows] for rows in model.parts],
         chi2=best.chi2,
         dof=model.dof,
         sigma=sigma,

@@ -26,7 +26,7 @@ from nacre.contact.solution import Solution
 from nacre.fatigue import assess
 from nacre.results.journal import Journal, Record
 from nacre.studies.dataset import assemble, failure_lines, layout
-from nacre.studies.identity import identity_of, key_of
+from nacre.studies.identity import Identity, identity_of, key_of
 from nacre.studies.outputs import (
     FATIGUES,
     MARGINS,
@@ -60,6 +60,10 @@ NOTES = frozenset(("progress", "check"))
 STRESS = keywords_of(Solution.stress_summary) - {*NOTES, "threads", "yield_stress", "strength"}
 FATIGUE = keywords_of(assess) - {*NOTES, "threads", "depths"}
 """Keywords of stresses and fatigue that studies take."""
+UNCOMPARED = (
+    "outputs use what cannot be compared with an earlier run: {}; all cases are solved again. Give "
+    "version=..., and change it whenever the outputs change"
+)
 
 
 def sweep(
@@ -195,51 +199,23 @@ def sweep(
     coordinates, points = layout(parameters)
     if isinstance(case, Mapping):
         _check_paths(case, points)
-    kind = _case_kind(case, points) if outputs is None or isinstance(case, Mapping) else None
-    usual = [name for name in USUAL[kind or "contact"] if name not in parameters]
-    checked_outputs = outputs_by_name(usual if outputs is None else outputs, kind)
-    if clashes := set(checked_outputs) & set(parameters):
-        raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
-    stresses = any(isinstance(o, str) and o in STRESSES for o in checked_outputs.values())
-    stress_options = {**(stress or {})} if stresses else {}
-    if unknown := set(stress_options) - STRESS:
-        raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
-    needs_fatigue = any(
-        isinstance(o, str) and o in {*FATIGUES, *MARGINS} for o in checked_outputs.values()
-    )
-    fatigue_options = {**(fatigue or {})} if needs_fatigue else {}
-    if unknown := set(fatigue_options) - FATIGUE:
-        raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
-    if not isinstance(version, str | None):
-        try:
-            version = core.integer("version", version)
-        except TypeError:
-            raise TypeError(f"version must be a text or an integer, got {version!r}") from None
+    checked_outputs = _checked_outputs(case, points, parameters, outputs)
+    stress_options, fatigue_options = _options(checked_outputs, stress, fatigue)
+    version = _checked_version(version)
     identity = identity_of(checked_outputs, stress_options, fatigue_options, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
-        message = (
-            f"outputs use what cannot be compared with an earlier run: "
-            f"{', '.join(identity.unknown)}; all cases are solved again. Give version=..., and "
-            f"change it whenever the outputs change"
+        warnings.warn(
+            UNCOMPARED.format(", ".join(identity.unknown)), core.NacreWarning, stacklevel=2
         )
-        warnings.warn(message, core.NacreWarning, stacklevel=2)
     journal = Journal(path.with_suffix(".journal") if path else None)
     with journal, _quiet():
-        keys: list[str] = []
-        tasks: dict[str, tuple[dict[str, object], dict[str, object]]] = {}
-        failures: dict[str, Record] = {}
-        for point in points:
-            arguments, failure = _describe(case, point, stress_options)
-            key = key_of(arguments if failure is None else {"failed": point}, identity)
-            keys.append(key)
+
+        def is_stored(key: str) -> bool:
             record = journal.records.get(key)
-            if record is not None and not (again or (retry and "error" in record)):
-                continue
-            if failure is not None:
-                failures[key] = {"key": key, "parameters": _readable(point), "error": failure}
-            else:
-                tasks[key] = arguments, _readable(point)
+            return record is not None and not (again or (retry and "error" in record))
+
+        keys, tasks, failures = _cases(case, points, stress_options, identity, is_stored)
         for record in failures.values():
             journal.add(record)
 
@@ -279,6 +255,71 @@ def _check_store(path: Path | None) -> None:
         )
 
 
+def _checked_outputs(
+    case: Case,
+    points: Sequence[dict[str, object]],
+    parameters: Mapping[str, object],
+    outputs: Sequence[Output] | Mapping[str, Output] | None,
+) -> dict[str, Output]:
+    """Return the outputs by name, by default the usual ones of what is solved."""
+    kind = _case_kind(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in USUAL[kind or "contact"] if name not in parameters]
+    by_name = outputs_by_name(usual if outputs is None else outputs, kind)
+    if clashes := set(by_name) & set(parameters):
+        raise ValueError(f"outputs must have other names than parameters, got {sorted(clashes)}")
+    return by_name
+
+
+def _options(
+    outputs: Mapping[str, Output],
+    stress: Mapping[str, object] | None,
+    fatigue: Mapping[str, object] | None,
+) -> tuple[dict[str, object], dict[str, object]]:
+    """Return the arguments of stresses and of fatigue, of which each is used by some output."""
+    words = {output for output in outputs.values() if isinstance(output, str)}
+    stress_options = {**(stress or {})} if words & {*STRESSES} else {}
+    if unknown := set(stress_options) - STRESS:
+        raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
+    fatigue_options = {**(fatigue or {})} if words & {*FATIGUES, *MARGINS} else {}
+    if unknown := set(fatigue_options) - FATIGUE:
+        raise TypeError(f"fatigue must hold arguments of assess, got {sorted(unknown)}")
+    return stress_options, fatigue_options
+
+
+def _checked_version(version: object) -> str | int | None:
+    """Return a version with Python's integer, or raise an error."""
+    if isinstance(version, str | None):
+        return version
+    try:
+        return core.integer("version", version)
+    except TypeError:
+        raise TypeError(f"version must be a text or an integer, got {version!r}") from None
+
+
+def _cases(
+    case: Case,
+    points: Sequence[dict[str, object]],
+    stress: Mapping[str, object],
+    identity: Identity,
+    is_stored: Callable[[str], bool],
+) -> tuple[list[str], dict[str, tuple[dict[str, object], dict[str, object]]], dict[str, Record]]:
+    """Return the key of each case; arguments and parameters of those to solve; and failures."""
+    keys: list[str] = []
+    tasks: dict[str, tuple[dict[str, object], dict[str, object]]] = {}
+    failures: dict[str, Record] = {}
+    for point in points:
+        arguments, failure = _describe(case, point, stress)
+        key = key_of(arguments if failure is None else {"failed": point}, identity)
+        keys.append(key)
+        if is_stored(key):
+            continue
+        if failure is not None:
+            failures[key] = {"key": key, "parameters": _readable(point), "error": failure}
+        else:
+            tasks[key] = arguments, _readable(point)
+    return keys, tasks, failures
+
+
 def _describe(
     case: Case, point: dict[str, Any], stress: Mapping[str, Any]
 ) -> tuple[dict[str, object], str | None]:
@@ -308,10 +349,10 @@ def _describe(
             )
         return {"threads": 1, **arguments}, None
     if "rate" in arguments:
-        if others := arguments.keys() - WEAR:
+        if surplus := arguments.keys() - WEAR:
             raise TypeError(
                 f"case must give arguments of nacre.wear without store and progress beside a rate, "
-                f"got {sorted(others)}"
+                f"got {sorted(surplus)}"
             )
         return {"threads": 1, **arguments}, None
     unknown = set(arguments) - ARGUMENTS
@@ -496,7 +537,7 @@ def _solve(
             notes = {"warnings": messages, "kinds": ["bearing"] * len(messages)}
             return {"values": plain(solved, outputs, "bearing"), "bears": True} | notes
         if "rate" in arguments:
-            return _worn(wear(**arguments), outputs)
+            return _wear_outputs(wear(**arguments), outputs)
         solution = _solution(arguments)
         normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
@@ -529,7 +570,7 @@ def _marks(arguments: Mapping[str, Any]) -> Record:
     return {name: True for name, holds in marks.items() if holds}
 
 
-def _worn(history: WearHistory, outputs: dict[str, Output]) -> Record:
+def _wear_outputs(history: WearHistory, outputs: dict[str, Output]) -> Record:
     """Return the outputs and the warnings of a history of wear."""
     marks = {
         "wears": True,

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.groups import keyword_units
@@ -18,7 +19,6 @@ from nacre.results.parameters import parameter_unit, quantity_of
 from nacre.results.quantities import ERROR
 from nacre.studies.outputs import (
     AXES,
-    ESTIMATED,
     ESTIMATED_OF_RINGS,
     ESTIMATED_OF_WEAR,
     OF_CONTACTS,
@@ -29,6 +29,8 @@ from nacre.studies.outputs import (
 
 if TYPE_CHECKING:
     import xarray
+
+Array = npt.NDArray[np.float64]
 
 
 def layout(parameters: Mapping[str, object]) -> tuple[xarray.Dataset, list[dict[str, object]]]:
@@ -105,36 +107,19 @@ def assemble(
         units = {name: unit for name, unit in units.items() if name not in ("life", "distance")}
     axes = RING_AXES if kinds["bears"] else AXES
     for name, output in outputs.items():
-        arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
-        shapes = [a.shape for a in arrays if a is not None]
-        rank = max((len(s) for s in shapes), default=0)
-        inner = tuple(max(s[k] if k < len(s) else 1 for s in shapes) for k in range(rank))
-        # Arrays that are shorter than others end in NaN, like cases that failed.
-        columns = np.full((len(records), *inner), np.nan)
-        for row, array in enumerate(arrays):
-            if array is not None:
-                place: tuple[int | slice, ...] = (row, *(slice(0, n) for n in array.shape))
-                columns[place] = array
-        extra_dims = ("axis",) if output in axes else tuple(f"{name}_{k}" for k in range(rank))
+        values = _values(records, name)
+        extra_dims = tuple(f"{name}_{k}" for k in range(values.ndim - 1))
         if output in axes:
-            dataset = dataset.assign_coords(axis=["x", "y"])
-            if rank == 0:  # every case failed
-                columns = np.full((len(records), 2), np.nan)
-                inner = (2,)
-        dataset[name] = ((*dims, *extra_dims), columns.reshape((*shape, *inner)))
+            dataset, extra_dims = dataset.assign_coords(axis=["x", "y"]), ("axis",)
+            if values.ndim == 1:  # every case failed
+                values = np.full((len(records), 2), np.nan)
+        dataset[name] = ((*dims, *extra_dims), values.reshape((*shape, *values.shape[1:])))
         if isinstance(output, str) and output in units:
             # Results of bearings are in SI, whatever the units of the case.
             own = units[output] if kinds["bears"] else symbol(units[output])
             dataset[name].attrs["units"] = own
     names = {*outputs, *map(str, dataset.coords)}
-    estimated: Sequence[str] = ESTIMATED_OF_RINGS if kinds["bears"] else ESTIMATED
-    if kinds["indents"]:
-        estimated = ()
-    elif kinds["wears"]:
-        estimated = ESTIMATED_OF_WEAR
-    elif not kinds["bears"]:
-        estimated = OF_CONTACTS
-    for name, quantity in errors(outputs, names, estimated).items():
+    for name, quantity in errors(outputs, names, _estimated_outputs(kinds)).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         cause = "length of the steps" if kinds["wears"] else "size of the cells"
@@ -161,6 +146,30 @@ def assemble(
         "unit_system": "SI" if kinds["bears"] else system().name,
     }
     return dataset
+
+
+def _values(records: Sequence[Record], name: str) -> Array:
+    """Return an output of all cases, NaN where it has none."""
+    arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
+    shapes = [a.shape for a in arrays if a is not None]
+    rank = max((len(s) for s in shapes), default=0)
+    inner = tuple(max(s[k] if k < len(s) else 1 for s in shapes) for k in range(rank))
+    # Arrays that are shorter than others end in NaN, like cases that failed.
+    values = np.full((len(records), *inner), np.nan)
+    for row, array in enumerate(arrays):
+        if array is not None:
+            place: tuple[int | slice, ...] = (row, *(slice(0, n) for n in array.shape))
+            values[place] = array
+    return values
+
+
+def _estimated_outputs(kinds: Mapping[str, bool]) -> Sequence[str]:
+    """Return the outputs of cases of a kind that have an estimated error."""
+    if kinds["indents"]:
+        return ()
+    if kinds["wears"]:
+        return ESTIMATED_OF_WEAR
+    return ESTIMATED_OF_RINGS if kinds["bears"] else OF_CONTACTS
 
 
 def failure_lines(records: Sequence[Record]) -> list[str]:

@@ -39,17 +39,17 @@ def identity_of(
     """Return the identity of outputs, of arguments of their stresses and fatigue, and a version."""
     unknown: list[str] = []
     output_parts = {
-        name: output if isinstance(output, str) else _part(output, name, unknown)
+        name: output if isinstance(output, str) else _plain(output, name, unknown)
         for name, output in outputs.items()
     }
-    parts: dict[str, object] = {"outputs": output_parts}
+    data: dict[str, object] = {"outputs": output_parts}
     if stress:
-        parts["stress"] = _part(dict(stress), "stress", unknown)
+        data["stress"] = _plain(dict(stress), "stress", unknown)
     if fatigue:
-        parts["fatigue"] = _part(dict(fatigue), "fatigue", unknown)
+        data["fatigue"] = _plain(dict(fatigue), "fatigue", unknown)
     if version is not None:
-        parts["version"] = version
-    return Identity(parts, unknown)
+        data["version"] = version
+    return Identity(data, unknown)
 
 
 def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
@@ -60,13 +60,15 @@ def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
-def _part(value: object, place: str, unknown: list[str], inside: tuple[object, ...] = ()) -> object:
+def _plain(
+    value: object, place: str, unknown: list[str], inside: tuple[object, ...] = ()
+) -> object:
     """Return plain data for a function or a value, which `place` names; add to `unknown`."""
     if any(value is outer for outer in inside):
         return "recursion"
 
-    def of(part: object, name: str = "") -> object:
-        return _part(part, place + name, unknown, (*inside, value))
+    def of(item: object, name: str = "") -> object:
+        return _plain(item, place + name, unknown, (*inside, value))
 
     if isinstance(value, list | tuple):
         return [of(item, f"[{k}]") for k, item in enumerate(value)]

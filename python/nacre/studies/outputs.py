@@ -67,9 +67,9 @@ Estimated = tuple[float, float]
 """A number, and its error due to the size of the cells, estimated; NaN where it is not known."""
 
 
-def _extremes(parts: Iterable[Any], name: str) -> list[Estimated]:
+def _extremes(regions: Iterable[Any], name: str) -> list[Estimated]:
     """Return an extreme of each layer or interface, with its error."""
-    return [(getattr(part, name)[0], part.uncertainty.get(name, np.nan)) for part in parts]
+    return [(getattr(region, name)[0], region.uncertainty.get(name, np.nan)) for region in regions]
 
 
 STRESSES: dict[str, Callable[[StressSummary], list[Estimated]]] = {
@@ -99,7 +99,7 @@ MARGINS: dict[str, Callable[[FatigueSummary], list[float]]] = {
     "shakedown_safety_factor": lambda summary: _factors(summary, ["shakedown"]),
     "first_yield_safety_factor": lambda summary: _factors(summary, ["first_yield"]),
     "fatigue_safety_factor": lambda summary: _factors(
-        summary, [type(one).__name__ for one in summary.criteria]
+        summary, [type(criterion).__name__ for criterion in summary.criteria]
     ),
 }
 """Outputs from `nacre.fatigue.assess`: each is the smallest of these values, or NaN."""
@@ -251,7 +251,7 @@ def output_values(
             else:
                 value = min(MARGINS[output](fatigue), default=np.nan)
         else:
-            value = _number(solution, output)
+            value = _attribute(solution, output)
         numbers[name] = np.asarray(value, dtype=np.float64).tolist()
     estimates = solution._normal.report.discretisation or {}
     tangential = (solution is not solution._normal and solution.report.discretisation) or {}
@@ -262,7 +262,7 @@ def output_values(
     return numbers
 
 
-def _number(solution: Any, name: str) -> object:
+def _attribute(solution: Any, name: str) -> object:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
     if name in OF_INDENT and name not in NUMBERS:
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")

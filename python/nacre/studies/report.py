@@ -66,7 +66,7 @@ class Study(Shown):
         """Return the dimensions along which cases lie."""
         if "error" in self.dataset:
             return self.dataset["error"].dims
-        return max((one.dims for one in self.dataset.data_vars.values()), key=len, default=())
+        return max((array.dims for array in self.dataset.data_vars.values()), key=len, default=())
 
     def _unit(self, name: str) -> str:
         """Return the unit of a variable, or of a parameter by its name; "" where it has none."""
@@ -133,13 +133,13 @@ class Study(Shown):
             return []
         if not along or not np.isfinite(output).any():
             return []
-        x, rest = str(along[0]), [dim for dim in output.dims if dim != along[0]]
-        flat = output.stack(others=rest) if rest else output.expand_dims("others")
+        x, dims = str(along[0]), [dim for dim in output.dims if dim != along[0]]
+        flat = output.stack(others=dims) if dims else output.expand_dims("others")
         curves = []
         for k in range(min(flat.sizes["others"], MOST_CURVES)):
-            one = flat.isel(others=k)
-            places = ", ".join(f"{dim} {self._number(str(dim), one[dim].item())}" for dim in rest)
-            curves.append(Curve(output[x].values, one.values, places))
+            line = flat.isel(others=k)
+            places = ", ".join(f"{dim} {self._number(str(dim), line[dim].item())}" for dim in dims)
+            curves.append(Curve(output[x].values, line.values, places))
         low, high = float(output.min()), float(output.max())
         margin = (high - low) / 10
         # Of values that hardly change, 0 is not shown.

@@ -120,7 +120,7 @@ def npy(path: Path) -> Heights:
         )
     values, name = heights.astype(np.float64), str(path)
     if (columns := _coordinates([], values)) is not None:
-        points, steps = _grid(path, values[:, _three(name, columns)])
+        points, steps = _grid(path, values[:, _xyz_columns(name, columns)])
         return Heights(points, steps, None, False)
     return Heights(_matrix(name, [], values, "array"), None, None)
 
@@ -191,7 +191,7 @@ class Text:
                 table = None
                 near.append(line)
                 file.above.append((number, line))
-                file._say(line, mark)
+                file._keep_head_line(line, mark)
                 continue
             if mark != ",":
                 file.has_decimal_commas |= "," in line
@@ -214,7 +214,7 @@ class Text:
                     table.rows.append([np.nan, *top])  # places along a line, and a word beside
                     table.lines.append(file.above.pop()[0])
                     near.pop()
-                used = len(row) - _trailing(line, mark)
+                used = len(row) - _trailing_marks(line, mark)
                 table.headings, table.title = _headings(near, mark, len(row), used)
                 near = []
                 file.tables.append(table)
@@ -223,7 +223,7 @@ class Text:
         file._check(breaks, lines, mark)
         return file
 
-    def _say(self, line: str, mark: str | None) -> None:
+    def _keep_head_line(self, line: str, mark: str | None) -> None:
         """Keep what a line above a table says: a name, values and units."""
         fields = fields_of(line, mark) if mark else [line]
         if not any(fields[1:]):
@@ -264,14 +264,14 @@ class Text:
         texts = dict(lines)
         for table in self.tables:
             # Marks at the end of every line separate nothing.
-            blank = min(_trailing(texts.get(n, ""), mark) for n in table.lines)
+            blank = min(_trailing_marks(texts.get(n, ""), mark) for n in table.lines)
             if blank := min(blank, table.width - 1):
                 table.rows = [row[:-blank] for row in table.rows]
                 table.headings = table.headings[: table.width]
             if not table.headings:
-                table.headings = self._defined(table.width)
+                table.headings = self._defined_columns(table.width)
 
-    def _defined(self, width: int) -> list[Column]:
+    def _defined_columns(self, width: int) -> list[Column]:
         """Return the columns that a line ``ColumnDef=X,Y`` names, as that of a MiniProf does."""
         for _, line in self.above:
             if match := COLUMNS.fullmatch(line):
@@ -294,7 +294,7 @@ class Text:
                 return hits[0]
         counts = self.counts()
         first = self.tables[0]
-        if channel is None and counts and _fits(first, counts) is not None:
+        if channel is None and counts and _extra_columns(first, counts) is not None:
             return first
         listing = ", ".join(
             f"{k} ({table.title[:60]!r}, {len(table.rows)} lines of {table.width} numbers from "
@@ -328,7 +328,7 @@ class Text:
                 _refuse_profile(name, table.headings, values)
                 raise ValueError(f"{name!r} must have three columns x, y, z, got {table.width}")
             columns = (0, 1, 2)
-        columns = _three(name, columns)
+        columns = _xyz_columns(name, columns)
         heights, steps = _grid(self.path, values[:, columns])
         units = [table.headings[k].unit for k in columns] if table.headings else []
         units = units or [
@@ -345,7 +345,7 @@ class Text:
         """Return a matrix of heights, as what it cannot be is refused."""
         name, values, counts = str(self.path), np.array(table.rows), self.counts()
         where = f"table from line {table.lines[0]}"
-        is_numbered = counts is not None and _fits(table, counts) == 1
+        is_numbered = counts is not None and _extra_columns(table, counts) == 1
         if is_numbered and (np.diff(values[:, 0]) == 1).all():
             values = values[:, 1:]
         else:
@@ -431,11 +431,11 @@ def without_sentinels(heights: Array) -> Array:
         return heights
     measured = np.isfinite(heights)
     sentinels = measured & np.isin(heights, SENTINELS)
-    rest = heights[measured & ~sentinels]
-    if not sentinels.any() or rest.size < LEAST_MEASURED * heights.size:
+    values = heights[measured & ~sentinels]
+    if not sentinels.any() or values.size < LEAST_MEASURED * heights.size:
         return heights
-    away = np.maximum(rest.min() - heights, heights - rest.max())
-    return np.where(sentinels & (away > max(np.ptp(rest), 1.0)), np.nan, heights)
+    away = np.maximum(values.min() - heights, heights - values.max())
+    return np.where(sentinels & (away > max(np.ptp(values), 1.0)), np.nan, heights)
 
 
 def extremes(heights: Array) -> tuple[float, float]:
@@ -445,7 +445,7 @@ def extremes(heights: Array) -> tuple[float, float]:
     return float(lowest), float(heights.max(initial=-math.inf, where=measured))
 
 
-def _fits(table: Table, counts: tuple[int, int]) -> int | None:
+def _extra_columns(table: Table, counts: tuple[int, int]) -> int | None:
     """Return how many columns a table has more than its head says; None where it does not fit."""
     for shape in (counts, counts[::-1]):
         if len(table.rows) == shape[0] and table.width - shape[1] in (0, 1):
@@ -469,13 +469,13 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
         return tuple(hits[0] for hits in columns)
     for pair in ((0, 1), (1, 2)):
         if _are_places(values[:, pair]):
-            rest = [k for k in range(width) if k not in pair]
-            rest = [k for k in rest if not (k == 0 and is_counter(values[:, 0]))]
-            return (*pair, *rest) if len(rest) == 1 else pair
+            indices = [k for k in range(width) if k not in pair]
+            indices = [k for k in indices if not (k == 0 and is_counter(values[:, 0]))]
+            return (*pair, *indices) if len(indices) == 1 else pair
     return None
 
 
-def _three(name: str, columns: tuple[int, ...]) -> tuple[int, ...]:
+def _xyz_columns(name: str, columns: tuple[int, ...]) -> tuple[int, ...]:
     """Return the columns of x, y and z, all of which must be known."""
     if len(columns) != 3:
         raise ValueError(
@@ -561,8 +561,8 @@ def _is_profile(headings: Sequence[Column], values: Array) -> bool:
     """
     words = first_words(headings)
     places, across, up = (any(word in names for word in words) for names in AXES)
-    others = [word for word in words if word in TIMES | NUMBERED]
-    if places and up and not across and len(words) <= len(others) + 2:
+    counters = [word for word in words if word in TIMES | NUMBERED]
+    if places and up and not across and len(words) <= len(counters) + 2:
         return True
     if any(word in TIMES for word in words) and len(words) <= FEWEST_LINES:
         return True
@@ -604,11 +604,11 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
     left, top = values[corner:, 0], values[0, corner:]
     if corner and is_counter(top) and is_counter(left):
         return values[1:, 1:]
-    for which, line, others in (
+    for which, line, lines in (
         ("column", left, values[corner:, 1:].T),
         ("line", top, values[1:, corner:]),
     ):
-        if not _rises_evenly(line) or any(map(_rises_evenly, others)):
+        if not _rises_evenly(line) or any(map(_rises_evenly, lines)):
             continue
         first = headings[0].name.lower().strip("# .") if headings else None
         if which == "column" and is_counter(line) and first in NUMBERED:
@@ -621,7 +621,7 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
     return values
 
 
-def _trailing(line: str, mark: str | None) -> int:
+def _trailing_marks(line: str, mark: str | None) -> int:
     """Return how many marks between fields a line ends in."""
     return len(line) - len(line.rstrip(mark)) if mark else 0
 
@@ -651,7 +651,9 @@ def _headings(
         return [], near[-1]
     columns = [column_of(text) for text in names]
     if units:
-        columns = [one._replace(unit=_bare_unit(u)) for one, u in zip(columns, units, strict=True)]
+        columns = [
+            column._replace(unit=_bare_unit(u)) for column, u in zip(columns, units, strict=True)
+        ]
     return columns, near[-2] if len(near) > 1 else ""
 
 
@@ -686,17 +688,17 @@ def _content(
     for number, line in enumerate(decoded(path).replace("\u2212", "-").splitlines(), start=1):
         stripped = line.strip(" \r\n\f\v\0\x1a")
         if stripped.startswith(("#", "%")):
-            name, colon, value = (part.strip() for part in stripped[1:].partition(":"))
+            name, colon, value = (text.strip() for text in stripped[1:].partition(":"))
             is_title = name.lower() == "channel" and lines
             (lines if is_title else comments).append((number, stripped))
             if colon:
                 named_values.setdefault(name.lower(), value)
         elif stripped.strip():
-            lines.append((number, _unmarked(stripped)))
+            lines.append((number, _numbers_text(stripped)))
     return named_values, comments, lines
 
 
-def _unmarked(line: str) -> str:
+def _numbers_text(line: str) -> str:
     """Return a line without the mark of a point in front of its numbers, or behind them."""
     if line.count('"') > 1:
         return line

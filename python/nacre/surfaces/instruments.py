@@ -52,15 +52,15 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
             return None
         return _table(text, channel)
 
-    return _first(path, channel, lambda reader: _heights(reader, channel), table)
+    return _first_content(path, channel, lambda reader: _heights(reader, channel), table)
 
 
 def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a line in an instrument's file, and the unit of the file."""
-    return _first(path, channel, lambda reader: _line(reader, channel), lambda likely: None)
+    return _first_content(path, channel, lambda reader: _line(reader, channel), lambda likely: None)
 
 
-def _first(
+def _first_content(
     path: Path,
     channel: str | int | None,
     take: Callable[[Reader], Content],
@@ -75,18 +75,18 @@ def _first(
         from SurfaceTopography.IO import MagicMatch, readers
 
     content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
-    others = [reader for reader in readers if reader.format() not in TABLES]
-    match = {reader: reader.can_read(content[:512]) for reader in others}
-    nanoscope = [one for one in others if one.format() == "di" and NANOSCOPE.match(content)]
-    likely = [one for one in others if ending in (one.file_extensions() or ())]
-    likely = nanoscope + [one for one in likely if one not in nanoscope]
-    likely += [one for one in others if match[one] == MagicMatch.YES and one not in likely]
+    instruments = [reader for reader in readers if reader.format() not in TABLES]
+    match = {reader: reader.can_read(content[:512]) for reader in instruments}
+    nanoscope = [cls for cls in instruments if cls.format() == "di" and NANOSCOPE.match(content)]
+    likely = [cls for cls in instruments if ending in (cls.file_extensions() or ())]
+    likely = nanoscope + [cls for cls in likely if cls not in nanoscope]
+    likely += [cls for cls in instruments if match[cls] == MagicMatch.YES and cls not in likely]
     reasons: dict[str, str] = {}
 
     def read_first(candidates: Sequence[Any]) -> Content | None:
         for reader in candidates:
             try:
-                with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
+                with reader(_x3p_copy(path) if reader.format() == "x3p" else str(path)) as opened:
                     return take(opened)
             except Unfound as error:
                 raise ValueError(f"{error}, got {channel!r}") from None
@@ -107,8 +107,8 @@ def _first(
         return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
         raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
-    maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
-    surface = read_first([one for one in maybe if not is_plain or one.format() in HEADED])
+    maybe = [cls for cls in instruments if match[cls] == MagicMatch.MAYBE and cls not in likely]
+    surface = read_first([cls for cls in maybe if not is_plain or cls.format() in HEADED])
     if surface is not None:
         return surface
     if likely:
@@ -159,7 +159,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
     return heights._replace(is_metric=False)
 
 
-def _mended(path: Path) -> str | io.BytesIO:
+def _x3p_copy(path: Path) -> str | io.BytesIO:
     """Return an X3P whose name of the standard has a hyphen, and that has no folder.
 
     Other programs write a dash there, and put all files in a folder.
@@ -201,8 +201,8 @@ class Reader(Protocol):
 
 def _heights(reader: Reader, channel: str | int | None) -> Heights:
     """Return the heights of a channel, which must be a map."""
-    maps = [one for one in reader.channels if one.dim == 2]
-    lines = [one for one in reader.channels if one.dim == 1]
+    maps = [item for item in reader.channels if item.dim == 2]
+    lines = [item for item in reader.channels if item.dim == 1]
     if lines and not maps:
         raise Other(
             f"holds a profile, places beside heights, not a map: a surface must have two "
@@ -210,7 +210,7 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
             f"it for a Roller"
         )
     if not maps:
-        names = ", ".join(repr(one.name) for one in reader.channels) or _others(reader) or "none"
+        names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
     map_channel = _channel(reader, channel)
     # A file without sizes needs some, which are not used.
@@ -222,10 +222,10 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
 
 def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a channel, which must be a line, and their unit."""
-    lines = [one for one in reader.channels if one.dim == 1]
+    lines = [item for item in reader.channels if item.dim == 1]
     if not lines:
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
-    line_names = {one.name for one in lines}
+    line_names = {item.name for item in lines}
     default = reader.default_channel
     profile = lines[0] if channel is None and default not in lines else _channel(reader, channel)
     if profile.dim != 1:
@@ -238,7 +238,7 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
 
-def _others(reader: object) -> str:
+def _titles(reader: object) -> str:
     """Return the titles of channels of Gwyddion that hold no heights, with their units."""
     metadata = getattr(reader, "_metadata", {})
     fields = [name for name in metadata if re.fullmatch(r"/\d+/data", str(name))]

@@ -119,7 +119,7 @@ def read_map(
         spacing = sides[0] * factor, sides[1] * factor
     _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
-    heights = _filled(name, heights, detrend, wraps)
+    heights = _filled_heights(name, heights, detrend, wraps)
     try:
         heights -= _trend(heights, detrend)
         return core.HeightMap(heights, spacing, periodic=periodic)
@@ -194,7 +194,7 @@ def _check_size(
         np.diff(heights[:: every[0]], axis=1) / dy,
     ]
     slopes = [np.abs(step[np.isfinite(step)]) for step in steps]
-    slope = min(float(np.median(one)) if one.size else 0.0 for one in slopes)
+    slope = min(float(np.median(steps)) if steps.size else 0.0 for steps in slopes)
     is_flat = side > WIDEST and span < FLATTEST * side
     if span > TALLEST * side or slope > STEEPEST or is_flat:
         remedy = (
@@ -211,7 +211,7 @@ def _span(heights: Array) -> float:
     return max(highest - lowest, 0.0)
 
 
-def _filled(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
+def _filled_heights(name: str, heights: Array, detrend: str, wraps: tuple[bool, bool]) -> Array:
     """Return heights whose missing points are filled harmonically, without new peaks or pits.
 
     Where the surface repeats, its ends are neighbours once it has no trend.

@@ -45,7 +45,7 @@ def harmonic(heights: Array, wraps: tuple[bool, bool], tell: Callable[[float], o
     """
     missing = ~np.isfinite(heights)
     scale, base = float(np.ptp(heights[~missing])) or 1.0, float(heights[~missing].mean())
-    level, residual = _finest(missing, np.where(missing, 0.0, (heights - base) / scale), wraps)
+    level, residual = _base_level(missing, np.where(missing, 0.0, (heights - base) / scale), wraps)
     filled = np.zeros_like(residual)
     preconditioned = level.cycle(residual)
     direction, size = preconditioned, float(residual @ preconditioned)
@@ -95,9 +95,9 @@ class _Level:
         field = DAMPING * load / self.degrees
         for _ in range(SWEEPS - 1):
             field += DAMPING * (load - self.apply(field)) / self.degrees
-        block, coarser = self._coarser
-        rest = _sums(block, load - self.apply(field), coarser.degrees.size)
-        field += STIFFER * coarser.cycle(rest)[block]
+        block, coarser = self._coarser_level
+        residual = _sums(block, load - self.apply(field), coarser.degrees.size)
+        field += STIFFER * coarser.cycle(residual)[block]
         for _ in range(SWEEPS):
             field += DAMPING * (load - self.apply(field)) / self.degrees
         return field
@@ -107,7 +107,7 @@ class _Level:
         return np.stack([self.apply(unit) for unit in np.eye(self.degrees.size)])
 
     @cached_property
-    def _coarser(self) -> tuple[Indices, Self]:
+    def _coarser_level(self) -> tuple[Indices, Self]:
         """Return the block of each point, and the level of blocks: constants on blocks."""
         x, y = (place // 2 for place in self.places)
         _, first_points, block = np.unique(
@@ -132,7 +132,7 @@ def _sums(index: Indices, terms: Array, count: int) -> Array:
     return np.asarray(np.bincount(index, terms, count), np.float64)
 
 
-def _finest(
+def _base_level(
     missing: npt.NDArray[np.bool_], measured: Array, wraps: tuple[bool, bool]
 ) -> tuple[_Level, Array]:
     """Return the level of missing points, and the sum of measured neighbours at each of them."""

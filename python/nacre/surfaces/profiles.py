@@ -121,7 +121,7 @@ def read_profile(
     else:
         places, drops = _scan(path, unit, x, drop, height)
     order = np.argsort(places, kind="stable")
-    places, drops = _measured(path, places[order], drops[order])
+    places, drops = _measured_points(path, places[order], drops[order])
     twice = np.flatnonzero(np.diff(places) <= 0)
     if twice.size:
         raise ValueError(
@@ -149,33 +149,33 @@ def _table(
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _word_column(words, AXES[0])
     if first is None:
-        rest = [k for k in range(counted, table.width) if is_strict(values[:, k])]
-        timed = [k for k in rest if words and words[k] in TIMES | NUMBERED]
-        rest = [k for k in rest if k not in timed]
-        is_clear = table.width - counted == 2 or len(rest) < 2
-        first = (rest[0] if timed and rest else counted) if is_clear else None
+        columns = [k for k in range(counted, table.width) if is_strict(values[:, k])]
+        timed = [k for k in columns if words and words[k] in TIMES | NUMBERED]
+        columns = [k for k in columns if k not in timed]
+        is_clear = table.width - counted == 2 or len(columns) < 2
+        first = (columns[0] if timed and columns else counted) if is_clear else None
     place = _column(path, table, "x", x, first)
     is_drop = drop is not None or (height is None and _word_column(words, DROPS) is not None)
     if is_drop:
-        other = _column(path, table, "drop", drop, _word_column(words, DROPS))
+        vertical = _column(path, table, "drop", drop, _word_column(words, DROPS))
     else:
-        other = _column(path, table, "height", height, _word_column(words, AXES[2]))
-    sizes = _sizes(path, table, unit, place, other)
-    heights = without_sentinels(values[:, other]) * sizes[1]
-    return values[:, place] * sizes[0], heights if is_drop else _below(heights)
+        vertical = _column(path, table, "height", height, _word_column(words, AXES[2]))
+    sizes = _sizes(path, table, unit, place, vertical)
+    heights = without_sentinels(values[:, vertical]) * sizes[1]
+    return values[:, place] * sizes[0], heights if is_drop else _depths(heights)
 
 
 def _sizes(
-    path: Path, table: Table, unit: str | tuple[str, str] | None, place: int, other: int
+    path: Path, table: Table, unit: str | tuple[str, str] | None, place: int, vertical: int
 ) -> list[float]:
     """Return the units of positions and of heights [m]."""
     lengths = unit if isinstance(unit, tuple) else (unit, unit)
     usual = "mm" if path.suffix.lower() in MINIPROF else None
     units = [
         keyword_unit or (table.headings[column].unit if table.headings else None) or usual
-        for column, keyword_unit in ((place, lengths[0]), (other, lengths[1]))
+        for column, keyword_unit in ((place, lengths[0]), (vertical, lengths[1]))
     ]
-    heading = table.headings[other].heading if table.headings else ""
+    heading = table.headings[vertical].heading if table.headings else ""
     if units[1] is None and (bracket := IN_BRACKETS.search(heading)):
         units[1] = bracket[1]
     if units[0] is not None and units[1] is None and metres(units[0]) is not None:
@@ -222,15 +222,15 @@ def _scan(
         raise ValueError(
             f"unit must be one of {', '.join(METRES)} for {str(path)!r}, which names {file_unit!r}"
         )
-    return places * sizes[0], _below(without_sentinels(heights) * sizes[1])
+    return places * sizes[0], _depths(without_sentinels(heights) * sizes[1])
 
 
-def _below(heights: Array) -> Array:
+def _depths(heights: Array) -> Array:
     """Return distances from the highest of the heights that were measured."""
     return float(heights.max(initial=-np.inf, where=np.isfinite(heights))) - heights
 
 
-def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
+def _measured_points(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
     """Return what was measured, and warn of the rest, and of a drop far from all others."""
     measured = np.isfinite(places) & np.isfinite(drops)
     count, points = int((~measured).sum()), places.size
@@ -249,12 +249,12 @@ def _measured(path: Path, places: Array, drops: Array) -> tuple[Array, Array]:
             stacklevel=4,
         )
     farthest = float(drops[np.argmax(np.abs(drops - np.median(drops)))])
-    rest = drops[drops != farthest]
-    away = float(np.abs(farthest - rest).min()) if rest.size else 0.0
-    if rest.size >= LEAST_REST and away > FAR * np.ptp(rest):
-        far, span = written(farthest, "m"), written(float(np.ptp(rest)), "m")
+    bulk = drops[drops != farthest]
+    away = float(np.abs(farthest - bulk).min()) if bulk.size else 0.0
+    if bulk.size >= LEAST_REST and away > FAR * np.ptp(bulk):
+        far, span = written(farthest, "m"), written(float(np.ptp(bulk)), "m")
         warnings.warn(
-            f"{points - count - rest.size} of {points} drops of {str(path)!r}, {far}, is far from "
+            f"{points - count - bulk.size} of {points} drops of {str(path)!r}, {far}, is far from "
             f"the others, which span {span}: is it the mark of a missing point?",
             core.NacreWarning,
             stacklevel=4,

@@ -140,11 +140,11 @@ def _contact_eurosprinter() -> Numbers:
 
 def _disc(radius: float, pressure: float, cells: int) -> tuple[nacre.Grid, Array]:
     """Return cells of 2.5 mm and the pressure of a disc: at its edge, by the share of each cell."""
-    side, parts = 2.5, 32
+    side, divisions = 2.5, 32
     grid = nacre.Grid((cells, cells), (cells * side, cells * side))
-    places = (grid.x[:, None] + side * ((np.arange(parts) + 0.5) / parts - 0.5)).ravel()
+    places = (grid.x[:, None] + side * ((np.arange(divisions) + 0.5) / divisions - 0.5)).ravel()
     inside = places[:, None] ** 2 + places**2 < radius**2
-    return grid, pressure * inside.reshape(cells, parts, cells, parts).mean(axis=(1, 3))
+    return grid, pressure * inside.reshape(cells, divisions, cells, divisions).mean(axis=(1, 3))
 
 
 @_case
@@ -160,14 +160,14 @@ def _ellea1() -> Numbers:
         body, grid, pressure, depths, side="above", x=0.0, y=0.0, displacement=True
     )
     assert field.displacement is not None
-    parts = {
+    components = {
         "stress along x [MPa]": -field.xx,
         "stress along z [MPa]": -field.zz,
         "displacement along z [mm]": field.displacement["uz"],
     }
     return {
         f"{name}, {depth:g} mm below": float(value)
-        for name, values in parts.items()
+        for name, values in components.items()
         for depth, value in zip(depths, np.ravel(values), strict=True)
     }
 
@@ -189,7 +189,7 @@ def _amadeus() -> Numbers:
     for place, x in (("axis", 0.0), ("edge", 150.8)):
         for name, depth, side, (young, poisson) in sides:
             field = nacre.stress(body, grid, pressure, depth, side=side, x=x, y=0.0)
-            xx, yy, zz = (float(getattr(field, part)) for part in ("xx", "yy", "zz"))
+            xx, yy, zz = (float(getattr(field, component)) for component in ("xx", "yy", "zz"))
             along, across = (xx, yy + zz) if side == "above" else (zz, xx + yy)
             numbers[f"{name} [1e-6], {place}"] = -1e6 * (along - poisson * across) / young
     return numbers
