@@ -13,8 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import keyword_units, with_units
 from nacre._tools.typing import AnyPath, among
 from nacre._tools.units import printable, rounded, symbol
+from nacre.bearing.arguments import Model, Operation
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
@@ -48,7 +50,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
-Model = Literal["solved", "iso16281"]
 
 SLIGHT = 1e-8
 """Share of loads and approaches below which a number is printed as 0."""
@@ -426,6 +427,7 @@ class BearingSolution(Equilibrium):
         assert isinstance(self.bearing, RollerBearing)
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
+    @with_units(speed="rad/s", kinematic_viscosity="m²/s", fatigue_load_limit="N")
     def life(
         self,
         edge: Edge = "standard",
@@ -657,7 +659,8 @@ class BearingSolution(Equilibrium):
     @display.in_si
     def _sections(self) -> Sections:
         names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
-        inputs = input_rows({name: getattr(self, name) for name in names})
+        units = keyword_units(type(self.bearing), Operation)
+        inputs = input_rows({name: getattr(self, name) for name in names}, units)
         rows = self._rows()
         model = [row for row in rows if row[0] in ("contacts", "ended")]
         numbers = [*(row for row in rows if row not in model), *self._geometry()]
