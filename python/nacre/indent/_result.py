@@ -22,6 +22,7 @@ from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
 from nacre.results import display
+from nacre.results.quantities import FIT
 from nacre.results.report import Picture, Sections, Table, input_rows, table
 from nacre.results.svg import Axis, lines
 from nacre.results.svg import Curve as Line
@@ -172,12 +173,13 @@ class Fit(Tabular):
         for number, curve in enumerate(self.curves):
             measured = {"name": curve.name, "depth": curve.depth, "force": curve.force}
             inputs |= {f"curves[{number}].{name}": value for name, value in measured.items()}
+        units = {row.name: row.unit for row in FIT}
         head, rows, notes = self._table()
         names = list(self.estimates)
         correlations = zip(names, self.correlation.tolist(), strict=True)
         return Sections(
             "fit of indentation curves",
-            [("bodies and tip", "with the estimates in place"), *input_rows(inputs)],
+            [("bodies and tip", "with the estimates in place"), *input_rows(inputs, units)],
             [(row[0], f"{row[1]} ± {row[2]}; 95 %: {row[3]} {row[4]}".rstrip()) for row in rows],
             self._pictures(),
             [
