@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 from pydantic import Field, create_model, model_validator
 
 from nacre._tools.groups import keyword_units
-from nacre._tools.units import System, size_of
+from nacre._tools.units import System
 from nacre.bearing import (
     AngularContactBall,
     BearingSolution,
@@ -54,24 +54,14 @@ KINDS: dict[str, type[Solvable]] = {
 PAIR = parameter_texts(Pair)
 
 
+SIZED = ("N", "m", "Pa", "N m", "N/m", "m/s", "m²/s", "Pa s", "1/Pa", "Pa/m", "kg/m³")
+"""SI units of bearings that are others in other systems."""
+
+
 def sizes_of(units: str) -> dict[str, float]:
     """Return the sizes in SI of the units that are consistent with those of a case."""
     system = System(units)  # which checks them
-    parts = ("N", "m", "Pa") if system.name == "SI" else tuple(units.split("-"))
-    force, length, stress = (size[1] for part in parts if (size := size_of(part)))
-    return {
-        "N": force,
-        "m": length,
-        "Pa": stress,
-        "N m": force * length,
-        "N/m": force / length,
-        "m/s": length,
-        "m²/s": length**2,
-        "Pa s": stress,
-        "1/Pa": 1 / stress,
-        "Pa/m": stress / length,
-        "kg/m³": stress / length**2,  # ρ v² is a stress
-    }
+    return {unit: system.unit(unit)[0] for unit in SIZED}
 
 
 ENCODED = VALUES | keyword_units(Pair, *KINDS.values())

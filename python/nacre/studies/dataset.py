@@ -115,11 +115,15 @@ def assemble(
 ) -> xarray.Dataset:
     """Return the Dataset of all cases, whose parameters are `named` arguments, or a function's.
 
-    The Dataset of bearings is in SI.
+    The Dataset of bearings is in SI, but for the numbers at keys of a case file.
     """
     if any(record.get("bears") for record in records) and system() is not SI:
         with Within(SI):
-            return assemble(coordinates, records, outputs, named)
+            dataset = assemble(coordinates, records, outputs, named)
+        for name in [name for name in map(str, dataset.coords) if "." in name and not named]:
+            if unit := dataset[name].attrs.get("units"):
+                dataset[name].attrs["units"] = symbol(unit)
+        return dataset
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
