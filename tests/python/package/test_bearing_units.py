@@ -17,8 +17,8 @@ import nacre
 from nacre import indent
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import size_of
-from nacre.app.fields import field_of, keys_of
-from nacre.bearing import BearingSolution, Pair, film_thickness
+from nacre.app.fields import entry_at, field_of, keys_of
+from nacre.bearing import BearingSolution, CylindricalRoller, Pair, film_thickness
 from nacre.bearing.geometry import KNOWN
 from nacre.case import Case
 from nacre.results.parameters import VALUES, quantity_of
@@ -161,7 +161,7 @@ def quantities(text: str) -> list[float]:
 
 def test_every_keyword_with_a_unit_is_tried() -> None:
     tried = {quantity_of(key) for _, entries in BEARINGS.values() for key in entries}
-    asked = (next(iter(KNOWN.values())).solve, BearingSolution.life, film_thickness)
+    asked = (CylindricalRoller.solve, BearingSolution.life, film_thickness)
     units = keyword_units(*KNOWN.values(), *asked, Pair)
     assert {name for name, unit in units.items() if unit} == tried
 
@@ -228,7 +228,7 @@ def test_lives_and_films_say_what_they_were_given(units: str) -> None:
 def test_axes_of_studies_have_the_unit_of_a_bearing(name: str, key: str, units: str) -> None:
     value, unit = BEARINGS[name][1][key]
     read, path = case(name, units), f"bearing.{key}"
-    entry = functools.reduce(lambda data, place: data[place], path.split("."), read.data)
+    entry = entry_at(read.data, path)
     with warnings.catch_warnings(), nacre.display_units(units):
         warnings.simplefilter("ignore")
         outputs = ["peak_pressure"]
@@ -309,7 +309,7 @@ def test_indentations_give_back_what_went_in(name: str, key: str, units: str) ->
         warnings.simplefilter("ignore")
         solution = indent.solve(**read.arguments())
         sections, text = solution._sections(), str(solution)
-        entry = functools.reduce(lambda data, place: data[place], keys_of(place), read.data)
+        entry = entry_at(read.data, place)
         study = nacre.sweep(read, {place: [entry]}, progress=False)
     rows = dict(sections.inputs if key.startswith(("tip", "adhesion")) else sections.numbers)
     shown = rows[key if key in rows else last]
