@@ -68,14 +68,15 @@ def keyword_units(*declared: Any, line: bool = False) -> dict[str, str]:
     "" is that of a keyword of a group that has none.
     """
     units: dict[str, str] = {}
-    for one in declared:
-        units |= keyword_units(*getattr(one, "groups", ()), line=line)
-        units |= getattr(one, "units", {})
-        for field in dataclasses.fields(one) if dataclasses.is_dataclass(one) else ():
-            default = inspect.getattr_static(one, field.name, None)
-            own = {"unit": getattr(default, "unit", None)} | dict(field.metadata)
-            if own["unit"] is not None:
-                units[field.name] = own["unit"][line]
+    for declaration in declared:
+        units |= keyword_units(*getattr(declaration, "groups", ()), line=line)
+        units |= getattr(declaration, "units", {})
+        is_dataclass = dataclasses.is_dataclass(declaration)
+        for field in dataclasses.fields(declaration) if is_dataclass else ():
+            default = inspect.getattr_static(declaration, field.name, None)
+            unit = field.metadata.get("unit", getattr(default, "unit", None))
+            if unit is not None:
+                units[field.name] = unit[line]
     return units
 
 

@@ -108,8 +108,8 @@ class Following:
     """An argument that may be left out: the attribute is then what follows from the others."""
 
     def __init__(self, source: str, unit: str) -> None:
-        """Take the name of the property that follows, and the SI unit."""
-        self.source, self.unit = source, (unit, unit)
+        """Take the name of the property that follows, and the SI unit, as `keyword_units` reads."""
+        self.source, self.unit = source, in_unit(unit)["unit"]
 
     def __set_name__(self, owner: type, name: str) -> None:
         """Take the name of the argument, under which the instance keeps it."""

@@ -101,9 +101,9 @@ BEARINGS: dict[str, tuple[dict[str, Any], Entries]] = {
 }
 """Keys without units, and numbers in SI by the keys that have one."""
 CASES = [(name, key, units) for name, (_, e) in BEARINGS.items() for key in e for units in SYSTEMS]
-OF_SOLVE = [one for one in CASES if not one[1].startswith(("life.", "film."))]
+OF_SOLVE = [case for case in CASES if not case[1].startswith(("life.", "film."))]
 """Those that a solve is given; a life and a film are asked of what it returns."""
-SWEPT = [one for one in OF_SOLVE if one[0] != "groove" and one[1] != "raceway_diameters"]
+SWEPT = [case for case in OF_SOLVE if case[0] != "groove" and case[1] != "raceway_diameters"]
 """Those of single numbers, but for contacts that are solved, which take long."""
 
 
@@ -118,7 +118,9 @@ def case(name: str, units: str) -> Case:
         inner = functools.reduce(lambda data, place: data.setdefault(place, {}), places, table)
         size = 1.0 if units == "SI" else MILLIMETRES[unit]
         inner[last] = (np.array(value) / size).tolist()
-    return Case({"units": units, "bearing": {key: one for key, one in table.items() if one != {}}})
+    return Case(
+        {"units": units, "bearing": {key: entry for key, entry in table.items() if entry != {}}}
+    )
 
 
 def given(case: Case, key: str) -> Any:
