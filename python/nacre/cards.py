@@ -15,24 +15,15 @@ from typing import Any, Literal
 import nacre._core as core
 from nacre._tools.units import SI, Within, printable, written
 
-UNITS = {
-    "young": "Pa",
-    "poisson": "",
-    "hardness": "Pa",
-    "yield_stress": "Pa",
-    "flexural_strength": "Pa",
-    "conductivity": "W/(m K)",
+NUMBERS = {
+    "young": ("Young's modulus", "Pa"),
+    "poisson": ("Poisson's ratio", ""),
+    "hardness": ("hardness", "Pa"),
+    "yield_stress": ("yield stress", "Pa"),
+    "flexural_strength": ("flexural strength", "Pa"),
+    "conductivity": ("thermal conductivity", "W/(m K)"),
 }
-"""SI units of the numbers of cards."""
-WORDS = {
-    "young": "Young's modulus",
-    "poisson": "Poisson's ratio",
-    "hardness": "hardness",
-    "yield_stress": "yield stress",
-    "flexural_strength": "flexural strength",
-    "conductivity": "thermal conductivity",
-}
-"""What the numbers are."""
+"""What the numbers of cards are, with their SI units."""
 ASSUMED = "assumed"
 """Source of a Poisson's ratio that was not measured."""
 
@@ -115,7 +106,7 @@ class Card:
     @property
     def numbers_in_words(self) -> list[tuple[str, str]]:
         """What each number is, and its value with range and source."""
-        return [(WORDS[name], str(number)) for name, number in self.numbers.items()]
+        return [(NUMBERS[name][0], str(number)) for name, number in self.numbers.items()]
 
     def __repr__(self) -> str:
         """Return where the card is from."""
@@ -139,9 +130,9 @@ class Card:
 def _card(name: str, entry: Mapping[str, Any]) -> Card:
     """Return the card that an entry of the file describes."""
     numbers = {
-        key: Number(row["value"], row.get("low"), row.get("high"), UNITS[key], row["source"])
+        key: Number(row["value"], row.get("low"), row.get("high"), NUMBERS[key][1], row["source"])
         for key, row in entry.items()
-        if key in UNITS
+        if key in NUMBERS
     }
     elastic = core.Elastic(numbers["young"].value, numbers["poisson"].value)
     source = numbers["young"].source

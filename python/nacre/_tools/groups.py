@@ -24,8 +24,22 @@ def keyword(unit: str = "", *, line: str | None = None, default: Any = None) -> 
     default
         Default; `dataclasses.MISSING` where the keyword must be given.
     """
-    units = {"unit": (unit, unit if line is None else line)}
-    return dataclasses.field(default=default, metadata=units)
+    return dataclasses.field(default=default, metadata=in_unit(unit, line))
+
+
+def in_unit(unit: str, line: str | None = None) -> dict[str, tuple[str, str]]:
+    """Return the metadata of a dataclass field that is a number in an SI unit."""
+    return {"unit": (unit, unit if line is None else line)}
+
+
+def with_units(**units: str) -> Callable[[F], F]:
+    """Return a decorator that gives arguments of a function, whose signature is its own, units."""
+
+    def decorate(function: F) -> F:
+        function.units = units  # type: ignore[attr-defined]
+        return function
+
+    return decorate
 
 
 class Group:
@@ -48,13 +62,22 @@ class Group:
         return dataclasses.replace(self, **fields)  # type: ignore[type-var]
 
 
-def keyword_units(*groups: type[Group], line: bool = False) -> dict[str, str]:
-    """Return the SI units of the keywords of groups, by name; "" where there is none."""
-    return {
-        name: field.metadata["unit"][line]
-        for group in groups
-        for name, field in group.keywords().items()
-    }
+def keyword_units(*declared: Any, line: bool = False) -> dict[str, str]:
+    """Return the SI units of arguments, by name, as groups, dataclasses and functions declare them.
+
+    "" is that of a keyword of a group that has none.
+    """
+    units: dict[str, str] = {}
+    for declaration in declared:
+        units |= keyword_units(*getattr(declaration, "groups", ()), line=line)
+        units |= getattr(declaration, "units", {})
+        is_dataclass = dataclasses.is_dataclass(declaration)
+        for field in dataclasses.fields(declaration) if is_dataclass else ():
+            default = inspect.getattr_static(declaration, field.name, None)
+            unit = field.metadata.get("unit", getattr(default, "unit", None))
+            if unit is not None:
+                units[field.name] = unit[line]
+    return units
 
 
 def grouped(*groups: type[Group], leave: tuple[str, ...] = ()) -> Callable[[F], F]:
@@ -86,7 +109,7 @@ def grouped(*groups: type[Group], leave: tuple[str, ...] = ()) -> Callable[[F], 
             try:
                 signature.bind(*values, **keywords)
             except TypeError as error:
-                raise TypeError(f"{function.__name__}() {error}") from None
+                raise TypeError(f"{function.__qualname__}() {error}") from None
             return function(*values, **keywords)
 
         call.__signature__ = signature  # type: ignore[attr-defined]

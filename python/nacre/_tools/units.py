@@ -35,8 +35,8 @@ IMPERIAL = ("lbf", "in", "psi")
 POWERS = {"": 1, "²": 2, "³": 3, "⁴": 4}
 FACTORS = re.compile(r"([/ ]?)([^/ ²³⁴]+)([²³⁴]?)")
 """A unit in a product or a quotient: the sign before it, its name, and its power."""
-WORK = {"J": "N m", "J/m": "N", "J/m²": "N/m", "J/m³": "Pa"}
-"""Units of energies in systems that have no name for them."""
+WORK = {"J": "N m", "J/m": "N", "J/m²": "N/m", "J/m³": "Pa", "kg/m³": "Pa s²/m²"}
+"""Units of energies and of densities in systems that have no name for them."""
 SIZES = {sign: float(f"1e{power}") for power, sign in PREFIXES.items()} | {"c": 1e-2, "T": 1e12}
 READABLE = (0.1, 1e5)
 """Values that are written in a system's own unit without another prefix, and with the smallest or

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nacre._tools.units import System, size_of
-from nacre.case.bearing import UNITS
-from nacre.case.reference import place
-from nacre.results.parameters import BY_LAYER, INPUTS
+from nacre.case.reference import UNIT, place
+from nacre.case.tables import unit_of
+from nacre.results.parameters import quantity_of
 
 SCALES: dict[str, Callable[[float], float]] = {
     "1/min": lambda value: value * 2 * math.pi / 60,
@@ -24,8 +24,6 @@ SCALES: dict[str, Callable[[float], float]] = {
 """Numbers of a case by those in units that no system has: rad/s, slopes and radians."""
 LIMITS = ("yield_stress", "strength", "shear_yield")
 """Keys of materials that may be empty."""
-DIMENSION = re.compile(r"\s*\[(N m|N/m|m²/N|Pa|m|N)\]")
-"""A unit in a text of the schema."""
 
 
 class FieldError(ValueError):
@@ -131,20 +129,19 @@ def field_of(
     `helps`, by names of quantities, are in place of the texts of the schema.
     """
     keys, units = keys_of(path), data.get("units", "SI")
-    *_, outer, name = ["", *(key for key in keys if isinstance(key, str))]
-    quantity = outer if name in ("x", "y", "z") or outer in BY_LAYER else name
-    node = place(data, keys).node
-    text = " ".join(str(node.get("description", "")).split())
-    owner = place(data, keys[:-1]).node if quantity == outer else node
-    declared = owner.get("unit_of_lines" if "width" in data.get("grid", {}) else "unit")
-    by_name = UNITS.get(f"{outer}.{name}") or (INPUTS | UNITS).get(quantity, "")
+    names = [key for key in keys if isinstance(key, str)]
+    nodes = [place(data, inner).node for inner in (keys, keys[:-1])]
+    line = "width" in data.get("grid", {})
+    text = " ".join(str(nodes[0].get("description", "")).split())
+    unit = next((unit for node in nodes if (unit := unit_of(node, line))), "")
+    quantity = quantity_of(".".join(names))
     one = Field(
         path,
         label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
-        unit=System(units).unit(declared or (DIMENSION.findall(text) or [by_name])[0])[1],
-        help=DIMENSION.sub("", text) if helps is None else helps.get(quantity, ""),
-        may_be_empty=name in LIMITS,
-        is_count="integer" in (node.get("type"), node.get("items", {}).get("type")),
+        unit=System(units).unit(unit)[1],
+        help=UNIT.sub("", text) if helps is None else helps.get(quantity, ""),
+        may_be_empty=names[-1] in LIMITS,
+        is_count="integer" in (nodes[0].get("type"), nodes[0].get("items", {}).get("type")),
     )._replace(**own)
     default = one.typed(entry_at(data, path), units)
     return one._replace(**({"default": default} | own))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import nacre._core as core
+from nacre._tools.groups import in_unit
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.equilibrium import Balls
 from nacre.bearing.geometry import RINGS, Array, Ring, above, millimetres
@@ -25,7 +26,7 @@ class _Balls(BallBearing, Solvable):
     """Radii of the grooves of inner and outer ring over the diameter of a ball."""
     rating_factor: float = 1.3
     """Factor b_m of ISO 281 for the rating."""
-    shoulder_height: float | None = None
+    shoulder_height: float | None = field(default=None, metadata=in_unit("m"))
     """Height of the shoulders above the bottoms of the grooves [m]; None: a usual one."""
 
     def __post_init__(self) -> None:
@@ -230,7 +231,7 @@ class AngularContactBall(_Balls):
     True
     """
 
-    contact_angle: float
+    contact_angle: float = field(metadata=in_unit("rad"))
     """Contact angle without load [rad]."""
 
     kind: ClassVar[str] = "angular_contact_ball"

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Unpack
 
-from nacre.bearing.geometry import Bearing, Ring
-from nacre.bearing.iso import rating
-from nacre.bearing.solution import BearingSolution, Model
-from nacre.bearing.solving import (
-    Along,
+from nacre._tools.groups import grouped
+from nacre.bearing.arguments import (
+    BearingKeywords,
     BearingOptions,
     Operation,
     RingConditions,
-    solve_bearing,
 )
+from nacre.bearing.geometry import Bearing
+from nacre.bearing.iso import rating
+from nacre.bearing.solution import BearingSolution
+from nacre.bearing.solving import solve_bearing
 
 
 class Solvable(Bearing):
@@ -24,24 +25,8 @@ class Solvable(Bearing):
         """Dynamic load rating of ISO 281 [N], whatever the capacity is."""
         return rating(self)
 
-    def solve(
-        self,
-        *,
-        force: Along = None,
-        displacement: Along = None,
-        moment: Along = None,
-        tilt: Along = None,
-        rotation: float = 0.0,
-        speed: float = 0.0,
-        rotating: Ring = "inner",
-        model: Model = "solved",
-        cells: tuple[int, int] | None = None,
-        tolerance: float = 1e-9,
-        max_iterations: int = 50,
-        threads: int | None = None,
-        progress: Callable[[int, float], object] | None = None,
-        check: bool = True,
-    ) -> BearingSolution:
+    @grouped(RingConditions, Operation, BearingOptions)
+    def solve(self, **keywords: Unpack[BearingKeywords]) -> BearingSolution:
         """Load, tilt and pressure of every element under a load or displacement of the inner ring.
 
         Each of the five degrees of freedom of the inner ring is loaded, prescribed, or neither: it
@@ -110,8 +95,5 @@ class Solvable(Bearing):
         >>> round(float(standard.loads.max()))
         1929
         """
-        ring = RingConditions(force, displacement, moment, tilt)
-        operation = Operation(rotation, speed, rotating)
-        cells = self.usual_cells if cells is None else cells
-        options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
-        return solve_bearing(self, ring, operation, options)
+        ring, operation = RingConditions.of(keywords), Operation.of(keywords)
+        return solve_bearing(self, ring, operation, BearingOptions.of(keywords))

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.groups import with_units
 from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
@@ -210,6 +211,7 @@ def is_line(solution: Solution) -> bool:
     return solution.grid.is_line or solution.report.rolling_direction is not None
 
 
+@with_units(speed="m/s", viscosity="Pa s", pressure_viscosity="1/Pa", roughness="m", radius="m")
 def film_thickness(
     solution: Solution,
     *,

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
+from nacre._tools.groups import in_unit
 from nacre._tools.rounding import ROUNDING, floor
 from nacre._tools.typing import Layers
 from nacre._tools.units import system
@@ -106,9 +107,9 @@ class Follows(float):
 class Following:
     """An argument that may be left out: the attribute is then what follows from the others."""
 
-    def __init__(self, source: str) -> None:
-        """Take the name of the property that follows."""
-        self.source = source
+    def __init__(self, source: str, unit: str) -> None:
+        """Take the name of the property that follows, and the SI unit, as `keyword_units` reads."""
+        self.source, self.unit = source, in_unit(unit)["unit"]
 
     def __set_name__(self, owner: type, name: str) -> None:
         """Take the name of the argument, under which the instance keeps it."""
@@ -126,9 +127,9 @@ class Following:
         vars(bearing)[self.name] = value
 
 
-def _following(source: str) -> Any:
+def _following(source: str, unit: str) -> Any:
     """Return a `Following`, whose type is that of its numbers."""
-    return Following(source)
+    return Following(source, unit)
 
 
 class Standards(NamedTuple):
@@ -169,11 +170,11 @@ class Bearing(ABC):
 
     count: int
     """Number of rolling elements in a row."""
-    diameter: float
+    diameter: float = field(metadata=in_unit("m"))
     """Diameter of an element [m]."""
-    pitch_diameter: float | None = _following("pitch")
+    pitch_diameter: float | None = _following("pitch", "m")
     """Diameter of the circle of the elements' centres [m]."""
-    clearance: float | None = _following("play")
+    clearance: float | None = _following("play", "m")
     """Diametral clearance [m], below 0 with preload; 0 by default."""
     element: Layers = STEEL
     """Body of the elements."""
@@ -181,11 +182,11 @@ class Bearing(ABC):
     """Body of the inner ring."""
     outer: Layers = STEEL
     """Body of the outer ring."""
-    capacity: float | None = _following("standard_capacity")
+    capacity: float | None = _following("standard_capacity", "N")
     """Dynamic load rating C_r [N]; by default that of ISO 281."""
     rating_factor: float = 1.1
     """Factor b_m of ISO 281 for the rating."""
-    density: float = 7850.0
+    density: float = field(default=7850.0, metadata=in_unit("kg/m³"))
     """Density of the elements [kg/m³], for the centrifugal force."""
 
     kind: ClassVar[str]

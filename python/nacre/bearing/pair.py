@@ -8,17 +8,24 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import KW_ONLY, dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import KW_ONLY, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import read_fields
+from nacre._tools.groups import grouped, in_unit, keyword_units
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
+from nacre.bearing.arguments import (
+    BearingKeywords,
+    BearingOptions,
+    Operation,
+    RingConditions,
+)
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import Law, Reaction, Several
@@ -34,14 +41,9 @@ from nacre.bearing.solution import (
     BearingReport,
     BearingSolution,
     Equilibrium,
-    Model,
     stiffness_rows,
 )
 from nacre.bearing.solving import (
-    Along,
-    BearingOptions,
-    Operation,
-    RingConditions,
     as_arrays,
     centrifugal_force,
     check_sides,
@@ -80,8 +82,6 @@ FARTHEST = 100.0
 """Largest distance over the pitch diameter: shafts as long bend more than their bearings."""
 PRELOAD_STEPS = 50
 """Newton steps, at least, for the place of the rings without load: it takes some five."""
-PRELOAD = {"distance": "m", "preload_force": "N", "preload_distance": "m"}
-"""Units of what sets a pair."""
 STANDSTILL = Operation(0.0, 0.0, "inner")
 """Operation in which bearings are preloaded."""
 
@@ -141,11 +141,11 @@ class Pair:
     _: KW_ONLY
     arrangement: Arrangement
     """Arrangement."""
-    distance: float
+    distance: float = field(metadata=in_unit("m"))
     """Distance of the reference points of both bearings [m]."""
-    preload_force: float | None = None
+    preload_force: float | None = field(default=None, metadata=in_unit("N"))
     """Axial force of each bearing without load [N]."""
-    preload_distance: float | None = None
+    preload_distance: float | None = field(default=None, metadata=in_unit("m"))
     """How far the rings of both bearings together are pressed beyond touching [m]."""
 
     def __post_init__(self) -> None:
@@ -205,24 +205,8 @@ class Pair:
         """Both bearings."""
         return self.first, self.second
 
-    def solve(
-        self,
-        *,
-        force: Along = None,
-        displacement: Along = None,
-        moment: Along = None,
-        tilt: Along = None,
-        rotation: float = 0.0,
-        speed: float = 0.0,
-        rotating: Ring = "inner",
-        model: Model = "solved",
-        cells: tuple[int, int] | None = None,
-        tolerance: float = 1e-9,
-        max_iterations: int = 50,
-        threads: int | None = None,
-        progress: Callable[[int, float], object] | None = None,
-        check: bool = True,
-    ) -> PairSolution:
+    @grouped(RingConditions, Operation, BearingOptions)
+    def solve(self, **keywords: Unpack[BearingKeywords]) -> PairSolution:
         """Equilibrium of the shaft and of all elements of both bearings.
 
         Each of the five degrees of freedom of the shaft is loaded, prescribed, or neither: it is
@@ -288,11 +272,8 @@ class Pair:
         >>> [round(one.force[0]) for one in (solution.first, solution.second)]
         [2000, 2000]
         """
-        conditions = RingConditions(force, displacement, moment, tilt)
-        operation = Operation(rotation, speed, rotating)
-        cells = self.first.usual_cells if cells is None else cells
-        options = BearingOptions(model, cells, tolerance, max_iterations, threads, progress, check)
-        return solve_pair(self, conditions, operation, options)
+        ring, operation = RingConditions.of(keywords), Operation.of(keywords)
+        return solve_pair(self, ring, operation, BearingOptions.of(keywords))
 
     def _arguments(self) -> dict[str, object]:
         """Return what makes the pair again, for files."""
@@ -683,7 +664,9 @@ class PairSolution(Equilibrium):
     def _inputs(self) -> Rows:
         values = {field.name: getattr(self.pair, field.name) for field in fields(self.pair)}
         names = ("model", "rotation", "speed", "rotating", "cells")
-        return input_rows(values | {name: getattr(self.first, name) for name in names}, PRELOAD)
+        values |= {name: getattr(self.first, name) for name in names}
+        units = keyword_units(type(self.pair), type(self.pair.first), Operation)
+        return input_rows(values, units)
 
     def _report_rows(self) -> Rows:
         rows = [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal, get_args
 
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import in_unit
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.equilibrium import Barrels, Rollers
 from nacre.bearing.geometry import RINGS, Ring, above, check_flag, millimetres
@@ -44,11 +45,13 @@ def _check_angle(angle: float) -> None:
 class _Rollers(RollerBearing, Solvable):
     """Bearing with one row of rollers on straight or crowned raceways."""
 
-    length: float
+    length: float = field(metadata=in_unit("m"))
     """Effective length of a roller [m]."""
     profile: Profile = "iso16281"
     """Profile of the rollers; None for straight ones."""
-    raceway_crown: tuple[float | None, float | None] = (None, None)
+    raceway_crown: tuple[float | None, float | None] = field(
+        default=(None, None), metadata=in_unit("m")
+    )
     """Radii of crowns of both raceways [m]; None for straight ones."""
     free_ends: bool = True
     """Whether the ends of the rollers are free surfaces."""
@@ -188,7 +191,7 @@ class CylindricalRoller(_Rollers):
     (65.0205, 41.0)
     """
 
-    raceway_diameters: tuple[float, float] | None = None
+    raceway_diameters: tuple[float, float] | None = field(default=None, metadata=in_unit("m"))
     """Diameters of inner and outer raceway [m]; None where the pitch diameter is given."""
 
     kind: ClassVar[str] = "cylindrical_roller"
@@ -311,7 +314,7 @@ class TaperedRoller(_Rollers):
     5000
     """
 
-    contact_angle: float
+    contact_angle: float = field(metadata=in_unit("rad"))
     """Contact angle of the outer ring [rad]."""
 
     kind: ClassVar[str] = "tapered_roller"
@@ -488,13 +491,13 @@ class SphericalRoller(RollerBearing, CurvedRaceways, Solvable):
     ((38, 2), (0.0, 0.0))
     """
 
-    length: float
+    length: float = field(metadata=in_unit("m"))
     """Effective length of a roller [m]."""
-    contact_angle: float
+    contact_angle: float = field(metadata=in_unit("rad"))
     """Contact angle of both rows [rad]."""
-    profile_radius: float
+    profile_radius: float = field(metadata=in_unit("m"))
     """Radius of the profile of the rollers [m]."""
-    groove_radius: float | None = None
+    groove_radius: float | None = field(default=None, metadata=in_unit("m"))
     """Radius of the inner raceway along the roller [m]; None: that of the outer one."""
     rows: int = 2
     """Number of rows."""

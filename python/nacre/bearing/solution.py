@@ -11,8 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import keyword_units, with_units
 from nacre._tools.typing import among
 from nacre._tools.units import rounded, symbol
+from nacre.bearing.arguments import Model, Operation
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
@@ -45,7 +47,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
-Model = Literal["solved", "iso16281"]
 
 SLIGHT = 1e-8
 """Share of loads and approaches below which a number is printed as 0."""
@@ -418,6 +419,7 @@ class BearingSolution(Equilibrium):
         assert isinstance(self.bearing, RollerBearing)
         return pressure_factors(self.bearing, self.lamina_loads, self.lamina_pressures)
 
+    @with_units(speed="rad/s", kinematic_viscosity="m²/s", fatigue_load_limit="N")
     def life(
         self,
         edge: Edge = "standard",
@@ -612,7 +614,8 @@ class BearingSolution(Equilibrium):
 
     def _inputs(self) -> Rows:
         names = ("bearing", "model", "rotation", "speed", "rotating", "cells")
-        return input_rows({name: getattr(self, name) for name in names})
+        units = keyword_units(type(self.bearing), Operation)
+        return input_rows({name: getattr(self, name) for name in names}, units)
 
     def _report_rows(self) -> Rows:
         """Return the numbers, the dimensions that follow from others, and the rating."""

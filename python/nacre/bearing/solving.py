@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.progress import check_progress, lasting
-from nacre._tools.typing import among
+from nacre._tools.notices import warn
+from nacre._tools.progress import lasting
+from nacre.bearing.arguments import BearingOptions, Model, Operation, RingConditions
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
@@ -26,10 +26,10 @@ from nacre.bearing.contact_laws import (
     binned,
 )
 from nacre.bearing.equilibrium import Problem, State
-from nacre.bearing.geometry import HIGHEST, RINGS, Bearing, Ring, above
+from nacre.bearing.geometry import HIGHEST, RINGS, Bearing
 from nacre.bearing.iso import hertz_pressures
 from nacre.bearing.kinds import BallBearing, RollerBearing
-from nacre.bearing.solution import BearingReport, BearingSolution, Model, carrying, edge_pressure
+from nacre.bearing.solution import BearingReport, BearingSolution, carrying, edge_pressure
 from nacre.contact.solution import Solution
 from nacre.results.verdict import SINGULAR
 
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from nacre.bearing.pair import PairSolution
 
 Array = npt.NDArray[np.float64]
-Along = Sequence[float | None] | None
 
 STEEPEST = 0.02
 """Largest tilt without a warning: about a degree, where bearings bear minutes."""
@@ -49,87 +48,8 @@ REMEDIES = {
     "no descent": "no step lowers the energy by more than rounding: raise the tolerance",
 }
 """What helps where an iteration ended before the tolerance was met."""
-TURNED = 1e6
-"""Largest angle of the elements [rad], which is right to 1e-10."""
-FASTEST = 1e3
-"""Largest speed of the elements [m/s], at which rings of steel burst."""
 FINER = 0.1
 """Tolerance of the contacts over that of the bearing, which their sums inherit."""
-
-
-@dataclass(frozen=True)
-class RingConditions:
-    """Loads and displacements of the inner ring."""
-
-    force: Along
-    displacement: Along
-    moment: Along
-    tilt: Along
-
-
-@dataclass(frozen=True)
-class Operation:
-    """Where the elements are, and how fast they move."""
-
-    rotation: float
-    speed: float
-    rotating: Ring
-
-    def checked(self, bearing: Bearing) -> Operation:
-        """Return the operation with Python's numbers, or raise an error."""
-        rotation = above("rotation", self.rotation, -math.inf)
-        speed, rotating = above("speed", self.speed, -math.inf), self.rotating
-        if not among(rotating, RINGS):
-            raise ValueError(f'rotating must be "inner" or "outer", got {rotating!r}')
-        if abs(rotation) > TURNED:
-            raise ValueError(f"rotation must be at most {TURNED:g} rad, got {rotation!r} rad")
-        if abs(bearing.cage_speed(speed, rotating)) * bearing.pitch / 2 > FASTEST:
-            raise ValueError(
-                f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
-                f"got {speed!r} rad/s"
-            )
-        return Operation(rotation, speed, rotating)
-
-
-@dataclass(frozen=True)
-class BearingOptions:
-    """How a bearing is solved."""
-
-    model: Model
-    cells: tuple[int, int]
-    tolerance: float
-    max_iterations: int
-    threads: int | None
-    progress: Callable[[int, float], object] | None
-    check: bool
-
-    def checked(self, bearing: Bearing) -> BearingOptions:
-        """Return the options with Python's numbers, or raise an error."""
-        max_iterations = _positive("max_iterations", self.max_iterations)
-        threads = None if self.threads is None else _positive("threads", self.threads)
-        if not among(self.model, ("solved", "iso16281")):
-            raise ValueError(f'model must be "solved" or "iso16281", got {self.model!r}')
-        check_progress(self.progress)
-        tolerance = above("tolerance", self.tolerance)
-        if tolerance >= 1:
-            raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
-        along, across = core.vector("cells", 2, self.cells)
-        cells = core.integer("cells", along), core.integer("cells", across)
-        multiple = bearing.cells_multiple
-        if min(cells) < 8 or cells[0] % multiple:
-            words = f", the first a multiple of {multiple}" if multiple > 1 else ""
-            raise ValueError(f"cells must be two numbers of at least 8{words}, got {cells!r}")
-        return replace(
-            self, cells=cells, tolerance=tolerance, max_iterations=max_iterations, threads=threads
-        )
-
-
-def _positive(name: str, value: object) -> int:
-    """Return an integer of at least 1, or raise an error."""
-    number = core.integer(name, value)
-    if number < 1:
-        raise ValueError(f"{name} must be at least 1, got {number!r}")
-    return number
 
 
 def read_conditions(
@@ -261,7 +181,8 @@ def solved_contacts(
     lines = law.heaviest(places)
     if not lines.any():
         lines = lines + law.touching()
-    return Solved(bearing, lines, options.cells, FINER * options.tolerance, options.threads)
+    cells = options.cells or bearing.usual_cells
+    return Solved(bearing, lines, cells, FINER * options.tolerance, options.threads)
 
 
 def find_equilibrium(
@@ -309,7 +230,7 @@ def issue(solution: BearingSolution | PairSolution, options: BearingOptions) -> 
     """Warn of what limits a solution, and raise an error if it did not converge."""
     report = solution.report
     for message in report.warnings:
-        warnings.warn(message, core.NacreWarning, stacklevel=4)
+        warn(message)
     if options.check and report.termination in REMEDIES:
         error = core.ConvergenceError(
             f"balance {report.balance:.2e} above {options.tolerance:.0e} after "

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
-from nacre._tools.units import System, size_of
+from nacre._tools.groups import keyword_units
+from nacre._tools.units import System
 from nacre.bearing import (
     AngularContactBall,
     BearingSolution,
@@ -20,6 +21,7 @@ from nacre.bearing import (
     TaperedRoller,
     film_thickness,
 )
+from nacre.bearing.arguments import Model
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import Ring
 from nacre.bearing.pair import Arrangement
@@ -27,14 +29,16 @@ from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
 from nacre.case.tables import (
     Count,
-    Counts,
     Directions,
     Number,
     Table,
+    from_signature,
     parameter_texts,
+    unit_of,
     with_words,
 )
 from nacre.case.tables import Pair as Two
+from nacre.results.parameters import VALUES
 
 KINDS: dict[str, type[Solvable]] = {
     bearing_class.kind: bearing_class
@@ -47,72 +51,43 @@ KINDS: dict[str, type[Solvable]] = {
     )
 }
 """Bearings by their names in case files."""
-SOLVE = parameter_texts(Solvable.solve)
-LIFE = parameter_texts(BearingSolution.life)
-FILMS = parameter_texts(film_thickness)
 PAIR = parameter_texts(Pair)
 
 
-UNITS: dict[str, str] = (
-    dict.fromkeys(
-        (
-            *("diameter", "length", "pitch_diameter", "raceway_diameters", "raceway_crown"),
-            *("profile_radius", "groove_radius", "clearance", "shoulder_height", "thickness"),
-            *("displacement", "roughness", "radius", "amplitude", "flat_length", "z_m"),
-            *("distance", "preload_distance"),
-            *("profile.x", "SampledProfile.x", "drop", "corners", "smoothing", "ends"),
-        ),
-        "m",
-    )
-    | dict.fromkeys(("force", "preload_force", "capacity", "load", "fatigue_load_limit"), "N")
-    | dict.fromkeys(("young", "yield_stress", "strength", "shear_yield", "contact_modulus"), "Pa")
-    | {"moment": "N m", "density": "kg/m³", "film.speed": "m/s"}
-    | {"viscosity": "Pa s", "pressure_viscosity": "1/Pa", "kinematic_viscosity": "m²/s"}
-    | dict.fromkeys(("normal", "tangential"), "Pa/m")
-)
-"""SI units of the numbers at keys, or of all in the tables there; the others have none, or rad."""
+SIZED = ("N", "m", "Pa", "N m", "N/m", "m/s", "m²/s", "Pa s", "1/Pa", "Pa/m", "kg/m³")
+"""SI units of bearings that are others in other systems."""
 
 
 def sizes_of(units: str) -> dict[str, float]:
     """Return the sizes in SI of the units that are consistent with those of a case."""
     system = System(units)  # which checks them
-    names = ("N", "m", "Pa") if system.name == "SI" else tuple(units.split("-"))
-    force, length, stress = (size[1] for name in names if (size := size_of(name)))
-    return {
-        "N": force,
-        "m": length,
-        "Pa": stress,
-        "N m": force * length,
-        "N/m": force / length,
-        "m/s": length,
-        "m²/s": length**2,
-        "Pa s": stress,
-        "1/Pa": 1 / stress,
-        "Pa/m": stress / length,
-        "kg/m³": stress / length**2,  # ρ v² is a stress
-    }
+    return {unit: system.unit(unit)[0] for unit in SIZED}
 
 
-def scaled(data: object, sizes: Mapping[str, float]) -> Any:
-    """Return data in which the numbers at the keys of a bearing are multiplied by their sizes."""
-
-    def inner(data: Any, path: tuple[str, ...], size: float) -> Any:
-        if isinstance(data, dict):
-            return {
-                key: inner(value, (*path, key), sizes.get(_unit((*path, key)), size))
-                for key, value in data.items()
-            }
-        if isinstance(data, list):
-            return [inner(value, path, size) for value in data]
-        is_number = isinstance(data, float) or (type(data) is int and size != 1)
-        return data * size if is_number else data
-
-    return inner(data, (), 1.0)
+ENCODED = VALUES | keyword_units(Pair, *KINDS.values())
+"""SI units of the numbers of bearings and pairs as data, by key."""
 
 
-def _unit(path: tuple[str, ...]) -> str:
-    """Return the SI unit of the numbers at a path, if it is not that of the table around it."""
-    return UNITS.get(".".join(path[-2:])) or UNITS.get(path[-1], "")
+def scaled(
+    entry: Any, sizes: Mapping[str, float], units: Mapping[str, str], size: float = 1.0
+) -> Any:
+    """Return tables as data in which numbers are multiplied by the sizes of their units.
+
+    Data have `units` by key; `size` is that of numbers that have no unit of their own.
+    """
+    own = units
+    if isinstance(entry, Table):
+        own = {name: unit_of(key) for name, key in type(entry).model_fields.items()}
+        entry = {name: getattr(entry, name) for name in entry.model_fields_set}
+    if isinstance(entry, dict):
+        return {
+            key: scaled(value, sizes, units, sizes.get(own.get(key, ""), size))
+            for key, value in entry.items()
+        }
+    if isinstance(entry, list):
+        return [scaled(value, sizes, units, size) for value in entry]
+    is_number = isinstance(entry, float) or (type(entry) is int and size != 1)
+    return entry * size if is_number else entry
 
 
 class InSpace(Directions):
@@ -137,20 +112,19 @@ class Rings(Directions):
     outer: Number | None = Field(None, description="Value of the outer ring.")
 
 
+@from_signature(
+    Solvable.solve,
+    {"threads", "check"},
+    force=InSpace | None,
+    displacement=InSpace | None,
+    moment=About | None,
+    tilt=About | None,
+)
 class BearingSolve(Table):
     """What is asked of the inner ring: each direction loaded, prescribed, or locked at 0."""
 
-    force: InSpace | None = Field(None, description=SOLVE["force"])
-    displacement: InSpace | None = Field(None, description=SOLVE["displacement"])
-    moment: About | None = Field(None, description=SOLVE["moment"])
-    tilt: About | None = Field(None, description=SOLVE["tilt"])
-    rotation: Number = Field(0.0, description=SOLVE["rotation"])
-    speed: Number = Field(0.0, description=SOLVE["speed"])
-    rotating: Ring = Field("inner", description=SOLVE["rotating"])
-    model: Literal["solved", "iso16281"] = Field("solved", description=SOLVE["model"])
-    cells: Counts | None = Field(None, description=SOLVE["cells"])
-    tolerance: Number = Field(1e-9, description=SOLVE["tolerance"])
-    max_iterations: Count = Field(50, description=SOLVE["max_iterations"])
+    if TYPE_CHECKING:
+        model: Model
 
 
 class Duty(Table):
@@ -161,8 +135,9 @@ class Duty(Table):
     speed: Number = Field(description="Angular velocity of the ring that rotates [rad/s].")
 
 
-class BearingLife(Table):
-    """Rating life of ISO/TS 16281 and ISO 281, which is printed; the table may be empty."""
+@from_signature(BearingSolution.life, {"spectrum"})
+class Rating(Table):
+    """Keys of a rating life, under one load."""
 
     edge: Literal["standard", "pressure", "none"] = Field(
         "standard",
@@ -172,14 +147,11 @@ class BearingLife(Table):
         None,
         description="Ring that rotates against the load; by default that of `[bearing.solve]`.",
     )
-    speed: Number | None = Field(None, description=LIFE["speed"])
-    reliability: Number = Field(0.9, description=LIFE["reliability"])
-    viscosity_ratio: Number | None = Field(None, description=LIFE["viscosity_ratio"])
-    kinematic_viscosity: Number | None = Field(None, description=LIFE["kinematic_viscosity"])
-    film_ratio: Number | None = Field(None, description=LIFE["film_ratio"])
-    contamination: str | Number | None = Field(None, description=LIFE["contamination"])
-    additives: bool = Field(False, description=LIFE["additives"])
-    fatigue_load_limit: Number | None = Field(None, description=LIFE["fatigue_load_limit"])
+
+
+class BearingLife(Rating):
+    """Rating life of ISO/TS 16281 and ISO 281, which is printed; the table may be empty."""
+
     spectrum: list[Duty] = Field(
         [],
         description="Load spectrum in place of the solved load: tables with share, force and "
@@ -198,14 +170,14 @@ class BearingLife(Table):
         return keywords
 
 
-class BearingFilm(Table):
+@from_signature(film_thickness, {"solution"})
+class Oil(Table):
+    """Keys of the oil and how it flows."""
+
+
+class BearingFilm(Oil):
     """Oil film in the heaviest contact of a ring, which is printed; for solved contacts."""
 
-    speed: Number = Field(description=FILMS["speed"])
-    viscosity: Number = Field(description=FILMS["viscosity"])
-    pressure_viscosity: Number = Field(description=FILMS["pressure_viscosity"])
-    roughness: Number | None = Field(None, description=FILMS["roughness"])
-    radius: Number | None = Field(None, description=FILMS["radius"])
     ring: Ring = Field("inner", description="Ring of the contact.")
 
 
@@ -246,27 +218,25 @@ FOLLOWS = {"angular_contact_ball": ("clearance",)}
 def _table(kind: str, base: type[SingleKind], suffix: str) -> Any:
     """Return the table of a bearing: a key for each argument, and those of its base."""
     bearing_class = KINDS[kind]
-    descriptions = parameter_texts(bearing_class)
+    descriptions, units = parameter_texts(bearing_class), keyword_units(bearing_class)
     fields: dict[str, Any] = {
         "kind": (Literal[kind], Field(description="Kind, which decides on the other keys."))
     }
     for field in dataclasses.fields(bearing_class):
-        hint, default = TYPES.get(field.name, Number), field.default
-        if field.name in FOLLOWS.get(kind, ()):
+        name, default = field.name, field.default
+        hint = TYPES.get(name, Number)
+        if name in FOLLOWS.get(kind, ()):
             continue
         if default is dataclasses.MISSING:
-            fields[field.name] = (hint, Field(description=descriptions.get(field.name, "")))
-            continue
-        if default is None or field.name in ("element", "inner", "outer", "raceway_crown"):
+            default = ...
+        elif default is None or name in ("element", "inner", "outer", "raceway_crown"):
             hint, default = hint | None, None
-        default_value = list(default) if isinstance(default, tuple) else default
-        fields[field.name] = (
-            hint,
-            Field(default=default_value, description=descriptions.get(field.name, "")),
-        )
+        default = list(default) if isinstance(default, tuple) else default
+        extra: Any = {"json_schema_extra": {"unit": units[name]}} if name in units else {}
+        fields[name] = (hint, Field(default, description=descriptions.get(name, ""), **extra))
     summary = inspect.cleandoc(bearing_class.__doc__ or "").partition("\n")[0]
-    name = bearing_class.__name__ + suffix
-    table: type[SingleKind] = create_model(name, __base__=base, __doc__=summary, **fields)
+    title = bearing_class.__name__ + suffix
+    table: type[SingleKind] = create_model(title, __base__=base, __doc__=summary, **fields)
     table.bearing_class = bearing_class
     return table
 
@@ -281,10 +251,9 @@ else:
     ]
 
 
-class PairKind(Table):
-    """Two angular contact ball or two tapered roller bearings on one rigid shaft."""
-
-    film: ClassVar[None] = None
+@from_signature(Pair)
+class Mounted(Table):
+    """Keys of two bearings on a shaft."""
 
     kind: Literal["pair"] = Field(description="Kind, which decides on the other keys.")
     first: AnySingle = Field(description="Bearing at `z = -distance/2`.")
@@ -292,9 +261,13 @@ class PairKind(Table):
         None, description="Bearing at `z = distance/2`; by default it is equal to the first."
     )
     arrangement: Arrangement = Field(description=PAIR["arrangement"])
-    distance: Number = Field(description=PAIR["distance"])
-    preload_force: Number | None = Field(None, description=PAIR["preload_force"])
-    preload_distance: Number | None = Field(None, description=PAIR["preload_distance"])
+
+
+class PairKind(Mounted):
+    """Two angular contact ball or two tapered roller bearings on one rigid shaft."""
+
+    film: ClassVar[None] = None
+
     solve: BearingSolve = Field(description="What is solved.")
     life: BearingLife | None = Field(None, description="Life that is printed.")
 
@@ -335,8 +308,8 @@ class BearingCase(Keys):
         """Return the same case in SI."""
         if System(self.units).name == "SI":
             return self
-        data = self.model_dump(exclude={"units", "sweep"}, exclude_unset=True)
-        return type(self).model_validate(scaled(data, sizes_of(self.units)))
+        data = scaled(self, sizes_of(self.units), {}) | {"units": "SI", "sweep": None}
+        return type(self).model_validate(data)
 
     def arguments(self) -> dict[str, Any]:
         """Return the bearing, or the pair of them, and the keywords of its ``solve``, in SI."""

@@ -20,7 +20,7 @@ from nacre.bearing.pair import NAMES
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.case import templates as _templates
-from nacre.case.bearing import scaled, sizes_of
+from nacre.case.bearing import ENCODED, scaled, sizes_of
 from nacre.case.results import Results, files_of, last_of, naming, report_of, results_of
 from nacre.indent.solution import IndentSolution
 from nacre.results import files, tables
@@ -202,7 +202,7 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
         record = dict(state)
         for name, value in state.items():
             if name in ("bearing", "pair"):
-                record[name] = scaled(value, sizes)
+                record[name] = scaled(value, sizes, ENCODED)
             elif name in NAMES and isinstance(value, dict):
                 record[name] = converted(value, kinds)
             elif name == "tangent":

@@ -8,9 +8,11 @@ from contextlib import contextmanager
 from typing import Any
 
 import nacre
+from nacre._tools.groups import keyword_units
 from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.case import Case, CaseError
+from nacre.fatigue.criteria import Criterion
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import report
 from nacre.results.rows import Row, remark
@@ -124,8 +126,13 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
         for card in case.cards()
         for words, text in [("material", card.title), *card.numbers_in_words]
     ]
-    units = remark("units of the case", case.units)
-    rows = [units, *files, *cards, *report.input_rows(tables)]
+    units = keyword_units(nacre.Solution.stress_summary, nacre.fatigue.assess, Criterion)
+    rows = [
+        remark("units of the case", case.units),
+        *files,
+        *cards,
+        *report.input_rows(tables, units),
+    ]
     return report.text(name, [*results.values()], text, rows, sliding)
 
 

@@ -18,12 +18,15 @@ from pydantic import (
     PositiveInt,
     create_model,
 )
+from pydantic.fields import FieldInfo
 
 from nacre._tools.groups import keyword_units
 
 T = TypeVar("T", bound="Table")
 
 TWO = Field(min_length=2, max_length=2)
+UNIT = re.compile(r"\[((?:1|N|m|Pa|kg|rad)[²³]?(?:[ /](?:m|s|N|Pa)[²³]?)?)\]")
+"""A unit in the description of a key."""
 Number = FiniteFloat
 
 
@@ -109,6 +112,19 @@ def case_type(hint: object) -> Any:
     return Union[tuple(values)] if set(values) - {types.NoneType} else None  # noqa: UP007
 
 
+def unit_of(described: FieldInfo | Mapping[str, Any], line: bool = False) -> str:
+    """Return the SI unit of a key, of a table or of its JSON schema; "" where it has none.
+
+    It is that of the keyword, or else the one in its description.
+    """
+    if isinstance(described, FieldInfo):
+        extra: Any = described.json_schema_extra or {}
+        described = {"description": described.description, **extra}
+    name = "unit_of_lines" if line else "unit"
+    units = UNIT.findall(described.get("description") or "")
+    return str(described.get(name) or next(iter(units), ""))
+
+
 def needed(function: Callable[..., object]) -> set[str]:
     """Return the names of the arguments that a function cannot do without."""
     parameters = inspect.signature(function).parameters.values()
@@ -128,9 +144,7 @@ def signature_fields(
     left out. Descriptions of `texts` go before those of the docstring.
     """
     descriptions, hints = {**parameter_texts(maker), **(texts or {})}, get_type_hints(maker)
-    units, line = (
-        keyword_units(*getattr(maker, "groups", ()), line=line) for line in (False, True)
-    )
+    units, line = (keyword_units(maker, line=line) for line in (False, True))
     fields = {}
     for one in inspect.signature(maker).parameters.values():
         hint = own.get(one.name, case_type(hints.get(one.name)) if hints else Number)
@@ -140,11 +154,10 @@ def signature_fields(
         if default is one.empty:
             default = None if types.NoneType in get_args(hint) else ...
         hint = hint | None if default is None else hint
-        unit = units.get(one.name)
-        asked: dict[str, Any] = {"description": descriptions.get(one.name)}
-        if unit:
-            asked["json_schema_extra"] = {"unit": unit, "unit_of_lines": line[one.name]}
-        fields[one.name] = (hint, Field(default, **asked))
+        extra: dict[str, Any] = {}  # without a unit, so that words of the type stay
+        if unit := units.get(one.name):
+            extra["json_schema_extra"] = {"unit": unit, "unit_of_lines": line[one.name]}
+        fields[one.name] = (hint, Field(default, description=descriptions.get(one.name), **extra))
     return fields
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.disk import check_folder
-from nacre._tools.groups import Group, keyword
+from nacre._tools.groups import Group, keyword, keyword_units
 from nacre._tools.notices import warn
 from nacre._tools.progress import check_progress, lasting
 from nacre._tools.typing import AnyPath, Body, Field, Matrix
@@ -41,7 +41,6 @@ from nacre.results import display, files, values
 from nacre.results.base import Result, same
 from nacre.results.charts import HEADROOM, Axis, Chart, Curve, Picture, contact_charts
 from nacre.results.journal import Journal, Record
-from nacre.results.parameters import INPUTS
 from nacre.results.quantities import WEAR
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import Row, remark
@@ -805,9 +804,8 @@ class WearHistory(Shown, Result):
         """Return an input in words with its unit."""
         if name == "sliding":
             return travelled(float(text), "m")
-        unit = INPUTS[name] if name in ("rate", "counter_rate", "load", "approach") else ""
-        if name == "load" and self.states[0].solution.grid.is_line:
-            unit = "N/m"
+        units = keyword_units(Motion, Rates, line=self.states[0].solution.grid.is_line)
+        unit = units[name] if name in ("rate", "counter_rate", "load", "approach") else ""
         return f"{text} {symbol(unit)}".rstrip()
 
     def _rows(self) -> list[Row]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import in_unit
 from nacre._tools.typing import Real, among
 from nacre.results import values
 
@@ -89,9 +90,9 @@ class Criterion:
 
     _KIND: ClassVar[str]
 
-    bending: float | None = None
+    bending: float | None = field(default=None, metadata=in_unit("Pa"))
     """Fatigue limit in fully reversed bending [Pa]."""
-    torsion: float | None = None
+    torsion: float | None = field(default=None, metadata=in_unit("Pa"))
     """Fatigue limit in fully reversed torsion [Pa]."""
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import with_units
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
@@ -764,6 +765,7 @@ def in_region(region: Region, depths: Array) -> Array:
     return depths[(depths >= region.top) & (depths <= region.bottom)]
 
 
+@with_units(shear_yield="Pa", residual="Pa", x="m", depths="m")
 def assess(
     solution: Solution | FrictionSolution,
     *,

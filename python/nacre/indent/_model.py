@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from nacre.indent._addressed import System
 from nacre.indent.curves import Curve
-from nacre.results.parameters import PARAMETERS
+from nacre.results.parameters import VALUES
 
 Array = npt.NDArray[np.float64]
 Noise = Literal["relative", "absolute", "mixed"]
@@ -32,7 +32,7 @@ NUISANCES = {
 
 def unit_of(name: str) -> str:
     """Return the SI unit of a parameter; "" where it has none."""
-    return (PARAMETERS | NUISANCES).get(name.rpartition(".")[2], "")
+    return (VALUES | NUISANCES).get(name.rpartition(".")[2], "")
 
 
 RANGES: dict[str, float | tuple[float, float]] = {

@@ -25,6 +25,7 @@ from nacre.results import display
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Chart
 from nacre.results.charts import Curve as Line
+from nacre.results.quantities import FIT
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
@@ -176,7 +177,9 @@ class Fit(Shown, Result):
         for number, curve in enumerate(self.curves):
             measured = {"name": curve.name, "depth": curve.depth, "force": curve.force}
             inputs |= {f"curves[{number}].{name}": value for name, value in measured.items()}
-        return [remark("bodies and tip", "with the estimates in place"), *input_rows(inputs)]
+        units = {row.name: row.unit for row in FIT}
+        rows = input_rows(inputs, units)
+        return [remark("bodies and tip", "with the estimates in place"), *rows]
 
     def _report_rows(self) -> Rows:
         rows = []

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.groups import with_units
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import written
@@ -764,6 +765,7 @@ def with_unit(value: float, name: str) -> str:
     return written(value, UNITS[name], 4) if math.isfinite(value) else str(value)
 
 
+@with_units(load="N", approach="m", radius="m")
 def solve(
     body: Layers,
     tip: core.Tip,

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.units import Scale
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
-from nacre.results.parameters import PARAMETERS
+from nacre.results.parameters import VALUES
 from nacre.results.quantities import ERROR, units
 
 with extra("plot"):
@@ -176,7 +176,7 @@ def _labels(values: xarray.DataArray) -> list[str]:
     words = values.attrs.get("long_name", name.replace("_", " "))
     if values.dtype.kind not in "if":
         return [f"{words} {value}" for value in values.values]
-    scale = _scale_of(values, float(np.abs(values).max()), PARAMETERS.get(name, ""))
+    scale = _scale_of(values, float(np.abs(values).max()), VALUES.get(name, ""))
     numbers = (f"{scale.factor * value:.4g} {scale.unit}".rstrip() for value in values.values)
     return [f"{words} {number}" for number in numbers]
 
@@ -223,7 +223,7 @@ def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> npt.
     wide = numbers.min() > 0 and numbers.max() >= 8 * numbers.min() and steps[-1] > 3 * steps[0]
     typical = np.sqrt(numbers.min() * numbers.max()) if wide else np.abs(numbers).max()
     parameter = str(values.name).rpartition(".")[2]
-    scale = _scale_of(values, float(typical), PARAMETERS.get(parameter, ""))
+    scale = _scale_of(values, float(typical), VALUES.get(parameter, ""))
     name = values.attrs.get("long_name", parameter.replace("_", " "))
     label = f"{name} [{scale.unit}]" if scale.unit else name
     axes.set(**{f"{side}label": label, f"{side}scale": "log" if wide else "linear"})

@@ -23,7 +23,7 @@ import nacre._core as core
 from nacre._tools.markup import Markup, Parts, text_of
 from nacre._tools.units import rounded, symbol
 from nacre.results import charts, display, svg, tables
-from nacre.results.parameters import INPUTS
+from nacre.results.parameters import VALUES
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
 from nacre.results.values import encode
@@ -191,7 +191,7 @@ def page(
 
 def input_rows(values: Mapping[str, object], units: Mapping[str, str] | None = None) -> Rows:
     """Return inputs by path, with units: those of `units` first. Arrays stand by their SHA-256."""
-    by_name = INPUTS | dict(units or {})
+    by_name = VALUES | dict(units or {})
     leaves = (_leaves(name, encode(value, digest=True), by_name) for name, value in values.items())
     return [row for rows in leaves for row in rows]
 

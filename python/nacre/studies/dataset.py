@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +12,13 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import SI, Within, symbol, system
+from nacre.contact.solution import Solution
 from nacre.contact.wear_solution import KEYWORDS
+from nacre.fatigue import assess
+from nacre.fatigue.criteria import Criterion
 from nacre.results import quantities
 from nacre.results.journal import Record
-from nacre.results.parameters import parameter_unit, quantity_of
+from nacre.results.parameters import VALUES, quantity_of
 from nacre.results.quantities import ERROR
 from nacre.studies.outputs import (
     AXES,
@@ -83,6 +86,29 @@ def layout(parameters: Mapping[str, object]) -> tuple[xarray.Dataset, list[dict[
     return dataset, points
 
 
+def _arguments(kinds: Mapping[str, bool]) -> dict[str, tuple[Any, ...]]:
+    """Return what declares the units of arguments: of tables by name, and of the others at ""."""
+    if kinds["indents"]:
+        from nacre.indent.solution import solve
+
+        return {"": (solve,)}
+    if kinds["bears"]:
+        from nacre.bearing.film import film_thickness
+        from nacre.bearing.geometry import KNOWN
+        from nacre.bearing.pair import Pair
+        from nacre.bearing.solution import BearingSolution
+
+        tables = {"film": (film_thickness,), "life": (BearingSolution.life,)}
+        return {"": (Pair.solve, Pair, *KNOWN.values()), **tables}
+    return {"": (Solution.stress_summary, assess, Criterion, *KEYWORDS)}
+
+
+def _unit_of(path: str, arguments: Mapping[str, tuple[Any, ...]], line: bool) -> str:
+    """Return the SI unit of the argument at a path; "" where it has none."""
+    table = next((name for name in path.split(".")[:-1] if name in arguments), "")
+    return (VALUES | keyword_units(*arguments[table], line=line)).get(quantity_of(path), "")
+
+
 def assemble(
     coordinates: xarray.Dataset,
     records: Sequence[Record],
@@ -91,11 +117,15 @@ def assemble(
 ) -> xarray.Dataset:
     """Return the Dataset of all cases, whose parameters are `named` arguments, or a function's.
 
-    The Dataset of bearings is in SI.
+    The Dataset of bearings is in SI, but for the numbers at keys of a case file.
     """
     if any(record.get("bears") for record in records) and system() is not SI:
         with Within(SI):
-            return assemble(coordinates, records, outputs, named)
+            dataset = assemble(coordinates, records, outputs, named)
+        for name in [name for name in map(str, dataset.coords) if "." in name and not named]:
+            if unit := dataset[name].attrs.get("units"):
+                dataset[name].attrs["units"] = symbol(unit)
+        return dataset
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     kinds = {
@@ -132,12 +162,11 @@ def assemble(
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
-    is_contact = not (kinds["indents"] or kinds["bears"])
-    declared = keyword_units(*KEYWORDS, line=kinds["line"]) if is_contact else {}
+    arguments = _arguments(kinds)
     for name in map(str, dataset.coords):
         # What the parameters of a function are is not known; those of bearings are in SI.
         is_known = named or kinds["bears"] or "." in name
-        unit = declared.get(quantity_of(name), parameter_unit(name, units))
+        unit = _unit_of(name, arguments, line=kinds["line"])
         if is_known and unit:
             dataset[name].attrs["units"] = symbol(unit)
     dataset.attrs = {

@@ -13,7 +13,7 @@ import numpy as np
 from nacre._tools.units import display_units, symbol
 from nacre.results import display, files
 from nacre.results.charts import Axis, Chart, Curve, Picture
-from nacre.results.parameters import PARAMETERS
+from nacre.results.parameters import VALUES
 from nacre.results.quantities import ERROR
 from nacre.results.report import Rows, Table, table, write
 from nacre.results.rows import Row, remark
@@ -70,7 +70,7 @@ class Study(Shown):
 
     def _unit(self, name: str) -> str:
         """Return the unit of a variable, or of a parameter by its name; "" where it has none."""
-        usual = symbol(PARAMETERS.get(name.rpartition(".")[2], ""))
+        usual = symbol(VALUES.get(name.rpartition(".")[2], ""))
         unit = str(self.dataset[name].attrs.get("units", usual))
         return "" if unit == "1" else unit
 

@@ -21,9 +21,9 @@ from nacre.bearing import (
     film_thickness,
 )
 from nacre.case import Case, CaseError
-from nacre.case.bearing import TABLES, UNITS, sizes_of
+from nacre.case.bearing import TABLES, sizes_of
 from nacre.case.schema import Material
-from nacre.case.tables import Directions
+from nacre.case.tables import Directions, unit_of
 from support import Capture, assert_close, command, written
 
 CASE = """
@@ -206,36 +206,38 @@ def test_other_units_are_converted_once() -> None:
 
 
 def test_each_number_of_a_case_has_a_unit() -> None:
-    """Keys without one are known: counts, ratios, angles and speeds in rad."""
+    """Keys without one are known: counts, ratios and powers."""
     plain = {
-        *("count", "rows", "poisson", "rating_factor", "osculation", "contact_angle", "tolerance"),
-        *("max_iterations", "cells", "tilt", "rotation", "speed", "end_factor", "k1", "k2"),
-        *("film_ratio", "viscosity_ratio", "contamination", "reliability", "share"),
+        *("count", "rows", "poisson", "rating_factor", "osculation", "tolerance", "end_factor"),
+        *("max_iterations", "cells", "k1", "k2", "film_ratio", "viscosity_ratio", "share"),
+        *("contamination", "reliability"),
     }
 
-    def numbers(table: Any, path: tuple[str, ...]) -> set[str]:
-        found: set[str] = set()
+    def units(table: Any, path: tuple[str, ...]) -> dict[str, str]:
+        found: dict[str, str] = {}
         for name, field in table.model_fields.items():
             kinds = [kind for kind in parts(field.annotation) if hasattr(kind, "model_fields")]
             for kind in kinds:
                 if not issubclass(kind, Directions):
-                    found |= numbers(kind, (name,))
+                    found |= units(kind, (name,))
             own = set(parts(field.annotation)) & {float, int}
             if own or any(issubclass(kind, Directions) for kind in kinds):
-                found.add(".".join((*path, name)))
+                found[".".join((*path, name))] = unit_of(field)
         return found
 
     def parts(hint: Any) -> list[Any]:
         inner = [part for one in get_args(hint) for part in parts(one)]
         return inner or [hint]
 
-    keys = set().union(*(numbers(table, ()) for table in TABLES.values()))
-    keys |= numbers(Material, ())
-    assert {"diameter", "solve.force", "profile.x", "layers.thickness", "film.speed"} <= keys
-    for key in keys:
-        path = tuple(key.split("."))
-        named = UNITS.get(".".join(path[-2:])) or UNITS.get(path[-1])
-        assert (named is not None) != (path[-1] in plain and key != "film.speed"), key
+    declared = units(Material, ())
+    for table in TABLES.values():
+        declared |= units(table, ())
+    expected = {"diameter": "m", "solve.force": "N", "profile.x": "m", "layers.thickness": "m"}
+    expected |= {"film.speed": "m/s", "solve.speed": "rad/s", "density": "kg/m³"}
+    assert expected.items() <= declared.items()
+    known = {*sizes_of("SI"), "rad", "rad/s"}
+    for key, unit in declared.items():
+        assert (unit in known) != (key.rpartition(".")[2] in plain and not unit), key
 
 
 def test_other_units_are_printed(tmp_path: Path, capsys: Capture) -> None:

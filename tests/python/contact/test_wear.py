@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import nacre
+from nacre.results.charts import Chart
 from support import assert_close, interrupted
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
@@ -267,15 +268,12 @@ def test_what_is_shown_is_of_both_bodies(tmp_path: Path, monkeypatch: pytest.Mon
         for member, which in enumerate(("body", "counterbody")):
             (place,) = [k for k, head in enumerate(heads) if f"{name} {which} [" in head]
             assert [float(row[place]) for row in rows] == numbers[:, member].tolist()
-    curves: list[Any] = []
-
-    def lines(drawn: Any, axes: Any) -> str:
-        curves.extend(drawn)
-        return "<svg/>"
-
-    monkeypatch.setattr("nacre.contact.wear_solution.lines", lines)
-    history._sections()
-    shown = [(curve.x, curve.y) for curve in curves]
+    deepest_chart, peak_chart, *_, depth_chart = history._charts()
+    shown = [
+        (chart.curves[-1].x, chart.curves[-1].y)
+        for chart in (deepest_chart, peak_chart, depth_chart)
+        if isinstance(chart, Chart)
+    ]
     due = [(history.distance, deepest), (history.distance, history.peak_pressure), (GRID.y, depth)]
     for pair, wanted in zip(shown, due, strict=True):
         np.testing.assert_array_equal(pair, wanted)

@@ -12,9 +12,11 @@ from typing import Any
 import pytest
 
 import nacre
+from nacre._tools.arguments import keywords_of
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import System, size_of
 from nacre.app.fields import field_of
+from nacre.case import Case
 from nacre.contact.wear_solution import KEYWORDS
 from support import assert_close
 
@@ -164,31 +166,59 @@ def test_axes_of_studies_have_the_unit_of_the_keyword(name: str, units: str, lin
     assert_close(number, (LINE if line else VALUES)[name], rtol=1e-9)
 
 
-@pytest.mark.parametrize(("name", "units", "line"), CASES)
-def test_fields_of_the_page_have_the_unit_of_the_keyword(name: str, units: str, line: bool) -> None:
-    tables = {"solve": "solve", "slide": "slide", "roll": "roll", "wear": "wear"}
+def file_of(name: str, units: str, line: bool) -> tuple[str, Case]:
+    """Return the table of a case file that has a keyword, and the file of its contact."""
     function, arguments = case(name, units, line)
-    if name in ("rate", "counter_rate"):
-        pytest.skip("rates stand with the materials")
-    table, value = tables[function], arguments[name]
-    grid = {"cells": 32, "width": 6e-4} if line else {"shape": [16, 16], "size": [4e-4, 4e-4]}
+    shape, steel = arguments.pop("shape"), arguments.pop("body")
+    body = {"substrate": {"young": steel.young, "poisson": steel.poisson}}
+    kind = {"kind": "cylinder" if line else "sphere", "radius": shape.radius}
+    grid = arguments.pop("grid")
+    sizes = {"shape": list(grid.shape), "size": list(grid.size)}
+    strips = {"cells": grid.shape[1], "width": grid.size[1]}
     data: dict[str, Any] = {
         "units": units,
-        "shape": {"kind": "sphere", "radius": 1.0},
-        "body": {"substrate": {"young": 1.0, "poisson": 0.3}},
-        "grid": grid,
-        "solve": {"load": 1.0},
+        "shape": kind,
+        "grid": strips if line else sizes,
+        "solve": {},
     }
-    place = name
-    if isinstance(value, tuple):
-        place, value = f"{name}.{'y' if line else 'x'}", value[line]
-        data[table] = {**data.get(table, {}), name: {"y" if line else "x": value}}
-    else:
-        data[table] = {**data.get(table, {}), name: value}
-    field = field_of(data, f"{table}.{place}")
-    typed = field.typed(value, units)
-    assert typed is not None
-    number, dimension = in_si(typed, field.unit)
+    data |= {"body": body, "counterbody": body}
+    del arguments["counterbody"]
+    for key, value in arguments.items():
+        pair = value if isinstance(value, tuple) else None
+        sides = zip("xy", pair or (), strict=False)
+        entry = {axis: part for axis, part in sides if part is not None} if pair else value
+        table = "solve" if key in keywords_of(nacre.solve) else function
+        data.setdefault(table, {})[key] = list(pair) if pair and None not in pair else entry
+    return "solve" if name in data["solve"] else function, Case(data)
+
+
+PRINTED = {"eccentricity": "acts at", "compliance": "springs", "sliding": "distance"}
+"""Rows of prints whose names are not those of the keywords."""
+
+
+@pytest.mark.parametrize(("name", "units", "line"), CASES)
+def test_case_files_and_prints_give_back_what_went_in(name: str, units: str, line: bool) -> None:
+    function, arguments = case(name, units, line)
+    _, file = file_of(name, units, line)
+    given = file.arguments()
+    assert given[name] == arguments[name]
+    if name in ("rate", "counter_rate"):
+        return  # which are inputs, and not printed
+    with warnings.catch_warnings(), nacre.display_units(units):
+        warnings.simplefilter("ignore")
+        text = str(getattr(nacre, function)(**given))
+    rows = re.findall(rf"^{PRINTED.get(name, name)}  +(.*)", text, re.MULTILINE)
+    expected = next(v for v in _parts((LINE if line else VALUES)[name]) if v)
+    assert_close(quantity(rows[-1]), expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("name", "units", "line"), CASES)
+def test_fields_of_the_page_have_the_unit_of_the_keyword(name: str, units: str, line: bool) -> None:
+    table, file = file_of(name, units, line)
+    pair = isinstance(file.arguments()[name], tuple)
+    field = field_of(file.data, f"{table}.{name}" + (f".{'y' if line else 'x'}" if pair else ""))
+    assert field.default is not None
+    number, dimension = in_si(field.default, field.unit)
     assert dimension == keyword_units(*KEYWORDS, line=line)[name]
     expected = next(v for v in _parts((LINE if line else VALUES)[name]) if v)
     assert_close(number, expected, rtol=1e-9)

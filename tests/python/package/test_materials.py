@@ -16,7 +16,7 @@ import pytest
 
 import nacre
 from bodies import quiet
-from nacre.cards import ASSUMED, UNITS, WORDS
+from nacre.cards import ASSUMED, NUMBERS
 from nacre.case import Case
 from support import Capture, assert_close, command
 
@@ -26,7 +26,7 @@ STRESSES = {"young", "hardness", "yield_stress", "flexural_strength"}
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: card.name)
 def test_every_number_has_a_source_and_lies_in_its_range(card: nacre.types.Card) -> None:
-    assert {"young", "poisson"} <= card.numbers.keys() <= UNITS.keys() == WORDS.keys()
+    assert {"young", "poisson"} <= card.numbers.keys() <= NUMBERS.keys()
     for name, number in card.numbers.items():
         # A DOI, an address, a journal, a maker's or supplier's sheet, or a data base by its name.
         pattern = r"doi:10\.|https://|\(\d{4}\)|sheet|secondary: .+|scattering \(.+\)"
@@ -34,14 +34,14 @@ def test_every_number_has_a_source_and_lies_in_its_range(card: nacre.types.Card)
         assert (number.low is None) == (number.high is None)
         if number.low is not None and number.high is not None:
             assert number.low <= number.value <= number.high
-        assert number.unit == UNITS[name]
+        assert number.unit == NUMBERS[name][1]
         if name in STRESSES:  # in Pa: from that of soft carbon to that of diamond
             assert 5e7 < number.value < 1.2e12
     assert card.elastic == nacre.Elastic(card.numbers["young"].value, card.numbers["poisson"].value)
     assert card.source == card.numbers["young"].source
 
 
-NUMBERS = """
+CARDS = """
 100Cr6: young 203.4e9 190e9 210e9, poisson 0.285 0.27 0.3
 M50: young 214e9, poisson 0.29, conductivity 35
 440C: young 209.6e9, poisson 0.28, yield_stress 1.896e9, conductivity 22.8
@@ -67,7 +67,7 @@ CrN: young 422e9 375e9 422e9, poisson 0.25 0.2 0.3, hardness 17.9e9
 
 
 def test_digits_are_those_of_the_sources() -> None:
-    rows = dict(line.split(": ") for line in NUMBERS.strip().splitlines())
+    rows = dict(line.split(": ") for line in CARDS.strip().splitlines())
     assert rows.keys() == nacre.materials.keys()
     for name, row in rows.items():
         typed = {word: [*map(float, numbers)] for word, *numbers in map(str.split, row.split(", "))}
@@ -133,7 +133,7 @@ def test_numbers_of_other_units_are_converted() -> None:
 def test_the_file_has_no_entry_that_is_not_read() -> None:
     text = resources.files("nacre").joinpath("materials.toml").read_text("utf-8")
     for entry in tomllib.loads(text).values():
-        assert entry.keys() <= {"title", "kind"} | UNITS.keys()
+        assert entry.keys() <= {"title", "kind"} | NUMBERS.keys()
         for number in entry.values():
             if isinstance(number, dict):
                 assert number.keys() <= {"value", "low", "high", "source"}

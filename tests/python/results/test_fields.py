@@ -13,7 +13,7 @@ import nacre
 from bodies import STEEL, quiet
 from nacre import _core as core
 from nacre.results import values
-from nacre.results.parameters import PARAMETERS
+from nacre.results.parameters import VALUES
 from shapes import SHAPES
 from support import python
 
@@ -126,7 +126,7 @@ def test_every_argument_of_every_value_is_tried() -> None:
 def test_numbers_of_shapes_have_units() -> None:
     calls = (arguments for row in SHAPES.values() for arguments in row.arguments)
     numbers = {name for call in calls for name, value in call.items() if type(value) is float}
-    assert numbers - PARAMETERS.keys() == set(), "their docstrings must have units: [m], [1]"
+    assert numbers - VALUES.keys() == set(), "their docstrings must have units: [m], [1]"
 
 
 @each

@@ -16,7 +16,7 @@ import nacre
 from nacre._tools.units import Scale, symbol, system, written
 from nacre.bearing import CylindricalRoller
 from nacre.results import quantities
-from nacre.results.parameters import PARAMETERS
+from nacre.results.parameters import VALUES
 from nacre.results.quantities import Quantity
 
 # Read by hand here, apart from the code that writes: units of SI in newtons, metres and others.
@@ -69,7 +69,7 @@ def all_units() -> Iterator[str]:
         for row in table if isinstance(table, tuple) else ():
             if isinstance(row, Quantity):
                 yield from (row.unit, row.line or "", *(row.rolling or ()))
-    yield from (*PARAMETERS.values(), "Pa/m", "J/m³", "1/Pa", "m⁴")
+    yield from (*VALUES.values(), "Pa/m", "J/m³", "1/Pa", "m⁴")
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
