@@ -56,7 +56,7 @@ from nacre.bearing.solving import (
 )
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
-from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.quantities import BEARING, frozen, quantity
 from nacre.results.report import Picture, Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
@@ -452,7 +452,7 @@ def solve_pair(
     return solution
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class PairLife(TableResult):
     """Reference rating lives of ISO/TS 16281 of a pair: a model, at 90 % reliability.
 
@@ -471,30 +471,27 @@ class PairLife(TableResult):
     0.536
     """
 
-    _QUANTITIES = PAIR_LIFE
     _TITLE = "reference rating life of a pair of bearings"
     _IN_SI = True
 
-    revolutions: float
-    """Life in which 10 % of such pairs lose a bearing, in revolutions."""
-    hours: float
-    """The same in hours of operation; infinite where the bearings are at rest."""
-    first: float
+    revolutions: float = quantity(label="life of both")
+    """Life of both in revolutions: 10 % of such pairs lose a bearing in it."""
+    hours: float = quantity()
+    """Life of both in hours: of operation; infinite where the bearings are at rest."""
+    first: float = quantity(label="first bearing")
     """Life of the first bearing in revolutions; infinite without load."""
-    second: float
-    """That of the second bearing."""
+    second: float = quantity(label="second bearing")
+    """Life of the second bearing in revolutions; infinite without load."""
     model: str
     """Model in words."""
 
     def _rows(self) -> list[Row]:
         rows = []
-        for quantity in (row for row in PAIR_LIFE if row.label):
-            life = quantity.of(self)
+        for row in (row for row in self._QUANTITIES if row.label):
+            life = row.of(self)
             text = f"{rounded(life / 1e6, 4)} million revolutions"
             words = "infinite: no element is loaded"
-            rows.append(
-                Row(quantity.name, quantity.label, text if life < math.inf else words, life)
-            )
+            rows.append(Row(row.name, row.label, text if life < math.inf else words, life))
         if math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
         return rows

@@ -1,15 +1,18 @@
-"""The quantities of results: one table.
+"""Quantities of results: each is declared once, at its field or its property.
 
-Files, tables, printed forms, JSON, outputs of studies, labels and units follow from it. To add a
-quantity, give the result an attribute of its name, and add a row here.
+Files, tables, printed forms, JSON, outputs of studies, labels and units follow from it. Its words
+are the first sentence of its docstring.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
-from typing import Any
+from functools import cache, reduce
+from itertools import pairwise
+from typing import Any, TypeVar, dataclass_transform
 
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
@@ -25,12 +28,12 @@ ERROR = "_discretisation"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A row of the table."""
+    """What is known of a quantity, wherever it is shown."""
 
-    name: str
+    name: str = ""
     """Name in files, outputs and JSON."""
-    words: str
-    """What it is."""
+    told: str = ""
+    """What it is, where no docstring says so."""
     unit: str = ""
     """SI unit; "" where it has none."""
     line: str | None = None
@@ -45,6 +48,17 @@ class Quantity:
     """Whether files hold the field although it follows from the others."""
     rolling: tuple[str, str] | None = None
     """SI units in rolling, and in rolling line contact, where they are others."""
+    after: str = ""
+    """Quantity after which this one and the next ones stand; after all by default."""
+    owner: type | None = None
+    """Class that declares it."""
+
+    @property
+    def words(self) -> str:
+        """What it is: the first sentence of its docstring, up to the unit."""
+        if self.told or self.owner is None:
+            return self.told
+        return _words(_docstrings(self.owner).get(self.name, self.name.replace("_", " ")))
 
     @property
     def is_field(self) -> bool:
@@ -74,6 +88,116 @@ class Quantity:
         if rolls and self.rolling is not None:
             return self.rolling[line]
         return self.line if line and self.line is not None else self.unit
+
+
+Kind = TypeVar("Kind")
+Getter = TypeVar("Getter", bound=Callable[[Any], Any])
+
+
+def quantity(
+    unit: str = "",
+    line: str | None = None,
+    dims: tuple[str, ...] = (),
+    label: str = "",
+    **options: Any,
+) -> Any:
+    """Declare a quantity at its field; `options` are those of `Quantity`."""
+    row = Quantity(unit=unit, line=line, dims=dims, label=label, **options)
+    return dataclasses.field(metadata={Quantity: row})
+
+
+def derived(
+    unit: str = "",
+    line: str | None = None,
+    dims: tuple[str, ...] = (),
+    label: str = "",
+    **options: Any,
+) -> Callable[[Getter], Getter]:
+    """Declare a quantity at its property, below ``@property``."""
+    row = Quantity(unit=unit, line=line, dims=dims, label=label, **options)
+
+    def declare(getter: Getter) -> Getter:
+        vars(getter)["quantity"] = row
+        return getter
+
+    return declare
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(quantity, dataclasses.field))
+def frozen(*, eq: bool = True) -> Callable[[type[Kind]], type[Kind]]:
+    """Make a class a frozen dataclass with quantities, which has its own `__repr__`."""
+    return dataclass(frozen=True, repr=False, eq=eq)
+
+
+def declared(kind: type) -> list[Quantity]:
+    """Return the quantities that the body of a class declares: fields, then properties."""
+    inherited = {
+        field
+        for base in kind.__mro__[1:]
+        for field in vars(base).get("__dataclass_fields__", {}).values()
+    }
+    rows: dict[str, Quantity] = {}
+    for name, field in vars(kind).get("__dataclass_fields__", {}).items():
+        if Quantity in field.metadata and field not in inherited:
+            rows[name] = field.metadata[Quantity]
+    for name, member in vars(kind).items():
+        getter = getattr(member, "fget", None) or getattr(member, "func", None)
+        if isinstance(row := getattr(getter, "quantity", None), Quantity):
+            rows[name] = row
+    return [replace(row, name=name, owner=kind) for name, row in rows.items()]
+
+
+@cache
+def quantities_of(kind: type) -> tuple[Quantity, ...]:
+    """Return the quantities of a class of results and its bases, as they are declared."""
+    rows: list[Quantity] = []
+    for base in reversed(kind.__mro__):
+        place = len(rows)
+        for row in declared(base):
+            names = [quantity.name for quantity in rows]
+            if row.name in names:
+                rows[names.index(row.name)] = row
+                continue
+            place = names.index(row.after) + 1 if row.after else place
+            rows.insert(place, row)
+            place += 1
+    return tuple(rows)
+
+
+class Declared:
+    """Attribute of a class of results: the quantities that it declares."""
+
+    def __get__(self, instance: object, owner: type) -> tuple[Quantity, ...]:
+        """Return the quantities of the class."""
+        return quantities_of(owner)
+
+
+@cache
+def _docstrings(kind: type) -> dict[str, str]:
+    """Return the docstrings of the properties of a class, and of its fields, from its source."""
+    import ast
+    import inspect
+    import textwrap
+
+    docstrings = {name: member.__doc__ for name, member in vars(kind).items() if member.__doc__}
+    try:
+        source = textwrap.dedent(inspect.getsource(kind))
+    except (OSError, TypeError):  # a program without its source
+        return docstrings
+    body = ast.parse(source).body[0].body  # type: ignore[attr-defined]
+    for field, text in pairwise(body):
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+            docstrings[ast.unparse(field.target)] = ast.literal_eval(text.value)
+    return docstrings
+
+
+def _words(docstring: str) -> str:
+    """Return the first sentence of a docstring, up to the unit, or to a colon or semicolon."""
+    sentence = re.split(r"\.(?:\s|$)", " ".join(docstring.split()), maxsplit=1)[0]
+    words, unit, _ = sentence.partition(" [")
+    words = words if unit else re.split(r"[:;] ", words, maxsplit=1)[0]
+    words = re.sub(r",? ``.*?``", "", words)
+    return words[0].lower() + words[1:] if words[1:2].islower() or words[1:2] == " " else words
 
 
 CONTACT = (
@@ -166,28 +290,6 @@ FRICTION = (
     Quantity("friction", "coefficient of friction", dims=CELLS),
 )
 """Quantities of a contact with friction, numbers first, in the order in which they are printed."""
-
-CREEP = (
-    Quantity("c11", "coefficient of the longitudinal creepage"),
-    Quantity("c22", "coefficient of the lateral creepage"),
-    Quantity("c23", "coefficient of the spin in the lateral force"),
-    Quantity("c33", "coefficient of the spin in the torque"),
-    Quantity("errors", "estimated errors of c11, c22, c23 and c33", dims=("coefficient",)),
-    Quantity("shear", "shear modulus", "Pa"),
-    Quantity("semi_axes", "semi-axes along and across rolling", "m", dims=("semi_axis",)),
-)
-"""Kalker's coefficients."""
-ROUGHNESS = (
-    Quantity("sa", "mean of the absolute heights", "m", label="Sa"),
-    Quantity("sq", "root of the mean square of the heights", "m", label="Sq"),
-    Quantity("sp", "highest point above the mean", "m", label="Sp"),
-    Quantity("sv", "lowest point below the mean", "m", label="Sv"),
-    Quantity("ssk", "skewness of the heights", label="Ssk"),
-    Quantity("sku", "kurtosis of the heights", label="Sku"),
-    Quantity("rms_slope", "root of the mean square of the gradient", label="rms slope"),
-    Quantity("rms_curvature", "rms of half the Laplacian", "1/m", label="rms curvature"),
-)
-"""Parameters of the roughness of a map."""
 
 NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
 NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
@@ -304,28 +406,6 @@ FIT = (
 )
 """Quantities at the points of the curves of a fit."""
 
-UNLOADING = (
-    Quantity("hardness", "hardness", "Pa", label="hardness"),
-    Quantity("hardness_error", "its standard error", "Pa", label="±"),
-    Quantity("reduced_modulus", "reduced modulus, with the tip", "Pa", label="reduced modulus"),
-    Quantity("reduced_modulus_error", "its standard error", "Pa", label="±"),
-    Quantity("modulus", "E/(1 − ν²) of the sample", "Pa", label="modulus E/(1 − ν²)"),
-    Quantity("modulus_error", "its standard error", "Pa", label="±"),
-    Quantity("stiffness", "slope at the largest depth", "N/m", label="slope"),
-    Quantity("stiffness_error", "its standard error", "N/m", label="±"),
-    Quantity("power", "power of the unloading", label="power m"),
-    Quantity("power_error", "its standard error", label="±"),
-    Quantity("final_depth", "depth at which the law has no force", "m", label="final depth"),
-    Quantity("largest_depth", "largest depth", "m", label="largest depth"),
-    Quantity("largest_force", "force of the law there", "N", label="largest force"),
-    Quantity("contact_depth", "depth of contact", "m", label="contact depth"),
-    Quantity("area", "area of the tip's section there", "m²", label="area"),
-    Quantity("epsilon", "factor ε of the depth of contact", label="ε"),
-    Quantity("beta", "factor β of the modulus", label="β"),
-    Quantity("points", "number of points of the fit", label="points"),
-)
-"""Quantities of an unloading curve."""
-
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
 """Dimensions of numbers of each contact of a bearing, and of its laminae."""
 BEARING = (
@@ -351,68 +431,6 @@ BEARING = (
     Quantity("lamina_pressures", "largest pressures of laminae", "Pa", dims=PER_LAMINA),
 )
 """Quantities of a bearing: of its rings, and of each element."""
-BEARING_LIFE = (
-    Quantity("revolutions", "life, revolutions"),
-    Quantity("hours", "life, hours"),
-    Quantity("l10", "life L10r, million revolutions"),
-    Quantity("equivalent_load", "equivalent reference load", "N", label="equivalent load"),
-    Quantity("capacity", "dynamic load rating", "N", label="rating"),
-    Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
-    Quantity("reliability", "share of bearings that reach the life"),
-    Quantity("reliability_factor", "factor a_1"),
-    Quantity("modification_factor", "factor a_ISO", label="a_ISO"),
-    Quantity("viscosity_ratio", "viscosity ratio κ", label="viscosity ratio κ"),
-    Quantity("contamination_factor", "contamination factor e_C", label="contamination e_C"),
-    Quantity("fatigue_load_limit", "fatigue load limit C_u", "N", label="fatigue load limit"),
-    Quantity("simple_fatigue_load_limit", "C_u by simple formula", "N", label="by C_0 alone"),
-)
-"""Quantities of the life of a bearing."""
-STATIC_LOAD = (
-    Quantity("rating", "static load rating C_0", "N", label="static rating"),
-    Quantity("equivalent_load", "equivalent static load P_0", "N", label="equivalent load"),
-    Quantity("safety", "static safety factor", label="static safety"),
-)
-"""Quantities of the static load of a bearing."""
-PAIR_LIFE = (
-    Quantity("revolutions", "life of both in revolutions", label="life of both"),
-    Quantity("hours", "life of both in hours"),
-    Quantity("first", "life of the first bearing in revolutions", label="first bearing"),
-    Quantity("second", "life of the second bearing in revolutions", label="second bearing"),
-)
-"""Quantities of the lives of a pair of bearings."""
-COATING = (
-    Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
-    Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
-    Quantity("interface_tension", "largest tension there", "Pa", label="interface tension"),
-)
-STRESS_VOLUME = (
-    Quantity("integral", "integral of the stress"),
-    Quantity("change", "change where it begins at half the depth", label="change"),
-    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
-    Quantity("slope", "Weibull slope", label="slope e"),
-    *COATING,
-)
-"""Quantities of the volume under stress."""
-LIFE_RATIO = (
-    Quantity("ratio", "life over that of the reference"),
-    Quantity("slope", "Weibull slope", label="slope e"),
-    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
-    Quantity("reference_largest", "the same of the reference", "Pa", label="of the reference"),
-    Quantity("change", "change where integrals begin at half the depth", label="change"),
-    *COATING,
-)
-"""Quantities of a ratio of lives."""
-FILM = (
-    Quantity("central", "central thickness of the film", "m", label="central film"),
-    Quantity("minimum", "smallest thickness of the film", "m", label="smallest film"),
-    Quantity("film_ratio", "smallest thickness over roughness", label="film ratio λ"),
-    Quantity("radius", "radius in the direction of rolling", "m", label="radius"),
-    Quantity("load", "load, per length in line contact", "N", "N/m", label="load"),
-    Quantity("ellipticity", "width across over along rolling", label="ellipticity"),
-    Quantity("viscosity_parameter", "viscosity parameter g_V", label="viscosity g_V"),
-    Quantity("elasticity_parameter", "elasticity parameter g_E", label="elasticity g_E"),
-)
-"""Quantities of an oil film."""
 
 
 def units(
