@@ -21,7 +21,7 @@ from nacre._tools.units import written
 from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Result, Warned
-from nacre.results.quantities import INDENT, units
+from nacre.results.quantities import derived, frozen, quantity
 from nacre.results.report import Picture, Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
@@ -50,7 +50,6 @@ PointProgress = Callable[[int, int], object]
 
 NUMBERS = ("load", "approach", "radius", "stiffness", "outer_radius", "central_pressure")
 """Numbers of each contact that are kept."""
-UNITS = units(indents=True)
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
@@ -123,7 +122,7 @@ class StateDerivative(Fields, Generic[Value]):
         return self._states.field("displacement", r, self._path)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen(eq=False)
 class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """Contacts of an indentation, with all that they depend on.
 
@@ -156,16 +155,16 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """Branch of the contacts, "stable" or "unstable"."""
     control: Control
     """What is held while the tip is pulled off."""
-    load: Value
-    """Load [N], below 0 where the tip is pulled."""
-    approach: Value
+    load: Value = quantity("N", label="load")
+    """Load, below 0 where the tip is pulled [N]."""
+    approach: Value = quantity("m", label="approach")
     """Approach [m]."""
-    radius: Value
+    radius: Value = quantity("m", label="radius")
     """Contact radius [m]."""
-    stiffness: Value
+    stiffness: Value = quantity("N/m", label="stiffness")
     """Stiffness of this contact area [N/m]: that of unloading, and without adhesion the slope of
     the curve."""
-    outer_radius: Value
+    outer_radius: Value = quantity("m")
     """Radius up to which the surfaces attract each other [m].
 
     It is that of the contact except for Maugis's adhesion.
@@ -234,6 +233,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         return slope
 
     @cached_property
+    @derived("Pa", label="central pressure")
     def central_pressure(self) -> Value:
         """Pressure on the axis [Pa], infinite below a sharp tip."""
         pressure: Value = self.pressure(0.0)
@@ -315,16 +315,19 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         return {name: getattr(last, name.removeprefix("pull_off_")) for name in PULLED}
 
     @property
+    @derived("N")
     def pull_off_load(self) -> float:
-        """Load of the last stable contact as the tip is pulled off [N]; NaN without adhesion."""
+        """Load of the last stable contact of a tip that is pulled [N]; NaN without adhesion."""
         return self._pulled["pull_off_load"]
 
     @property
+    @derived("m")
     def pull_off_approach(self) -> float:
         """Approach of that contact [m]."""
         return self._pulled["pull_off_approach"]
 
     @property
+    @derived("m")
     def pull_off_radius(self) -> float:
         """Radius of that contact [m]."""
         return self._pulled["pull_off_radius"]
@@ -456,7 +459,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     def _table(self) -> Printed:
         """Return the table of the contacts."""
-        quantities = [row for row in INDENT if row.label]
+        quantities = [row for row in self._QUANTITIES if row.label]
         columns = [np.ravel(row.of(self)).tolist() for row in quantities]
         rows = [
             [with_unit(value, column.name) for value, column in zip(row, quantities, strict=True)]
@@ -473,6 +476,8 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
 IndentState = IndentSolution
 """Another name of `IndentSolution`."""
+UNITS = {row.name: row.unit for row in IndentSolution._QUANTITIES}
+"""SI units of the numbers of an indentation."""
 
 
 @dataclass(frozen=True, eq=False)

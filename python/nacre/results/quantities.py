@@ -14,6 +14,8 @@ from functools import cache, reduce
 from itertools import pairwise
 from typing import Any, TypeVar, dataclass_transform
 
+from nacre.results.values import result_class
+
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
 REMOVED = object()
@@ -58,12 +60,17 @@ class Quantity:
         """What it is: the first sentence of its docstring, up to the unit."""
         if self.told or self.owner is None:
             return self.told
-        return _words(_docstrings(self.owner).get(self.name, self.name.replace("_", " ")))
+        attribute = (self.path or self.name).rpartition(".")[2]
+        return _words(_docstrings(self.owner).get(attribute, attribute.replace("_", " ")))
 
     @property
     def is_field(self) -> bool:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
+
+    def renamed(self, name: str) -> Quantity:
+        """Return the quantity under another name in files."""
+        return replace(self, name=name, path=self.path or self.name)
 
     def of(self, result: object) -> Any:
         """Return the value in a result."""
@@ -144,7 +151,10 @@ def declared(kind: type) -> list[Quantity]:
         getter = getattr(member, "fget", None) or getattr(member, "func", None)
         if isinstance(row := getattr(getter, "quantity", None), Quantity):
             rows[name] = row
-    return [replace(row, name=name, owner=kind) for name, row in rows.items()]
+    return [
+        replace(row, name=row.name or name, path=name if row.name else "", owner=kind)
+        for name, row in rows.items()
+    ]
 
 
 @cache
@@ -167,9 +177,12 @@ def quantities_of(kind: type) -> tuple[Quantity, ...]:
 class Declared:
     """Attribute of a class of results: the quantities that it declares."""
 
+    def __init__(self, of: Callable[[type], tuple[Quantity, ...]] = quantities_of) -> None:
+        self._of = cache(of)
+
     def __get__(self, instance: object, owner: type) -> tuple[Quantity, ...]:
         """Return the quantities of the class."""
-        return quantities_of(owner)
+        return self._of(owner)
 
 
 @cache
@@ -192,117 +205,13 @@ def _docstrings(kind: type) -> dict[str, str]:
 
 
 def _words(docstring: str) -> str:
-    """Return the first sentence of a docstring, up to the unit, or to a colon or semicolon."""
-    sentence = re.split(r"\.(?:\s|$)", " ".join(docstring.split()), maxsplit=1)[0]
+    """Return the first sentence of a docstring, up to a colon or the unit, else a semicolon."""
+    sentence = re.split(r"\.(?:\s|$)|:\s", " ".join(docstring.split()), maxsplit=1)[0]
     words, unit, _ = sentence.partition(" [")
-    words = words if unit else re.split(r"[:;] ", words, maxsplit=1)[0]
+    words = words if unit else words.partition("; ")[0]
     words = re.sub(r",? ``.*?``", "", words)
     return words[0].lower() + words[1:] if words[1:2].islower() or words[1:2] == " " else words
 
-
-CONTACT = (
-    Quantity("load", "normal force", "N", "N/m", label="load"),
-    Quantity("eccentricity", "point where the force acts", "m", dims=AXIS, label="acts at"),
-    Quantity("moment", "first moments of the pressure", "N m", "N", AXIS, "moment"),
-    Quantity("approach", "approach of the origin", "m", label="approach"),
-    Quantity("tilt", "slopes", dims=AXIS, label="tilt"),
-    Quantity("peak_pressure", "largest pressure of a cell", "Pa", label="peak pressure"),
-    Quantity("peak_position", "centre of that cell", "m", dims=AXIS, label="at"),
-    Quantity("contact_extent", "ends of the contact", "m", dims=("axis", "end"), label="contact"),
-    Quantity("contact_area", "area in contact", "m²", "m", label="area"),
-    Quantity("contact_share", "share of the grid in contact", label="share"),
-    Quantity("central_pressure", "pressure at the origin", "Pa"),
-    Quantity("elastic_energy", "elastic energy of the bodies", "J", "J/m"),
-    Quantity("plastic_work", "energy that the permanent indentation has taken", "J", "J/m"),
-    Quantity("pressure", "pressure", "Pa", dims=CELLS),
-    Quantity("gap", "gap; infinite where the shape cannot touch", "m", dims=CELLS),
-    Quantity("displacement", "normal displacement of both bodies together", "m", dims=CELLS),
-    Quantity(
-        "hardness", "largest pressure that the surfaces can carry", "Pa", None, CELLS, "hardness"
-    ),
-    Quantity("indentation", "permanent indentation", "m", None, CELLS, "indentation"),
-    Quantity(
-        "compliance",
-        "compliance of springs between the surfaces",
-        "m/Pa",
-        None,
-        CELLS,
-        "springs",
-    ),
-    Quantity("in_contact", "whether a cell is in contact", dims=CELLS),
-    Quantity("line_load", "force per length along x", "N/m", dims=("x",), follows=True),
-    Quantity(
-        "coefficients",
-        "influence coefficients that the contact was given",
-        "m/Pa",
-        dims=("offset_x", "offset_y"),
-    ),
-    Quantity("x", "x of the cell centre", "m", dims=("x",)),
-    Quantity("y", "y of the cell centre", "m", dims=("y",)),
-)
-"""Quantities of a normal contact, numbers first, in the order in which they are printed."""
-
-WEAR = (
-    Quantity("distance", "sliding distance, cycles or passes", "m", dims=("step",)),
-    Quantity("volume", "volume removed", "m³", "m²", ("step", "member")),
-    Quantity("deepest", "largest depth removed", "m", dims=("step", "member")),
-    Quantity("peak_pressure", "largest pressure of a cell", "Pa", dims=("step",)),
-    Quantity("contact_area", "area in contact", "m²", "m", ("step",)),
-    Quantity("approach", "approach of the origin", "m", dims=("step",)),
-    Quantity("load", "normal force", "N", "N/m", ("step",)),
-    Quantity("depth", "last depth removed from the body", "m", dims=CELLS),
-    Quantity("counter_depth", "last depth removed from the counterbody", "m", dims=CELLS),
-    Quantity("pressure", "last pressure", "Pa", dims=CELLS),
-)
-"""Quantities of a history of wear."""
-WORN = (
-    Quantity("life", "distance after which the first layer is through", "m"),
-    Quantity("worn_volume", "volume removed from both bodies", "m³", "m²"),
-    *(replace(row, dims=()) for row in WEAR if row.dims[:1] == ("step",) and row.name != "volume"),
-)
-"""Numbers of a history of wear: those of its end."""
-
-FRICTION = (
-    Quantity("force", "force of the tractions on the body", "N", "N/m", AXIS, "force"),
-    Quantity("torque", "torque of the tractions about the origin", "N m", "N", label="torque"),
-    Quantity("shift", "shift of the counterbody over the body", "m", dims=AXIS, label="shift"),
-    Quantity("twist", "twist of the counterbody over the body", "rad", label="twist"),
-    Quantity("creepage", "creepages along and across", dims=AXIS, label="creepage"),
-    Quantity("spin", "spin", "1/m", label="spin"),
-    Quantity(
-        "dissipated",
-        "energy that friction dissipates",
-        "J",
-        "J/m",
-        label="dissipated",
-        rolling=("J/m", "J/m²"),
-    ),
-    Quantity("tangential_energy", "elastic energy that tractions add", "J", "J/m"),
-    Quantity("elastic_energy", "elastic energy of pressure and tractions", "J", "J/m"),
-    Quantity("stick_share", "share of the contact that sticks"),
-    Quantity("convolutions", "convolutions of the solve", path="report.convolutions"),
-    Quantity("traction", "traction on the body", "Pa", dims=VECTOR),
-    Quantity("displacement", "displacement of the body less counterbody", "m", dims=VECTOR),
-    Quantity(
-        "slip", "slip in the step; over the way in rolling", "m", None, VECTOR, rolling=("", "")
-    ),
-    Quantity("stick", "whether a cell sticks", dims=CELLS, follows=True),
-    Quantity("friction", "coefficient of friction", dims=CELLS),
-)
-"""Quantities of a contact with friction, numbers first, in the order in which they are printed."""
-
-NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
-NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
-"""Quantities of the normal contact that one with friction has too, and their names there."""
-WITH_FRICTION = (
-    *(
-        replace(row, name=NORMAL[row.name], path=f"normal.{row.name}", label="")
-        for row in CONTACT
-        if row.name in NORMAL
-    ),
-    *FRICTION,
-)
-"""All quantities of a contact with friction."""
 
 STRESS = tuple(
     Quantity(name, words, "Pa")
@@ -384,54 +293,6 @@ SHAKEDOWN = (
 )
 """Columns of the table of a shakedown map."""
 
-INDENT = (
-    Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),
-    Quantity("approach", "approach", "m", label="approach"),
-    Quantity("radius", "contact radius", "m", label="radius"),
-    Quantity("stiffness", "stiffness of this contact area", "N/m", label="stiffness"),
-    Quantity("outer_radius", "radius up to which the surfaces attract each other", "m"),
-    Quantity("central_pressure", "pressure on the axis", "Pa", label="central pressure"),
-    Quantity("pull_off_load", "load of the last stable contact of a tip that is pulled", "N"),
-    Quantity("pull_off_approach", "approach of that contact", "m"),
-    Quantity("pull_off_radius", "radius of that contact", "m"),
-)
-"""Quantities of an indentation."""
-
-FIT = (
-    Quantity("depth", "depth as measured", "m"),
-    Quantity("force", "force as measured", "N"),
-    Quantity("load", "load of the model", "N"),
-    Quantity("approach", "depth without nuisances", "m"),
-    Quantity("residual", "residual"),
-)
-"""Quantities at the points of the curves of a fit."""
-
-PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
-"""Dimensions of numbers of each contact of a bearing, and of its laminae."""
-BEARING = (
-    Quantity("displacement", "displacement of the ring", "m", None, ("direction",), "displacement"),
-    Quantity("tilt", "slopes of the inner ring", dims=AXIS, label="tilt"),
-    Quantity("force", "force on the inner ring", "N", None, ("direction",), "force"),
-    Quantity("moment", "moment on the inner ring", "N m", dims=AXIS, label="moment"),
-    Quantity("largest_load", "largest force of a contact", "N", label="largest load"),
-    Quantity("peak_pressure", "largest pressure", "Pa", label="peak pressure"),
-    Quantity("edge_pressure", "largest pressure in outer tenths", "Pa", label="edge pressure"),
-    Quantity("reference_life", "life of ISO/TS 16281", "million revolutions"),
-    Quantity("loaded", "number of loaded elements"),
-    Quantity("cage_speed", "speed of the elements about the axis", "rad/s", label="cage speed"),
-    Quantity("angles", "angles of the elements", "rad", dims=("element",)),
-    Quantity("approaches", "approaches of the contacts", "m", dims=PER_CONTACT),
-    Quantity("loads", "forces of the contacts", "N", None, PER_CONTACT, "load"),
-    Quantity("tilts", "slopes of the elements to the rings", "", None, PER_CONTACT, "tilt"),
-    Quantity("moments", "first moments of the pressure", "N m", dims=PER_CONTACT),
-    Quantity("peak_pressures", "largest pressures", "Pa", None, PER_CONTACT, "peak pressure"),
-    Quantity("edge_pressures", "pressures at the edges", "Pa", None, PER_CONTACT, "edge pressure"),
-    Quantity("contact_angles", "contact angles", "rad", dims=PER_CONTACT),
-    Quantity("lamina_loads", "loads of laminae", "N", dims=PER_LAMINA),
-    Quantity("lamina_pressures", "largest pressures of laminae", "Pa", dims=PER_LAMINA),
-)
-"""Quantities of a bearing: of its rings, and of each element."""
-
 
 def units(
     *,
@@ -442,6 +303,9 @@ def units(
     wears: bool = False,
 ) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    contact = (*FRICTION, *CONTACT, *STRESS, *ASSESSMENT)
-    rows = INDENT if indents else BEARING if bears else WORN if wears else contact
+    kinds = ["FrictionSolution", "Solution"]
+    if indents or bears or wears:
+        kinds = ["IndentSolution" if indents else "BearingSolution" if bears else "WearHistory"]
+    rows = [row for kind in kinds for row in result_class(kind)._QUANTITIES]
+    rows += [*STRESS, *ASSESSMENT] if len(kinds) > 1 else []
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

@@ -17,13 +17,12 @@ from nacre.results.journal import Record
 from nacre.results.parameters import parameter_unit, quantity_of
 from nacre.results.quantities import ERROR
 from nacre.studies.outputs import (
-    AXES,
     ESTIMATED,
     ESTIMATED_OF_RINGS,
     ESTIMATED_OF_WEAR,
     OF_CONTACTS,
-    RING_AXES,
     Output,
+    axes,
     errors,
 )
 
@@ -103,7 +102,7 @@ def assemble(
     units = quantities.units(**kinds)
     if any(record.get("counts") for record in records):  # cycles or passes
         units = {name: unit for name, unit in units.items() if name not in ("life", "distance")}
-    axes = RING_AXES if kinds["bears"] else AXES
+    axes_of_outputs = axes("bearing" if kinds["bears"] else "contact")
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
         shapes = [a.shape for a in arrays if a is not None]
@@ -115,8 +114,10 @@ def assemble(
             if array is not None:
                 place: tuple[int | slice, ...] = (row, *(slice(0, n) for n in array.shape))
                 columns[place] = array
-        extra_dims = ("axis",) if output in axes else tuple(f"{name}_{k}" for k in range(rank))
-        if output in axes:
+        extra_dims = (
+            ("axis",) if output in axes_of_outputs else tuple(f"{name}_{k}" for k in range(rank))
+        )
+        if output in axes_of_outputs:
             dataset = dataset.assign_coords(axis=["x", "y"])
             if rank == 0:  # every case failed
                 columns = np.full((len(records), 2), np.nan)
