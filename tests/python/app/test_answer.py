@@ -377,13 +377,15 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
         sliding = {name: keywords[name] for name in ("friction", "direction")}
         coated = solutions[0].stress_summary(**keywords)
         other = solutions[1].stress_summary(**sliding)
-        for name, text in solutions[0]._rows():
-            if name in CONTACT_ROWS:
-                pair = html.escape(text), html.escape(dict(solutions[1]._rows())[name])
-                assert "<th>{}</th><td>{}</td><td>{}</td>".format(name, *pair) in rows
+        with_coat, without = ({row.key: row for row in one._rows()} for one in solutions)
+        for key in CONTACT_ROWS:
+            pair = [html.escape(table[key].text) for table in (with_coat, without)]
+            assert "<th>{}</th><td>{}</td><td>{}</td>".format(with_coat[key].label, *pair) in rows
     largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]
-    texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
-    assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)
+    tensions = re.findall(
+        r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows
+    )
+    assert [float(text) for text in tensions[0]] == pytest.approx(largest, rel=2e-3)
     assert largest[0] > 1.2 * largest[1]  # the coat is stiffer
     peaks = [solution.peak_pressure for solution in solutions]
     assert highest(parts["picture-1"], ["coated", "bare"], 1e-6 * peaks[0]) == pytest.approx(

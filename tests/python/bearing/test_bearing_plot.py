@@ -40,11 +40,9 @@ def test_bars_are_the_loads() -> None:
 
 def test_each_row_and_ring_has_its_bars() -> None:
     """Two rows, of which the second carries more; bars stand about the angle of their element."""
-    barrels = SphericalRoller(
-        **{"count": 15, "diameter": 10e-3, "length": 9e-3, "pitch_diameter": 60e-3},
-        contact_angle=0.2,
-        profile_radius=32e-3,
-    )
+    sizes: dict[str, Any] = {"count": 15, "diameter": 10e-3, "length": 9e-3}
+    sizes |= {"pitch_diameter": 60e-3, "contact_angle": 0.2, "profile_radius": 32e-3}
+    barrels = SphericalRoller(**sizes)
     solution = barrels.solve(force=(1e4, 0.0, 1e3), speed=600.0, model="iso16281")
     rows = solution.loads.reshape(2, 15, 2)
     assert rows[1].sum() != pytest.approx(rows[0].sum(), rel=0.1)

@@ -524,8 +524,8 @@ def made(kind: Any, sizes: dict[str, Any]) -> Callable[..., Any]:
 def worn(**keywords: Any) -> Any:
     """Call for a short history of a coated roller."""
     coat = nacre.Layer(nacre.Elastic(300e9, 0.25), 2e-6, name="DLC")
-    given = {"load": 1e5, "grid": nacre.Grid.line(64, 6e-4), "rate": {0: 1e-17, "substrate": 1e-15}}
-    given |= {"sliding": 100.0, "steps": 2}
+    given: dict[str, Any] = {"load": 1e5, "grid": nacre.Grid.line(64, 6e-4), "sliding": 100.0}
+    given |= {"rate": {0: 1e-17, "substrate": 1e-15}, "steps": 2}
     return nacre.wear(ROD, nacre.HalfSpace(STEEL, [coat]), **given | keywords)
 
 

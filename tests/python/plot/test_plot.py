@@ -361,10 +361,9 @@ def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
     shear = np.hypot(field.xz, field.yz).T / 1e6
     assert_close(np.asarray(mesh.get_array()), shear, rtol=1e-9)
     (arrows,) = (child for child in axes.collections if isinstance(child, Quiver))
-    places = [
-        np.searchsorted(1e6 * side, xy - 1e-6)
-        for side, xy in ((coated.x, arrows.X), (coated.y, arrows.Y))
-    ]
+    ends = (np.asarray(side, dtype=float) - 1e-6 for side in (arrows.X, arrows.Y))
+    sides = (1e6 * coated.x, 1e6 * coated.y)
+    places = [np.searchsorted(*pair) for pair in zip(sides, ends, strict=True)]
     assert_close(arrows.U, field.xz[*places])
     assert_close(arrows.V, field.yz[*places])
     axes = plot.interface_map(coated, quantity="normal", friction=0.1, direction=(1.0, 0.0))

@@ -23,7 +23,7 @@ from results import DLC, GRID, solved
 from support import Patch, assert_close, python, resealed
 
 
-@pytest.mark.parametrize("kind", {**results.NORMAL, **results.FRICTION})
+@pytest.mark.parametrize("kind", [*results.NORMAL, *results.FRICTION])
 def test_other_programs_read_the_file_as_the_dataset(kind: str, tmp_path: Path) -> None:
     result = solved(kind)
     read = xarray.load_dataset(result.save(tmp_path / "a.nc"), engine="h5netcdf")

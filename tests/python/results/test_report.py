@@ -538,7 +538,7 @@ def test_a_loop_is_along_the_axis_of_the_force(axis: int, monkeypatch: Patch) ->
     )
     curves, axes = captured(monkeypatch, friction_module, "lines", history)
     (curve,) = curves
-    np.testing.assert_array_equal(curve.x, [step.shift[axis] for step in history])
+    np.testing.assert_array_equal(curve.x, [(step.shift or ())[axis] for step in history])
     np.testing.assert_array_equal(curve.y, [step.force[axis] for step in history])
     assert axes[0].name == f"shift along {'xy'[axis]}"
 
