@@ -383,8 +383,10 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
                 pair = html.escape(row.text), of_bare[row.key]
                 assert "<th>{}</th><td>{}</td><td>{}</td>".format(row.label, *pair) in rows
     largest = [max(part.tension[0] for part in one.layers) for one in (coated, other)]
-    texts = re.findall(r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows)
-    assert [float(text) for text in texts[0]] == pytest.approx(largest, rel=2e-3)
+    tensions = re.findall(
+        r"<th>largest tension</th><td>([\d.]+) MPa ± .*?</td><td>([\d.]+) MPa", rows
+    )
+    assert [float(text) for text in tensions[0]] == pytest.approx(largest, rel=2e-3)
     assert largest[0] > 1.2 * largest[1]  # the coat is stiffer
     peaks = [solution.peak_pressure for solution in solutions]
     assert highest(parts["picture-1"], ["coated", "bare"], 1e-6 * peaks[0]) == pytest.approx(
