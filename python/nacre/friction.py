@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from nacre.contact import Contact, solve
 from nacre.contact.arguments import MOTION
 from nacre.contact.friction import FrictionSolution, History
 from nacre.results.base import checked
-from nacre.results.quantities import CREEP
+from nacre.results.quantities import frozen, quantity
 from nacre.results.rows import Row
 from nacre.results.shown import TableResult
 
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["creep_coefficients", "creep_curve", "history"]
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class CreepCoefficients(TableResult):
     """Kalker's linear coefficients of an elliptic contact, with their estimated errors.
 
@@ -40,23 +39,22 @@ class CreepCoefficients(TableResult):
     """
 
     _COMPILED = True
-    _QUANTITIES = CREEP
     _TITLE = "Kalker's coefficients"
 
-    c11: float
-    """C11, of the longitudinal creepage: ``F_x = a b G C11 xi``."""
-    c22: float
-    """C22, of the lateral creepage: ``F_y = a b G C22 eta``."""
-    c23: float
-    """C23, of the spin in the lateral force: ``F_y = (a b)**1.5 G C23 phi``."""
-    c33: float
-    """C33, of the spin in the torque: ``M_z = (a b)**2 G C33 phi``."""
-    errors: tuple[float, float, float, float]
-    """Estimated errors of C11, C22, C23 and C33."""
-    shear: float
-    """Modulus G [Pa]: 1/G is the mean of 1/G of both substrates."""
-    semi_axes: tuple[float, float]
-    """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
+    c11: float = quantity()
+    """Coefficient of the longitudinal creepage: ``F_x = a b G C11 xi``."""
+    c22: float = quantity()
+    """Coefficient of the lateral creepage: ``F_y = a b G C22 eta``."""
+    c23: float = quantity()
+    """Coefficient of the spin in the lateral force: ``F_y = (a b)**1.5 G C23 phi``."""
+    c33: float = quantity()
+    """Coefficient of the spin in the torque: ``M_z = (a b)**2 G C33 phi``."""
+    errors: tuple[float, float, float, float] = quantity(dims=("coefficient",))
+    """Estimated errors of c11, c22, c23 and c33."""
+    shear: float = quantity("Pa")
+    """Shear modulus [Pa]: 1/G is the mean of 1/G of both substrates."""
+    semi_axes: tuple[float, float] = quantity("m", dims=("semi_axis",))
+    """Semi-axes along and across rolling ``(a, b)`` [m]."""
 
     def _rows(self) -> list[Row]:
         coefficients = (self.c11, self.c22, self.c23, self.c33)

@@ -7,7 +7,6 @@ SurfaceTopography, patches those of SciPy, and tables those of xarray.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Never
 
 import numpy as np
@@ -22,7 +21,7 @@ from nacre.contact.solution import Solution
 from nacre.hertz import contact_modulus
 from nacre.results import display
 from nacre.results.patches import CURVE, crosses, patch_labels, surfaces
-from nacre.results.quantities import ROUGHNESS
+from nacre.results.quantities import frozen, quantity
 from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
@@ -228,29 +227,28 @@ def _derivatives(surface: core.HeightMap) -> tuple[Array, Array, Array, float]:
     return gradient[0], gradient[1], laplacian, power
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class Roughness(TableResult):
     """Height parameters of a map, about its mean, and its slope and curvature."""
 
-    _QUANTITIES = ROUGHNESS
     _TITLE = "roughness of a map"
 
-    sa: float
-    """Sa: mean of the absolute heights [m], ISO 25178-2."""
-    sq: float
-    """Sq: root of the mean square of the heights [m]."""
-    sp: float
-    """Sp: highest point above the mean plane [m]."""
-    sv: float
-    """Sv: lowest point below the mean plane [m]."""
-    ssk: float
-    """Ssk: skewness of the heights; 0 for a plane."""
-    sku: float
-    """Sku: kurtosis of the heights, 3 for Gaussian ones; 0 for a plane."""
-    rms_slope: float
-    """Root of the mean square of the gradient, as `spectral_slope` finds it."""
-    rms_curvature: float
-    """Root of the mean square of the mean curvature, half the Laplacian [1/m], likewise."""
+    sa: float = quantity("m", label="Sa")
+    """Mean of the absolute heights [m]: Sa of ISO 25178-2."""
+    sq: float = quantity("m", label="Sq")
+    """Root of the mean square of the heights [m]: Sq."""
+    sp: float = quantity("m", label="Sp")
+    """Highest point above the mean [m]: Sp."""
+    sv: float = quantity("m", label="Sv")
+    """Lowest point below the mean [m]: Sv."""
+    ssk: float = quantity(label="Ssk")
+    """Skewness of the heights: Ssk; 0 for a plane."""
+    sku: float = quantity(label="Sku")
+    """Kurtosis of the heights: Sku, 3 for Gaussian ones; 0 for a plane."""
+    rms_slope: float = quantity(label="rms slope")
+    """Root of the mean square of the gradient: as `spectral_slope` finds it."""
+    rms_curvature: float = quantity("1/m", label="rms curvature")
+    """Rms of half the Laplacian [1/m]: of the mean curvature, likewise."""
 
 
 def roughness(surface: core.HeightMap) -> Roughness:

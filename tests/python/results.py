@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +12,7 @@ import nacre
 from bodies import BALL, HELD, ROD, STEEL, quiet
 from nacre import fatigue
 from nacre.indent import Adhesion, Curve, Fit, Indentation, OliverPharr, Tip, fit, oliver_pharr
-from nacre.results.quantities import AXIS, Quantity
+from nacre.results.quantities import AXIS, frozen, quantity
 from nacre.results.shown import TableResult
 
 DLC = nacre.Elastic(420e9, 0.25)
@@ -107,18 +106,16 @@ INDENT: dict[str, Callable[[], nacre.indent.IndentSolution]] = {
 }
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class Tried(TableResult):
     """A result that no Rust knows: everything follows from its fields and quantities."""
 
-    _QUANTITIES = (
-        Quantity("force", "a force", "N", "N/m", AXIS, "force"),
-        Quantity("shift", "a length", "m", label="shift"),
-    )
     _TITLE = "a result that is tried"
 
-    force: tuple[float, float]
-    shift: float
+    force: tuple[float, float] = quantity("N", "N/m", AXIS, "force")
+    """A force [N]."""
+    shift: float = quantity("m", label="shift")
+    """A length [m]."""
     steps: int
     axis: Literal["x", "y"] | None
     names: tuple[str, ...]

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from nacre._tools.units import symbol
 from nacre.bearing.geometry import above
 from nacre.contact.solution import Solution, check_unyielded
 from nacre.hertz import contact_modulus
-from nacre.results.quantities import FILM, Quantity
+from nacre.results.quantities import Quantity, frozen, quantity
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 
@@ -45,7 +44,7 @@ COATED = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class Film(TableResult):
     """Oil film in a contact, after formulae for bare smooth bodies: a model.
 
@@ -59,25 +58,24 @@ class Film(TableResult):
     ('piezoviscous-elastic', True)
     """
 
-    _QUANTITIES = FILM
     _TITLE = "oil film in a contact"
 
-    central: float
-    """Central thickness [m]."""
-    minimum: float
-    """Smallest thickness [m]."""
-    film_ratio: float
-    """Ratio λ of the smallest thickness and the roughness; infinite where none is given."""
-    radius: float
+    central: float = quantity("m", label="central film")
+    """Central thickness of the film [m]."""
+    minimum: float = quantity("m", label="smallest film")
+    """Smallest thickness of the film [m]."""
+    film_ratio: float = quantity(label="film ratio λ")
+    """Smallest thickness over roughness: ratio λ; infinite where no roughness is given."""
+    radius: float = quantity("m", label="radius")
     """Radius in the direction of rolling [m]."""
-    load: float
-    """Load [N]; of rollers and line contacts that per length of the heaviest section [N/m]."""
-    ellipticity: float
-    """Width of the solved contact across over along rolling; infinite of line contacts."""
-    viscosity_parameter: float
-    """Greenwood and Johnson's g_V."""
-    elasticity_parameter: float
-    """Greenwood and Johnson's g_E."""
+    load: float = quantity("N", "N/m", label="load")
+    """Load, per length in line contact [N, N/m]; of rollers that of the heaviest section."""
+    ellipticity: float = quantity(label="ellipticity")
+    """Width across over along rolling: of the solved contact; infinite of line contacts."""
+    viscosity_parameter: float = quantity(label="viscosity g_V")
+    """Viscosity parameter g_V: Greenwood and Johnson's."""
+    elasticity_parameter: float = quantity(label="elasticity g_E")
+    """Elasticity parameter g_E: Greenwood and Johnson's."""
     regime: str
     """Regime: "piezoviscous-elastic", for which the formulae are, or another."""
     model: str

@@ -28,7 +28,7 @@ from nacre.bearing.film import is_line
 from nacre.bearing.geometry import RINGS, Bearing, above
 from nacre.bearing.solution import BearingSolution
 from nacre.contact.solution import Solution, check_unyielded
-from nacre.results.quantities import COATING, LIFE_RATIO, STRESS_VOLUME
+from nacre.results.quantities import frozen, quantity
 from nacre.results.rows import Row
 from nacre.results.shown import TableResult
 
@@ -217,11 +217,12 @@ class _Beside(TableResult, is_base=True):
 
     def _rows(self) -> list[Row]:
         """Return the numbers, those of layers only where there are some."""
+        of_layers = ("coating_tension", "interface_shear", "interface_tension")
         rows = super()._rows()
-        return rows if self.interface_shear > 0 else rows[: -len(COATING)]
+        return [row for row in rows if self.interface_shear > 0 or row.key not in of_layers]
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class StressVolume(_Beside):
     """Integral of the stress in the volume that one contact passes, per length of the track.
 
@@ -235,23 +236,22 @@ class StressVolume(_Beside):
     (True, True)
     """
 
-    _QUANTITIES = STRESS_VOLUME
     _TITLE = "stress volume of a contact"
 
-    integral: float
-    """``∬ (τ − τ_u)₊^c z^(−h) dx dz``, in m and Pa; in line contact ``∫ dz``."""
-    change: float
-    """Change of the integral where it begins at half the depth, relative; 0 below layers."""
-    largest: float
+    integral: float = quantity()
+    """Integral of the stress: ``∬ (τ − τ_u)₊^c z^(−h) dx dz``, in line contact ``∫ dz``."""
+    change: float = quantity(label="change")
+    """Change where it begins at half the depth: relative; 0 below layers."""
+    largest: float = quantity("Pa", label="largest stress")
     """Largest stress that counts [Pa]."""
-    slope: float
-    """Weibull slope e."""
-    coating_tension: float
+    slope: float = quantity(label="slope e")
+    """Slope e of Weibull's distribution."""
+    coating_tension: float = quantity("Pa", label="coating tension")
     """Largest tension in the layers [Pa]; 0 without layers."""
-    interface_shear: float
-    """Largest shear traction at an interface [Pa]; 0 without layers."""
-    interface_tension: float
-    """Largest tension at an interface [Pa]; 0 without layers."""
+    interface_shear: float = quantity("Pa", label="interface shear")
+    """Largest shear at an interface [Pa]: that of the traction; 0 without layers."""
+    interface_tension: float = quantity("Pa", label="interface tension")
+    """Largest tension there [Pa]; 0 without layers."""
     notes: tuple[str, ...]
     """What makes extremes of layers and interfaces uncertain, of those of `StressSummary`."""
 
@@ -260,7 +260,7 @@ class StressVolume(_Beside):
         return [Row("integral", "integral", text, self.integral), *super()._rows()]
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class LifeRatio(_Beside):
     """Life over that of a reference, both at the same probability: a model.
 
@@ -275,25 +275,24 @@ class LifeRatio(_Beside):
     0.12
     """
 
-    _QUANTITIES = LIFE_RATIO
     _TITLE = "ratio of two lives"
 
-    ratio: float
+    ratio: float = quantity()
     """Life over that of the reference; infinite where no stress is above the fatigue limit."""
-    slope: float
-    """Weibull slope e."""
-    largest: float
+    slope: float = quantity(label="slope e")
+    """Slope e of Weibull's distribution."""
+    largest: float = quantity("Pa", label="largest stress")
     """Largest stress that counts [Pa]."""
-    reference_largest: float
+    reference_largest: float = quantity("Pa", label="of the reference")
     """The same of the reference [Pa]."""
-    change: float
-    """Largest change of an integral where it begins at half the depth, relative."""
-    coating_tension: float
+    change: float = quantity(label="change")
+    """Change where integrals begin at half the depth: the largest, relative."""
+    coating_tension: float = quantity("Pa", label="coating tension")
     """Largest tension in the layers [Pa]; 0 without layers."""
-    interface_shear: float
-    """Largest shear traction at an interface [Pa]; 0 without layers."""
-    interface_tension: float
-    """Largest tension at an interface [Pa]; 0 without layers."""
+    interface_shear: float = quantity("Pa", label="interface shear")
+    """Largest shear at an interface [Pa]: that of the traction; 0 without layers."""
+    interface_tension: float = quantity("Pa", label="interface tension")
+    """Largest tension there [Pa]; 0 without layers."""
     model: str
     """Model in words."""
     notes: tuple[str, ...]

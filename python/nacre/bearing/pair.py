@@ -36,7 +36,6 @@ from nacre.bearing.life import LINE, POINT
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
-    VECTOR_ROWS,
     VECTORS,
     BearingReport,
     BearingSolution,
@@ -59,7 +58,7 @@ from nacre.bearing.solving import (
 from nacre.bearing.verdict import pair_verdict
 from nacre.results import display, files
 from nacre.results.charts import Picture
-from nacre.results.quantities import BEARING, PAIR_LIFE
+from nacre.results.quantities import AXIS, frozen, quantity
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
@@ -434,7 +433,7 @@ def solve_pair(
     return solution
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class PairLife(TableResult):
     """Reference rating lives of ISO/TS 16281 of a pair: a model, at 90 % reliability.
 
@@ -453,30 +452,27 @@ class PairLife(TableResult):
     0.536
     """
 
-    _QUANTITIES = PAIR_LIFE
     _TITLE = "reference rating life of a pair of bearings"
     _IN_SI = True
 
-    revolutions: float
-    """Life in which 10 % of such pairs lose a bearing, in revolutions."""
-    hours: float
-    """The same in hours of operation; infinite where the bearings are at rest."""
-    first: float
+    revolutions: float = quantity(label="life of both")
+    """Life of both in revolutions: 10 % of such pairs lose a bearing in it."""
+    hours: float = quantity()
+    """Life of both in hours: of operation; infinite where the bearings are at rest."""
+    first: float = quantity(label="first bearing")
     """Life of the first bearing in revolutions; infinite without load."""
-    second: float
-    """That of the second bearing."""
+    second: float = quantity(label="second bearing")
+    """Life of the second bearing in revolutions; infinite without load."""
     model: str
     """Model in words."""
 
     def _rows(self) -> list[Row]:
         rows = []
-        for quantity in (row for row in PAIR_LIFE if row.label):
-            life = quantity.of(self)
+        for row in (row for row in self._QUANTITIES if row.label):
+            life = row.of(self)
             text = f"{rounded(life / 1e6, 4)} million revolutions"
             words = "infinite: no element is loaded"
-            rows.append(
-                Row(quantity.name, quantity.label, text if life < math.inf else words, life)
-            )
+            rows.append(Row(row.name, row.label, text if life < math.inf else words, life))
         if math.isfinite(self.hours):
             rows.append(Row("hours", "hours", rounded(self.hours, 4), self.hours))
         return rows
@@ -485,7 +481,7 @@ class PairLife(TableResult):
         return self._rows()
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@frozen(eq=False)
 class PairSolution(Equilibrium):
     """A solved pair of bearings on a shaft.
 
@@ -511,14 +507,16 @@ class PairSolution(Equilibrium):
 
     pair: Pair
     """Pair that was solved."""
-    displacement: tuple[float, float, float]
-    """Displacements of the shaft along x, y and z in the middle between the bearings [m]."""
-    tilt: tuple[float, float]
-    """Slopes of the shaft about x and y."""
-    force: tuple[float, float, float]
-    """Forces on the shaft [N], which both bearings balance."""
-    moment: tuple[float, float]
-    """Moments about x and y on the shaft, about the middle between the bearings [N m]."""
+    displacement: tuple[float, float, float] = quantity(
+        "m", dims=("direction",), label="displacement"
+    )
+    """Displacement of the shaft [m], in the middle between the bearings, along x, y and z."""
+    tilt: tuple[float, float] = quantity(dims=AXIS, label="tilt")
+    """Slopes of the shaft: about x and y."""
+    force: tuple[float, float, float] = quantity("N", dims=("direction",), label="force")
+    """Force on the shaft [N], which both bearings balance, along x, y and z."""
+    moment: tuple[float, float] = quantity("N m", dims=AXIS, label="moment")
+    """Moment on the shaft [N m], about x and y and the middle between the bearings."""
     first: BearingSolution
     """Solution of the first bearing, in its own axes."""
     second: BearingSolution
@@ -652,11 +650,11 @@ class PairSolution(Equilibrium):
         """
         table, variables = [], {}
         for prefix, solution in (("", self), *zip(NAMES, self.bearings, strict=True)):
-            for row in BEARING if prefix else VECTOR_ROWS:
+            for row in solution._QUANTITIES:
                 if (value := row.of(solution)) is not None:
                     name = f"{prefix}_{row.name}".strip("_")
                     dims = [f"{prefix}_{dim}" if dim == "element" else dim for dim in row.dims]
-                    table.append((replace(row, name=name), row.si()))
+                    table.append((row.renamed(name), row.si()))
                     variables[name] = (dims, np.asarray(value))
         with self._units():
             return files.dataset(self._TITLE, table, variables, {}, self.to_dict())
@@ -713,7 +711,7 @@ class PairSolution(Equilibrium):
 
     def _rows(self) -> list[Row]:
         rows = []
-        for row in VECTOR_ROWS:
+        for row in self._QUANTITIES:
             values = [self._heavier._rounded(row.name, value) for value in row.of(self)]
             text = display.pair(values, row.si())
             rows.append(Row(row.name, row.label, text, values, row.si()))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
@@ -29,7 +28,7 @@ from nacre.bearing.modified import (
     simple_fatigue_load_limit,
 )
 from nacre.bearing.verdict import life_verdict
-from nacre.results.quantities import BEARING_LIFE
+from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows
 from nacre.results.rows import Row
 from nacre.results.shown import TableResult
@@ -53,7 +52,7 @@ Duty = tuple[float, Sequence[float | None], float]
 """A part of a load spectrum: share of the time, forces along x, y and z [N], speed [rad/s]."""
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class BearingLife(TableResult):
     """Rating life of ISO/TS 16281 and ISO 281: a model.
 
@@ -71,7 +70,6 @@ class BearingLife(TableResult):
     (True, 6.283)
     """
 
-    _QUANTITIES = BEARING_LIFE
     _TITLE = "rating life of a bearing"
     _IN_SI = True
     _LATER = (
@@ -80,32 +78,32 @@ class BearingLife(TableResult):
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
-    revolutions: float
-    """Life in revolutions, ``a_1 a_ISO L_10r``; infinite without load."""
-    hours: float
+    revolutions: float = quantity()
+    """Life in revolutions: ``a_1 a_ISO L_10r``; infinite without load."""
+    hours: float = quantity()
     """Life in hours of operation; infinite where the bearing is at rest, as without a speed."""
-    l10: float
+    l10: float = quantity()
     """Reference rating life L_10r in millions of revolutions; infinite without load."""
-    equivalent_load: float
-    """Dynamic equivalent reference load [N]; of a spectrum that of its L_10r."""
-    capacity: float
-    """Dynamic load rating of the bearing [N]: C_r, or C_a of a thrust bearing."""
-    ring_capacities: tuple[float, float]
-    """Ratings of the contact of one element with inner and outer ring [N]."""
-    reliability: float
+    equivalent_load: float = quantity("N", label="equivalent load")
+    """Equivalent reference load [N]; of a spectrum that of its L_10r."""
+    capacity: float = quantity("N", label="rating")
+    """Dynamic load rating [N]: C_r of the bearing, or C_a of a thrust bearing."""
+    ring_capacities: tuple[float, float] = quantity("N", dims=("ring",), label="of contacts")
+    """Ratings of contacts [N]: of one element with inner and outer ring."""
+    reliability: float = quantity()
     """Share of bearings that reach the life."""
-    reliability_factor: float
+    reliability_factor: float = quantity()
     """Factor a_1."""
-    modification_factor: float | None
-    """Factor a_ISO, of a spectrum that of the whole; None without lubrication."""
-    viscosity_ratio: float | None
-    """Viscosity ratio κ, of a spectrum the smallest; None without lubrication."""
-    contamination_factor: float | None
+    modification_factor: float | None = quantity(label="a_ISO")
+    """Factor a_ISO: of a spectrum that of the whole; None without lubrication."""
+    viscosity_ratio: float | None = quantity(label="viscosity ratio κ")
+    """Viscosity ratio κ: of a spectrum the smallest; None without lubrication."""
+    contamination_factor: float | None = quantity(label="contamination e_C")
     """Contamination factor e_C; None without lubrication."""
-    fatigue_load_limit: float | None
+    fatigue_load_limit: float | None = quantity("N", label="fatigue load limit")
     """Fatigue load limit C_u [N]; None without lubrication."""
-    simple_fatigue_load_limit: float | None
-    """The same by the standard's simple formula, C_0/22 or C_0/8.2 [N]."""
+    simple_fatigue_load_limit: float | None = quantity("N", label="by C_0 alone")
+    """C_u by the standard's simple formula [N]: C_0/22 or C_0/8.2."""
     model: str
     """Model in words."""
 

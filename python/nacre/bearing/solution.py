@@ -29,7 +29,7 @@ from nacre.contact.stresses import SIZE_ERRORS
 from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Bars, Chart, Curve, Look, Picture, contact_charts
-from nacre.results.quantities import BEARING, PER_CONTACT, Quantity
+from nacre.results.quantities import AXIS, Quantity, derived, frozen, quantity
 from nacre.results.report import (
     Rows,
     Table,
@@ -73,8 +73,8 @@ ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": (
 """Units in which angles are printed, and how many there are in a radian."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
-VECTOR_ROWS = [row for row in BEARING if row.name in VECTORS]
-"""Quantities of the ring, in this order."""
+PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
+"""Dimensions of numbers of each contact of a bearing, and of its laminae."""
 STIFFNESS = "Stiffness in N, N m, m and rad"
 """Title of the table of a stiffness."""
 NOT_COUNTED = "lubrication, cage, friction, heat, and the bending of rings and housing"
@@ -193,7 +193,7 @@ class Equilibrium(Shown, Result, is_base=True):
     __hash__ = None  # type: ignore[assignment]
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@frozen(eq=False)
 class BearingSolution(Equilibrium):
     """A solved bearing. Arrays have a row for each element, and columns for inner and outer ring.
 
@@ -210,7 +210,6 @@ class BearingSolution(Equilibrium):
     ((14, 2), True)
     """
 
-    _QUANTITIES = BEARING
     _TITLE = "bearing"
     _LATER = ("rotating", "loaded_directions")
 
@@ -226,37 +225,39 @@ class BearingSolution(Equilibrium):
     """Ring that rotates."""
     loaded_directions: tuple[bool, bool, bool, bool, bool] | None
     """Whether forces along x, y and z and moments about x and y were given; None of old files."""
-    displacement: tuple[float, float, float]
-    """Displacements of the inner ring against the outer one along x, y and z [m]."""
-    tilt: tuple[float, float]
-    """Slopes of the inner ring about x and y."""
-    force: tuple[float, float, float]
-    """Forces on the inner ring [N], which the elements balance."""
-    moment: tuple[float, float]
-    """Moments about x and y on the inner ring [N m]."""
-    angles: Array
-    """Angles of the elements from x ``(Z,)`` [rad]."""
-    approaches: Array
+    displacement: tuple[float, float, float] = quantity(
+        "m", dims=("direction",), label="displacement"
+    )
+    """Displacement of the ring [m]: of the inner ring against the outer one along x, y and z."""
+    tilt: tuple[float, float] = quantity(dims=AXIS, label="tilt")
+    """Slopes of the inner ring: about x and y."""
+    force: tuple[float, float, float] = quantity("N", dims=("direction",), label="force")
+    """Force on the inner ring [N], which the elements balance, along x, y and z."""
+    moment: tuple[float, float] = quantity("N m", dims=AXIS, label="moment")
+    """Moment on the inner ring [N m], about x and y."""
+    angles: Array = quantity("rad", dims=("element",))
+    """Angles of the elements ``(Z,)`` [rad], from x."""
+    approaches: Array = quantity("m", dims=PER_CONTACT)
     """Approaches of the contacts ``(Z, 2)`` [m], below 0 where nothing touches."""
-    tilts: Array
-    """Slopes of the elements to the raceways ``(Z, 2)``, 0 of balls."""
-    loads: Array
+    tilts: Array = quantity(dims=PER_CONTACT, label="tilt")
+    """Slopes of the elements to the rings, ``(Z, 2)``: to the raceways; 0 of balls."""
+    loads: Array = quantity("N", dims=PER_CONTACT, label="load", after="approaches")
     """Forces of the contacts ``(Z, 2)`` [N]."""
-    moments: Array
-    """First moments of the pressure about the middles of the elements ``(Z, 2)`` [N m]."""
-    peak_pressures: Array
+    moments: Array = quantity("N m", dims=PER_CONTACT, after="tilts")
+    """First moments of the pressure ``(Z, 2)`` [N m], about the middles of the elements."""
+    peak_pressures: Array = quantity("Pa", dims=PER_CONTACT, label="peak pressure")
     """Largest pressures ``(Z, 2)`` [Pa]."""
-    edge_pressures: Array
-    """Largest pressures in the outer tenths of the length of a roller ``(Z, 2)`` [Pa].
+    edge_pressures: Array = quantity("Pa", dims=PER_CONTACT, label="edge pressure")
+    """Pressures at the edges ``(Z, 2)`` [Pa], NaN of balls.
 
-    They are NaN of balls.
+    They are the largest ones in the outer tenths of the length of a roller.
     """
-    contact_angles: Array
+    contact_angles: Array = quantity("rad", dims=PER_CONTACT)
     """Contact angles ``(Z, 2)`` [rad], below 0 in a second row; 0 of cylindrical rollers."""
-    lamina_loads: Array | None
-    """Loads of 40 laminae along each contact ``(Z, 2, 40)`` [N]; None of balls."""
-    lamina_pressures: Array | None
-    """Largest pressure in each lamina ``(Z, 2, 40)`` [Pa]; None of balls."""
+    lamina_loads: Array | None = quantity("N", dims=PER_LAMINA)
+    """Loads of laminae ``(Z, 2, 40)`` [N], 40 along each contact; None of balls."""
+    lamina_pressures: Array | None = quantity("Pa", dims=PER_LAMINA)
+    """Largest pressures of laminae ``(Z, 2, 40)`` [Pa]; None of balls."""
     tangent: Array
     """Stiffness of the bearing ``(5, 5)``, which `stiffness` returns."""
     grid_sizes: Array | None
@@ -269,34 +270,40 @@ class BearingSolution(Equilibrium):
     """Contacts that are known, by element and ring."""
 
     @property
-    def peak_pressure(self) -> float:
-        """Largest pressure of all contacts [Pa]."""
-        return float(self.peak_pressures.max())
-
-    @property
-    def edge_pressure(self) -> float:
-        """Largest pressure in the outer tenths of a roller [Pa]; NaN of balls."""
-        return float(self.edge_pressures.max())
-
-    @property
-    def cage_speed(self) -> float:
-        """Angular velocity of the elements about the bearing's axis [rad/s]."""
-        return self.bearing.cage_speed(self.speed, self.rotating)
-
-    @property
+    @derived("N", label="largest load", after="moment")
     def largest_load(self) -> float:
         """Largest force of a contact [N]."""
         return float(self.loads.max())
 
     @property
+    @derived("Pa", label="peak pressure")
+    def peak_pressure(self) -> float:
+        """Largest pressure [Pa], of all contacts."""
+        return float(self.peak_pressures.max())
+
+    @property
+    @derived("Pa", label="edge pressure")
+    def edge_pressure(self) -> float:
+        """Largest pressure in outer tenths [Pa], of a roller; NaN of balls."""
+        return float(self.edge_pressures.max())
+
+    @property
+    @derived("million revolutions")
+    def reference_life(self) -> float:
+        """Life of ISO/TS 16281 [million revolutions], with the standard's edge factors."""
+        return self.life().l10
+
+    @property
+    @derived()
     def loaded(self) -> int:
-        """Number of elements that both rings load."""
+        """Number of loaded elements: those that both rings load."""
         return int(carrying(self.loads).all(axis=1).sum())
 
     @property
-    def reference_life(self) -> float:
-        """Life of ISO/TS 16281 with the standard's edge factors [million revolutions]."""
-        return self.life().l10
+    @derived("rad/s", label="cage speed")
+    def cage_speed(self) -> float:
+        """Speed of the elements about the axis [rad/s], that of the bearing."""
+        return self.bearing.cage_speed(self.speed, self.rotating)
 
     @property
     def verdict(self) -> Verdict:
@@ -568,11 +575,11 @@ class BearingSolution(Equilibrium):
             Numbers by name, with units.
         """
         variables = {}
-        for row in BEARING:
+        for row in self._QUANTITIES:
             if (value := row.of(self)) is not None:
                 variables[row.name] = (row.dims, np.asarray(value))
         coordinates = {"ring": list(RINGS)}
-        table = [(row, row.si()) for row in BEARING]
+        table = [(row, row.si()) for row in self._QUANTITIES]
         with self._units():
             return files.dataset(self._TITLE, table, variables, coordinates, self.to_dict())
 
@@ -590,10 +597,11 @@ class BearingSolution(Equilibrium):
 
     def _columns(self) -> list[tuple[Quantity, str, Array]]:
         """Return quantity, heading and values of the columns of the table of elements."""
-        kinds = {row.name: row for row in BEARING}
-        columns = [(kinds["angles"], "angle", self.angles)]
-        for row in BEARING:
-            if row.dims == PER_CONTACT and row.label:
+        columns: list[tuple[Quantity, str, Array]] = []
+        for row in self._QUANTITIES:
+            if row.name == "angles":
+                columns.append((row, "angle", self.angles))
+            elif row.dims == PER_CONTACT and row.label:
                 for k, ring in enumerate(RINGS):
                     columns.append((row, f"{row.label} {ring}", row.of(self)[:, k]))
         return columns
@@ -684,8 +692,8 @@ class BearingSolution(Equilibrium):
         return contact.x, contact.pressure.max(axis=1)
 
     def _rows(self) -> list[Row]:
-        kinds, rows = {row.name: row for row in BEARING}, []
-        for row in VECTOR_ROWS:
+        kinds, rows = {row.name: row for row in self._QUANTITIES}, []
+        for row in (kinds[name] for name in VECTORS):
             values = [self._rounded(row.name, value) for value in row.of(self)]
             angles = f"({', '.join(_angles(row.name, values))}) mrad" if row.name == "tilt" else ""
             text = angles or display.pair(values, row.si())

@@ -8,7 +8,6 @@ static rating is the load at which its heaviest element has a pressure of 4200 M
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +17,7 @@ from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import GROOVES, is_thrust
 from nacre.bearing.kinds import BallBearing, CurvedRaceways, RollerBearing, checked_bearing
 from nacre.hertz import Ellipse, contact_modulus
-from nacre.results.quantities import STATIC_LOAD
+from nacre.results.quantities import frozen, quantity
 from nacre.results.shown import TableResult
 
 if TYPE_CHECKING:
@@ -151,7 +150,7 @@ def equivalent_static_load(bearing: Bearing, radial: float, axial: float = 0.0) 
     return max(radial, factors[0] * radial + factors[1] * axial)
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class StaticLoad(TableResult):
     """Static rating, equivalent load and safety of a loaded bearing, after ISO 76.
 
@@ -164,16 +163,15 @@ class StaticLoad(TableResult):
     (11256, True)
     """
 
-    _QUANTITIES = STATIC_LOAD
     _TITLE = "static load of a bearing"
     _IN_SI = True
 
-    rating: float
+    rating: float = quantity("N", label="static rating")
     """Static load rating C_0 [N]."""
-    equivalent_load: float
+    equivalent_load: float = quantity("N", label="equivalent load")
     """Equivalent static load P_0 [N]."""
-    safety: float
-    """Static safety factor ``s_0 = C_0/P_0``; infinite without load."""
+    safety: float = quantity(label="static safety")
+    """Static safety factor: ``s_0 = C_0/P_0``; infinite without load."""
     model: str
     """Model in words."""
 

@@ -25,8 +25,9 @@ from nacre.case.results import Results, files_of, last_of, naming, report_of, re
 from nacre.indent.solution import IndentSolution
 from nacre.results import files, tables
 from nacre.results.display import SLIGHT, aligned, column, shown_in
-from nacre.results.quantities import BEARING, ERROR, WEAR
+from nacre.results.quantities import ERROR
 from nacre.results.shown import TableResult
+from nacre.results.values import result_class
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
 from nacre.studies.report import save_report
@@ -211,7 +212,9 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
                 record[name] = (np.asarray(value) * sizes[kinds[name]]).tolist()
         return record
 
-    record = {"units": units} | converted(state, {row.name: row.si() for row in BEARING})
+    rows_of_bearings = result_class("BearingSolution")._QUANTITIES
+    kinds = {row.name: row.si() for row in rows_of_bearings}
+    record = {"units": units} | converted(state, kinds)
     for name, result in added.items():
         record[name] = converted(
             state[name], {row.name: result._si(row) for row in result._QUANTITIES}
@@ -434,8 +437,7 @@ def _friction_numbers(solution: nacre.types.FrictionSolution) -> dict[str, objec
 
 def _wear_numbers(history: nacre.types.WearHistory) -> dict[str, object]:
     """Return the numbers of each state of a history of wear, its events and its report."""
-    rows = [row for row in WEAR if row.dims[:1] == ("step",)]
-    return {row.name: getattr(history, row.name).tolist() for row in rows} | {
+    return {row.name: row.of(history).tolist() for row in history._step_rows()} | {
         "unit": history.unit,
         "life": None if history.life is None else history.life.distance,
         "events": [event._state() for event in history.events],

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex, Unpack, overload
 
@@ -20,7 +19,18 @@ from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values
 from nacre.results.base import Result, Warned, as_text, checked
 from nacre.results.charts import Axis, Picture, contact_charts, contact_map, loop_chart
-from nacre.results.quantities import AXIS, FRICTION, WITH_FRICTION, Quantity
+from nacre.results.quantities import (
+    AXIS,
+    CELLS,
+    VECTOR,
+    Declared,
+    Quantity,
+    declared,
+    derived,
+    frozen,
+    quantities_of,
+    quantity,
+)
 from nacre.results.report import (
     Rows,
     Table,
@@ -51,7 +61,12 @@ LAW = (
 """What a report says of friction."""
 
 
-@dataclass(frozen=True, repr=False)
+NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
+NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
+"""Quantities of the normal contact that one with friction has too, and their names there."""
+
+
+@frozen()
 class FrictionReport(Result):
     """Report of a contact with friction: its course, and how well the laws hold.
 
@@ -71,8 +86,11 @@ class FrictionReport(Result):
     termination: Literal["running", "converged", "iteration limit", "stopped"]
     """How the iteration ended: "converged", "iteration limit" or "stopped"; "running" in progress.
     """
-    convolutions: int
-    """Tangential convolutions of the window of the contact, from two components to two."""
+    convolutions: int = quantity()
+    """Convolutions of the solve: tangential ones of the window of the contact.
+
+    They are from two components to two.
+    """
     sweeps: int
     """Solves of the pressure for given tractions, and of tractions for given pressure."""
     violation: float
@@ -129,7 +147,22 @@ class FrictionReport(Result):
         )
 
 
-@dataclass(frozen=True, repr=False)
+def _with_friction(_: type) -> tuple[Quantity, ...]:
+    """Return the quantities of a contact with friction: of its normal contact, and its own."""
+    own, reported = declared(FrictionSolution), declared(FrictionReport)
+    return (
+        *(
+            dataclasses.replace(row, name=NORMAL[row.name], path=f"normal.{row.name}", label="")
+            for row in quantities_of(Solution)
+            if row.name in NORMAL
+        ),
+        *(row for row in own if not row.is_field),
+        *(dataclasses.replace(row, path=f"report.{row.name}") for row in reported),
+        *(row for row in own if row.is_field),
+    )
+
+
+@frozen()
 class FrictionSolution(NormalContact, Shown, Result):
     """A contact with friction: one step of a history, or rolling.
 
@@ -145,35 +178,38 @@ class FrictionSolution(NormalContact, Shown, Result):
     (True, True)
     """
 
-    _QUANTITIES = WITH_FRICTION
+    _QUANTITIES = Declared(_with_friction)
     _TITLE = "contact of coated bodies with friction"
 
     _solved: core.FrictionSolved
     """Solution of the compiled module."""
-    force: tuple[float, float]
-    """Forces of the tractions on the body along x and y [N]."""
-    torque: float
-    """Torque of the tractions on the body about the origin [N m]."""
-    shift: tuple[float, float] | None
-    """Shift of the counterbody over the body since the first touch [m]; `None` in rolling.
+    force: tuple[float, float] = quantity("N", "N/m", AXIS, "force")
+    """Force of the tractions on the body [N] along x and y."""
+    torque: float = quantity("N m", "N", label="torque")
+    """Torque of the tractions about the origin [N m], on the body."""
+    shift: tuple[float, float] | None = quantity("m", dims=AXIS, label="shift")
+    """Shift of the counterbody over the body [m] since the first touch; `None` in rolling.
 
     In line contact it is counted from the bare substrate's surface, as `Grid.line` says.
     """
-    twist: float | None
-    """Twist of the counterbody over the body since the first touch [rad]; `None` in rolling."""
-    creepage: tuple[float, float] | None
-    """Creepages along the direction of rolling e and along z × e; `None` in sliding."""
-    spin: float | None
+    twist: float | None = quantity("rad", label="twist")
+    """Twist of the counterbody over the body [rad] since the first touch; `None` in rolling."""
+    creepage: tuple[float, float] | None = quantity(dims=AXIS, label="creepage")
+    """Creepages along and across: along the direction of rolling e and along z × e.
+
+    They are `None` in sliding.
+    """
+    spin: float | None = quantity("1/m", label="spin")
     """Spin [1/m]; `None` in sliding."""
     direction: Literal["+x", "-x", "+y", "-y"] | None
     """Direction of rolling, "+x", "-x", "+y" or "-y"; `None` in sliding."""
-    dissipated: float
-    """Energy that friction dissipates in the step [J].
+    dissipated: float = quantity("J", "J/m", label="dissipated", rolling=("J/m", "J/m²"))
+    """Energy that friction dissipates [J] in the step.
 
     In rolling it is that of the distance rolled [N], the power over the speed.
     """
-    tangential_energy: float | None
-    """What the tractions add to the elastic energy of the bodies [J].
+    tangential_energy: float | None = quantity("J", "J/m")
+    """Elastic energy that tractions add [J] to that of the bodies.
 
     It is ``½ sum (q · u + p v) dA`` with the normal displacement v that the tractions make, which
     is 0 without coupling. The energy of the pressure alone is that of `normal`. With coupling, what
@@ -200,8 +236,9 @@ class FrictionSolution(NormalContact, Shown, Result):
         return Solution._of(self._solved.normal())
 
     @property
+    @derived("J", "J/m")
     def elastic_energy(self) -> float | None:
-        """Elastic energy of both bodies [J], of pressure and tractions together.
+        """Elastic energy of pressure and tractions [J] together, of both bodies.
 
         It changes by the work of the forces less the energy `dissipated`. `None` as
         `tangential_energy`.
@@ -210,36 +247,42 @@ class FrictionSolution(NormalContact, Shown, Result):
             return None
         return self.normal.elastic_energy + self.tangential_energy
 
+    @property
+    @derived()
+    def stick_share(self) -> float:
+        """Share of the contact that sticks: of its cells; 0 where nothing touches."""
+        return int(self.stick.sum()) / max(int((self.pressure > 0).sum()), 1)
+
     @functools.cached_property
+    @derived("Pa", dims=VECTOR)
     def traction(self) -> Field:
-        """Tractions on the body along x and y, ``(2, nx, ny)`` [Pa]."""
+        """Traction on the body, ``(2, nx, ny)`` [Pa], along x and y."""
         return self._solved.field("traction")
 
     @functools.cached_property
+    @derived("m", dims=VECTOR)
     def displacement(self) -> Field:
-        """Tangential displacements of the body relative to the counterbody, ``(2, nx, ny)`` [m]."""
+        """Displacement of the body less counterbody, ``(2, nx, ny)`` [m], along x and y."""
         return self._solved.field("displacement")
 
     @functools.cached_property
+    @derived("m", dims=VECTOR, rolling=("", ""))
     def slip(self) -> Field:
-        """Slip of the counterbody over the body, ``(2, nx, ny)``; 0 outside the contact.
+        """Slip in the step; over the way in rolling [m, 1], ``(2, nx, ny)``.
 
-        It is that in the step [m], or in rolling the slip velocity over the speed of rolling.
+        It is that of the counterbody over the body, in rolling the slip velocity over the speed of
+        rolling; 0 outside the contact.
         """
         return self._solved.field("slip")
 
     @functools.cached_property
+    @derived(dims=CELLS, follows=True)
     def stick(self) -> npt.NDArray[np.bool_]:
-        """Whether each cell sticks, ``(nx, ny)``.
+        """Whether a cell sticks, ``(nx, ny)``.
 
         It is in contact, and its traction is below the bound.
         """
         return self._solved.field("stick")
-
-    @property
-    def stick_share(self) -> float:
-        """Share of the cells in contact that stick; 0 where nothing touches."""
-        return int(self.stick.sum()) / max(int((self.pressure > 0).sum()), 1)
 
     @functools.cached_property
     def bound(self) -> Field:
@@ -247,6 +290,7 @@ class FrictionSolution(NormalContact, Shown, Result):
         return self._solved.field("bound")
 
     @functools.cached_property
+    @derived(dims=CELLS)
     def friction(self) -> float | Field:
         """Coefficient of friction: a number, or one for each cell ``(nx, ny)``."""
         return self._solved.field("friction")
@@ -424,7 +468,7 @@ class History(list[FrictionSolution], Shown, Warned):
     (('step', 'component', 'x', 'y'), 2)
     """
 
-    _QUANTITIES = WITH_FRICTION
+    _QUANTITIES = Declared(_with_friction)
     _TITLE = "history of a contact with friction; numbers and pressures are of the last step"
 
     @property
@@ -453,9 +497,9 @@ class History(list[FrictionSolution], Shown, Warned):
         """
         state = self.to_dict()
         state["steps"] = [dict(step) for step in state["steps"]]
-        arrays = [files.take_arrays(step, WITH_FRICTION) for step in state["steps"]]
+        arrays = [files.take_arrays(step, self._QUANTITIES) for step in state["steps"]]
         fields: dict[str, list[object]] = {}
-        for row in WITH_FRICTION:
+        for row in self._QUANTITIES:
             columns = [step.get(row.name) for step in arrays]
             if row.follows or all(values is not None for values in columns):
                 fields[row.name] = [row.of(step) for step in self]
@@ -469,7 +513,7 @@ class History(list[FrictionSolution], Shown, Warned):
         """Return the Dataset of the numbers, and of these fields."""
         steps = checked(self)
         columns: dict[str, object] = {}
-        for row in WITH_FRICTION:
+        for row in self._QUANTITIES:
             if row.name in fields:
                 values = np.array(fields[row.name])
                 plain = values.astype(np.int8) if values.dtype == bool else values
@@ -481,7 +525,7 @@ class History(list[FrictionSolution], Shown, Warned):
         coordinates: dict[str, object] = {"step": np.arange(len(steps)), "component": ["x", "y"]}
         if fields:
             coordinates |= {"x": steps[0].x, "y": steps[0].y}
-        units = ((row, steps[0]._si(row)) for row in WITH_FRICTION)
+        units = ((row, steps[0]._si(row)) for row in self._QUANTITIES)
         title = "history of a contact with friction"
         rolls = {} if steps[0].direction is None else {"direction": steps[0].direction}
         return files.dataset(title, units, columns, coordinates, state, **rolls)
@@ -642,7 +686,7 @@ values.RESULTS["History"] = History
 def _friction_rows(solution: FrictionSolution) -> list[Row]:
     """Return the main numbers of friction."""
     report, rolls = solution.report, solution.shift is None
-    rows = display.rows(solution, FRICTION, TEXTS, solution.grid.is_line, rolls)
+    rows = display.rows(solution, solution._QUANTITIES, TEXTS, solution.grid.is_line, rolls)
     touching, sticking = int((solution.pressure > 0).sum()), int(solution.stick.sum())
     share = (report.discretisation or {}).get("stick_share", 0.0)
     error = f" ± {np.ceil(share * touching):.0f}" if share > 0 else ""

@@ -31,7 +31,7 @@ from nacre.contact.stresses import DepthOptions, depth_charts
 from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
 from nacre.results.charts import Picture, contact_charts
-from nacre.results.quantities import CONTACT, Quantity
+from nacre.results.quantities import CELLS, Quantity, derived
 from nacre.results.report import (
     Rows,
     input_rows,
@@ -254,7 +254,6 @@ class Solution(NormalContact, Shown, Result):
     """
 
     _LATER = OPTIONAL
-    _QUANTITIES = CONTACT
     _TITLE = "contact of coated bodies"
 
     _solved: core.Solved
@@ -273,26 +272,29 @@ class Solution(NormalContact, Shown, Result):
         return solution
 
     @cached_property
+    @derived("m", dims=CELLS, after="gap")
     def displacement(self) -> Field:
         """Normal displacement of both bodies together [m], positive into them."""
         return self._solved.field("displacement")
 
     @cached_property
+    @derived("m/Pa", dims=("offset_x", "offset_y"), after="line_load")
     def coefficients(self) -> Field | None:
-        """Influence coefficients ``(nx, ny)`` [m/Pa] that the contact was given.
+        """Influence coefficients that the contact was given, ``(nx, ny)`` [m/Pa].
 
         `None` where they are those of the bodies.
         """
         return self._solved.field("coefficients")
 
     @property
+    @derived("J", "J/m", after="central_pressure")
     def elastic_energy(self) -> float:
-        """Elastic energy of both bodies and of springs between them [J], ``½ sum p (u + c p) dA``.
+        """Elastic energy of the bodies [J] and of springs between them.
 
-        u is the normal displacement of the bodies and c the `compliance` of the springs. Where the
-        surfaces do not yield, its derivative by the approach is the load. Where the approach has a
-        datum, as in line contact, the displacement and the energy have it, too: the bare
-        substrate's surface, as `Grid.line` says.
+        It is ``½ sum p (u + c p) dA``: u is the normal displacement of the bodies and c the
+        `compliance` of the springs. Where the surfaces do not yield, its derivative by the approach
+        is the load. Where the approach has a datum, as in line contact, the displacement and the
+        energy have it, too: the bare substrate's surface, as `Grid.line` says.
         """
         size, shape = self.grid.size, self.grid.shape
         cell = size[1] / shape[1] if self.grid.is_line else size[0] * size[1] / self.pressure.size
@@ -726,7 +728,7 @@ class Solution(NormalContact, Shown, Result):
 
     def _inputs(self) -> Rows:
         report = self.report
-        units = {row.name: self._si(row) for row in CONTACT}
+        units = {row.name: self._si(row) for row in self._QUANTITIES}
         inputs = {
             "shape": self._shape or "not kept in the solution",
             "body": report.body,
@@ -829,7 +831,7 @@ def _number_rows(solution: Solution) -> list[Row]:
     if all(report.grid.periodic):
         left.add("tilt")
     texts = TEXTS | dict.fromkeys(left, _nothing)
-    return display.rows(solution, CONTACT, texts, report.grid.is_line)
+    return display.rows(solution, solution._QUANTITIES, texts, report.grid.is_line)
 
 
 def _nothing(_: object) -> None:

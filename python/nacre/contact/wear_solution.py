@@ -41,7 +41,7 @@ from nacre.results import display, files, values
 from nacre.results.base import Result, same
 from nacre.results.charts import HEADROOM, Axis, Chart, Curve, Picture, contact_charts
 from nacre.results.journal import Journal, Record
-from nacre.results.quantities import WEAR
+from nacre.results.quantities import CELLS, Quantity, derived, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
@@ -403,7 +403,7 @@ class WearReport(Result):
         )
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@frozen(eq=False)
 class WearState(Result):
     """A worn contact.
 
@@ -417,10 +417,10 @@ class WearState(Result):
 
     distance: float
     """Sliding distance [m], cycles or passes."""
-    depth: Field
-    """Depth that is removed from the body, ``(nx, ny)`` [m]."""
-    counter_depth: Field
-    """Depth that is removed from the counterbody, ``(nx, ny)`` [m]."""
+    depth: Field = quantity("m", dims=CELLS)
+    """Depth removed from the body, ``(nx, ny)`` [m]."""
+    counter_depth: Field = quantity("m", dims=CELLS)
+    """Depth removed from the counterbody, ``(nx, ny)`` [m]."""
     solution: Solution
     """The contact; its gap has the wear in it."""
     step_error: float | None
@@ -477,7 +477,6 @@ class WearHistory(Shown, Result):
     """
 
     _TITLE = "wear of a contact"
-    _QUANTITIES = WEAR
 
     states: tuple[WearState, ...]
     """Worn contacts, the first before any sliding."""
@@ -491,49 +490,58 @@ class WearHistory(Shown, Result):
     """Inputs in words."""
 
     @property
-    def distance(self) -> Field:
-        """Sliding distance [m], cycles or passes, from 0, ``(n + 1,)``."""
-        return self._per_state(lambda state: state.distance)
-
-    @property
-    def volume(self) -> Field:
-        """Volume removed from body and counterbody [m³], ``(n + 1, 2)``; [m²] in line contact."""
-        return self._per_state(lambda state: state.volume)
-
-    @property
-    def peak_pressure(self) -> Field:
-        """Largest pressure [Pa], ``(n + 1,)``."""
-        return self._per_state(lambda state: state.solution.peak_pressure)
-
-    @property
-    def contact_area(self) -> Field:
-        """Area in contact [m²], ``(n + 1,)``; [m] in line contact."""
-        return self._per_state(lambda state: state.solution.contact_area)
-
-    @property
-    def approach(self) -> Field:
-        """Approach of the origin [m], ``(n + 1,)``."""
-        return self._per_state(lambda state: state.solution.approach)
-
-    @property
-    def load(self) -> Field:
-        """Normal force [N], ``(n + 1,)``; [N/m] in line contact."""
-        return self._per_state(lambda state: state.solution.load)
-
-    @property
-    def deepest(self) -> Field:
-        """Largest depth removed from body and counterbody [m], ``(n + 1, 2)``."""
-        return self._per_state(lambda state: (state.depth.max(), state.counter_depth.max()))
-
-    @property
+    @derived("m")
     def life(self) -> WearThrough | None:
         """First layer that is through; None where none is."""
         return self.events[0] if self.events else None
 
     @property
+    @derived("m³", "m²")
     def worn_volume(self) -> float:
-        """Volume removed from both bodies at the end [m³]; [m²] in line contact."""
+        """Volume removed from both bodies [m³] at the end; [m²] in line contact."""
         return float(self.volume[-1].sum())
+
+    @property
+    @derived("m", dims=("step",))
+    def distance(self) -> Field:
+        """Sliding distance, cycles or passes [m], from 0, ``(n + 1,)``."""
+        return self._per_state(lambda state: state.distance)
+
+    @property
+    @derived("m³", "m²", ("step", "member"))
+    def volume(self) -> Field:
+        """Volume removed [m³] from body and counterbody, ``(n + 1, 2)``; [m²] in line contact."""
+        return self._per_state(lambda state: state.volume)
+
+    @property
+    @derived("m", dims=("step", "member"))
+    def deepest(self) -> Field:
+        """Largest depth removed [m] from body and counterbody, ``(n + 1, 2)``."""
+        return self._per_state(lambda state: (state.depth.max(), state.counter_depth.max()))
+
+    @property
+    @derived("Pa", dims=("step",))
+    def peak_pressure(self) -> Field:
+        """Largest pressure of a cell [Pa], ``(n + 1,)``."""
+        return self._per_state(lambda state: state.solution.peak_pressure)
+
+    @property
+    @derived("m²", "m", ("step",))
+    def contact_area(self) -> Field:
+        """Area in contact [m²], ``(n + 1,)``; [m] in line contact."""
+        return self._per_state(lambda state: state.solution.contact_area)
+
+    @property
+    @derived("m", dims=("step",))
+    def approach(self) -> Field:
+        """Approach of the origin [m], ``(n + 1,)``."""
+        return self._per_state(lambda state: state.solution.approach)
+
+    @property
+    @derived("N", "N/m", ("step",))
+    def load(self) -> Field:
+        """Normal force [N], ``(n + 1,)``; [N/m] in line contact."""
+        return self._per_state(lambda state: state.solution.load)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -609,26 +617,28 @@ class WearHistory(Shown, Result):
         state, packed = _packed(self.to_dict())
         last = self.states[-1]
         columns: dict[str, object] = {
-            row.name: (row.dims, getattr(self, row.name))
-            for row in WEAR
-            if row.dims[:1] == ("step",)
+            row.name: (row.dims, row.of(self)) for row in self._step_rows()
         }
-        columns |= {
-            "depth": (("x", "y"), last.depth),
-            "counter_depth": (("x", "y"), last.counter_depth),
-            "pressure": (("x", "y"), last.solution.pressure),
-            PACKED: (("number",), packed),
-        }
+        fields = {row: row.of(last) for row in last._QUANTITIES}
+        pressure = next(row for row in last.solution._QUANTITIES if row.name == "pressure")
+        fields[pressure] = last.solution.pressure
+        columns |= {row.name: (row.dims, values) for row, values in fields.items()}
+        columns[PACKED] = ("number",), packed
         grid = last.solution.grid
         coordinates = {"x": grid.x, "y": grid.y, "member": ["body", "counterbody"]}
-        units = [(row, self._si(row)) for row in WEAR]
+        rows = [dataclasses.replace(row, told=f"last {row.words}") for row in fields]
+        units = [(row, self._si(row)) for row in (*self._step_rows(), *rows)]
         return files.dataset(self._TITLE, units, columns, coordinates, state)
 
-    def _si(self, row: Any) -> str:
+    def _step_rows(self) -> list[Quantity]:
+        """Return the quantities of each step."""
+        return [row for row in self._QUANTITIES if row.dims]
+
+    def _si(self, row: Quantity) -> str:
         """Return the SI unit of a quantity of this history."""
         if row.name == "distance":
             return self.unit if self.unit == "m" else ""
-        return row.si(line=self.states[0].solution.grid.is_line)  # type: ignore[no-any-return]
+        return row.si(line=self.states[0].solution.grid.is_line)
 
     @classmethod
     def _unpacked(cls, state: dict[str, Any], arrays: Mapping[str, Field]) -> dict[str, Any]:
@@ -746,7 +756,7 @@ class WearHistory(Shown, Result):
     def _file_rows(self) -> list[list[object]]:
         """Return the numbers of each state, after their headings."""
         heads, columns = ["step"], [np.arange(len(self.states))]
-        for row in (row for row in WEAR if row.dims[:1] == ("step",)):
+        for row in self._step_rows():
             numbers = np.asarray(getattr(self, row.name))
             for part, name in enumerate(("body", "counterbody") if numbers.ndim == 2 else ("",)):
                 heads.append(heading(row, self, name))

@@ -10,7 +10,7 @@ import numpy as np
 
 from nacre._tools.units import symbol
 from nacre.results.files import dataset
-from nacre.results.quantities import FIT, INDENT
+from nacre.results.quantities import Quantity
 from nacre.results.values import encode
 
 if TYPE_CHECKING:
@@ -20,19 +20,24 @@ if TYPE_CHECKING:
     from nacre.indent.solution import IndentSolution
 
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
-CONTACTS = [row for row in INDENT if not row.name.startswith("pull_off")]
-"""Numbers of each contact."""
+MEASURED = Quantity("depth", "depth as measured", "m"), Quantity("force", "force as measured", "N")
+"""Numbers at the points of a curve."""
+
+
+def _each(solution: IndentSolution) -> list[Quantity]:
+    """Return the numbers of each contact."""
+    return [row for row in solution._QUANTITIES if not row.name.startswith("pull_off")]
 
 
 def indentation(solution: IndentSolution) -> xarray.Dataset:
     """Return the contacts with units and all that they depend on."""
-    arrays = {row.name: np.asarray(row.of(solution)) for row in CONTACTS}
+    arrays = {row.name: np.asarray(row.of(solution)) for row in _each(solution)}
     variable, rank = solution.given, arrays[solution.given].ndim
     dims = (variable,) if rank == 1 else tuple(f"{variable}_{k}" for k in range(rank))
     variables = {name: (dims, values) for name, values in arrays.items()}
     return dataset(
         "indentation of a coated body",
-        ((row, row.unit) for row in INDENT),
+        ((row, row.unit) for row in solution._QUANTITIES),
         variables,
         {variable: variables.pop(variable)},
         solution.to_dict(),
@@ -68,7 +73,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     noise = {"residual": "N" if fit.noise == "absolute" else ""}
     fields = dataset(
         "fit of indentation curves",
-        ((row, noise.get(row.name, row.unit)) for row in FIT),
+        ((row, noise.get(row.name, row.unit)) for row in (*MEASURED, *fit._QUANTITIES)),
         columns,
         coords | {"unit": ("parameter", _units(fit))},
         fit.to_dict(),
@@ -93,8 +98,9 @@ def _units(fit: Fit) -> list[str]:
 
 def contact_rows(solution: IndentSolution) -> Iterator[list[object]]:
     """Yield the rows of a table of contacts."""
-    columns = [np.ravel(row.of(solution)).tolist() for row in CONTACTS]
-    yield [f"{row.name} [{symbol(row.unit)}]" for row in CONTACTS]
+    contacts = _each(solution)
+    columns = [np.ravel(row.of(solution)).tolist() for row in contacts]
+    yield [f"{row.name} [{symbol(row.unit)}]" for row in contacts]
     yield from map(list, zip(*columns, strict=True))
 
 

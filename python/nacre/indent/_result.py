@@ -6,7 +6,6 @@ import math
 import operator
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -25,7 +24,7 @@ from nacre.results import display
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Chart
 from nacre.results.charts import Curve as Line
-from nacre.results.quantities import FIT
+from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
@@ -45,7 +44,7 @@ MOST_RATES = 6
 """Most numbers on which a table says that an estimate depends."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen(eq=False)
 class Fit(Shown, Result):
     """Estimates of `fit`, how sure they are, and whether the data tell them at all."""
 
@@ -68,13 +67,13 @@ class Fit(Shown, Result):
     """
 
     _TITLE = "fit of indentation curves"
-    residuals: list[Array]
-    """Residuals of each curve: F − P [N] for absolute noise, else ln(F/P), or for mixed noise the
+    residuals: list[Array] = quantity(name="residual")
+    """Residual: of each curve, F − P [N] for absolute noise, else ln(F/P), or for mixed noise the
     difference of arsinh(F/c), which is ln(F/P) far above the floor c."""
-    loads: list[Array]
-    """Loads P of the model at the points of each curve [N]."""
-    approaches: list[Array]
-    """True depths of the points of each curve, without nuisances [m]."""
+    loads: list[Array] = quantity("N", name="load")
+    """Load of the model [N]: P at the points of each curve."""
+    approaches: list[Array] = quantity("m", name="approach")
+    """Depth without nuisances [m]: the true one of the points of each curve."""
     chi2: float
     """Sum of the squares of weighted residuals, with priors."""
     dof: int
@@ -177,7 +176,7 @@ class Fit(Shown, Result):
         for number, curve in enumerate(self.curves):
             measured = {"name": curve.name, "depth": curve.depth, "force": curve.force}
             inputs |= {f"curves[{number}].{name}": value for name, value in measured.items()}
-        units = {row.name: row.unit for row in FIT}
+        units = {row.name: row.unit for row in self._QUANTITIES}
         rows = input_rows(inputs, units)
         return [remark("bodies and tip", "with the estimates in place"), *rows]
 

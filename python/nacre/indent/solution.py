@@ -23,7 +23,7 @@ from nacre.indent._reading import apparent_modulus, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Result, Warned
 from nacre.results.charts import Axis, Chart, Curve
-from nacre.results.quantities import INDENT, units
+from nacre.results.quantities import derived, frozen, quantity
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
@@ -51,7 +51,6 @@ PointProgress = Callable[[int, int], object]
 
 NUMBERS = ("load", "approach", "radius", "stiffness", "outer_radius", "central_pressure")
 """Numbers of each contact that are kept."""
-UNITS = units(indents=True)
 PULLED = ("pull_off_load", "pull_off_approach", "pull_off_radius")
 """Numbers of the pull-off."""
 ARGUMENTS = ("body", "tip", "counterbody", "adhesion")
@@ -124,7 +123,7 @@ class StateDerivative(Fields, Generic[Value]):
         return self._states.field("displacement", r, self._path)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen(eq=False)
 class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """Contacts of an indentation, with all that they depend on.
 
@@ -157,16 +156,16 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """Branch of the contacts, "stable" or "unstable"."""
     control: Control
     """What is held while the tip is pulled off."""
-    load: Value
-    """Load [N], below 0 where the tip is pulled."""
-    approach: Value
+    load: Value = quantity("N", label="load")
+    """Load, below 0 where the tip is pulled [N]."""
+    approach: Value = quantity("m", label="approach")
     """Approach [m]."""
-    radius: Value
+    radius: Value = quantity("m", label="radius")
     """Contact radius [m]."""
-    stiffness: Value
+    stiffness: Value = quantity("N/m", label="stiffness")
     """Stiffness of this contact area [N/m]: that of unloading, and without adhesion the slope of
     the curve."""
-    outer_radius: Value
+    outer_radius: Value = quantity("m")
     """Radius up to which the surfaces attract each other [m].
 
     It is that of the contact except for Maugis's adhesion.
@@ -235,6 +234,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         return slope
 
     @cached_property
+    @derived("Pa", label="central pressure")
     def central_pressure(self) -> Value:
         """Pressure on the axis [Pa], infinite below a sharp tip."""
         pressure: Value = self.pressure(0.0)
@@ -316,16 +316,19 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         return {name: getattr(last, name.removeprefix("pull_off_")) for name in PULLED}
 
     @property
+    @derived("N")
     def pull_off_load(self) -> float:
-        """Load of the last stable contact as the tip is pulled off [N]; NaN without adhesion."""
+        """Load of the last stable contact of a tip that is pulled [N]; NaN without adhesion."""
         return self._pulled["pull_off_load"]
 
     @property
+    @derived("m")
     def pull_off_approach(self) -> float:
         """Approach of that contact [m]."""
         return self._pulled["pull_off_approach"]
 
     @property
+    @derived("m")
     def pull_off_radius(self) -> float:
         """Radius of that contact [m]."""
         return self._pulled["pull_off_radius"]
@@ -463,7 +466,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     def _table(self) -> Printed:
         """Return the table of the contacts."""
-        quantities = [row for row in INDENT if row.label]
+        quantities = [row for row in self._QUANTITIES if row.label]
         columns = [np.ravel(row.of(self)).tolist() for row in quantities]
         rows = [
             [with_unit(value, column.name) for value, column in zip(row, quantities, strict=True)]
@@ -480,6 +483,8 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
 IndentState = IndentSolution
 """Another name of `IndentSolution`."""
+UNITS = {row.name: row.unit for row in IndentSolution._QUANTITIES}
+"""SI units of the numbers of an indentation."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +12,7 @@ import nacre._core as core
 from nacre._tools.extras import extra
 from nacre.indent._segments import SPAN, SURE, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
-from nacre.results.quantities import UNLOADING
+from nacre.results.quantities import frozen, quantity
 from nacre.results.shown import TableResult
 
 __all__ = ["OliverPharr", "oliver_pharr", "section"]
@@ -34,7 +33,7 @@ OFF = 0.02
 few per cent can bear."""
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class OliverPharr(TableResult):
     """Hardness and modulus from an unloading curve.
 
@@ -42,44 +41,43 @@ class OliverPharr(TableResult):
     the zero of the depth and the compliance of the machine come in addition.
     """
 
-    _QUANTITIES = UNLOADING
     _TITLE = "hardness and modulus from an unloading curve"
 
-    hardness: float
-    """Largest force over area [Pa]."""
-    hardness_error: float
+    hardness: float = quantity("Pa", label="hardness")
+    """Hardness [Pa]: largest force over area."""
+    hardness_error: float = quantity("Pa", label="±")
     """Its standard error [Pa]."""
-    reduced_modulus: float
-    """E_r of the sample and the tip's material together [Pa]."""
-    reduced_modulus_error: float
+    reduced_modulus: float = quantity("Pa", label="reduced modulus")
+    """Reduced modulus, with the tip [Pa]: E_r of the sample and the tip's material together."""
+    reduced_modulus_error: float = quantity("Pa", label="±")
     """Its standard error [Pa]."""
-    modulus: float
-    """E/(1 − ν²) of the sample, without the tip's compliance [Pa]."""
-    modulus_error: float
+    modulus: float = quantity("Pa", label="modulus E/(1 − ν²)")
+    """E/(1 − ν²) of the sample [Pa], without the tip's compliance."""
+    modulus_error: float = quantity("Pa", label="±")
     """Its standard error [Pa]."""
-    stiffness: float
-    """Slope S of the unloading at the largest depth [N/m]."""
-    stiffness_error: float
+    stiffness: float = quantity("N/m", label="slope")
+    """Slope at the largest depth [N/m]: S of the unloading."""
+    stiffness_error: float = quantity("N/m", label="±")
     """Its standard error [N/m]."""
-    power: float
-    """Power m of the law P = a (h − h_p)^m."""
-    power_error: float
+    power: float = quantity(label="power m")
+    """Power of the unloading: m of the law P = a (h − h_p)^m."""
+    power_error: float = quantity(label="±")
     """Its standard error."""
-    final_depth: float
-    """Depth h_p at which the law has no force [m]."""
-    largest_depth: float
-    """Depth at which the unloading begins [m]."""
-    largest_force: float
-    """Force of the law at the largest depth [N]."""
-    contact_depth: float
-    """Depth of contact h_c [m]."""
-    area: float
-    """Area A(h_c) of the tip's section [m²]."""
-    epsilon: float
-    """Factor ε."""
-    beta: float
-    """Factor β."""
-    points: int
+    final_depth: float = quantity("m", label="final depth")
+    """Depth at which the law has no force [m]: h_p."""
+    largest_depth: float = quantity("m", label="largest depth")
+    """Largest depth [m], at which the unloading begins."""
+    largest_force: float = quantity("N", label="largest force")
+    """Force of the law there [N]."""
+    contact_depth: float = quantity("m", label="contact depth")
+    """Depth of contact [m]: h_c."""
+    area: float = quantity("m²", label="area")
+    """Area of the tip's section there [m²]: A(h_c)."""
+    epsilon: float = quantity(label="ε")
+    """Factor ε of the depth of contact."""
+    beta: float = quantity(label="β")
+    """Factor β of the modulus."""
+    points: int = quantity(label="points")
     """Number of points of the fit."""
     notes: tuple[str, ...]
     """What limits the validity. Each but that about films was issued as a warning, too."""

@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre.results import display, values
-from nacre.results.quantities import Quantity
+from nacre.results.quantities import Declared
 
 
 class Tangential(Protocol):
@@ -192,8 +192,8 @@ class Warned(Fields):
 class Result(Fields):
     """Base of results: each is a dataclass whose fields are its state."""
 
-    _QUANTITIES: ClassVar[tuple[Quantity, ...]] = ()
-    """Rows of the table of quantities that the result has."""
+    _QUANTITIES = Declared()
+    """Quantities that the class declares."""
     _COMPILED: ClassVar[bool] = False
     """Whether the compiled module makes the result, and checks its state."""
     _DERIVED: ClassVar[tuple[str, ...]] = ()

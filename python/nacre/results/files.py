@@ -16,7 +16,7 @@ from nacre._tools.typing import AnyPath
 from nacre._tools.units import symbol, system
 from nacre.results.display import figure_of
 from nacre.results.journal import Journal
-from nacre.results.quantities import CONTACT, REMOVED, WITH_FRICTION, Quantity
+from nacre.results.quantities import REMOVED, Quantity
 from nacre.results.tables import SOURCE, Gridded, numbers, write_cells, write_rows
 from nacre.results.values import check_format, refusing, result_class
 from nacre.results.vtk import write_surface
@@ -26,13 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
-
-ARRAYS = [
-    row.name
-    for row in (*CONTACT, *WITH_FRICTION)
-    if len(row.dims) > 1 and row.dims[0] != "axis" and not row.follows
-] + ["packed"]
-"""Names of what files hold as arrays."""
 
 
 class HasDataset(Protocol):
@@ -201,9 +194,16 @@ def load(path: AnyPath) -> Any:
     try:
         if path.suffix.lower() == ".journal":
             return result_class("WearHistory")._kept(Journal.stored(path, "history of wear"))
-        return _restored(*read(path, ARRAYS))
+        return _restored(*read(path, _arrays()))
     except ValueError as error:
         raise ValueError(f"{str(path)!r} must be a result that nacre saved: {error}") from error
+
+
+def _arrays() -> list[str]:
+    """Return the names of what files hold as arrays."""
+    kinds = map(result_class, ("Solution", "FrictionSolution"))
+    rows = [row for kind in kinds for row in kind._QUANTITIES if not row.follows]
+    return ["packed", *(row.name for row in rows if len(row.dims) > 1 and row.dims[0] != "axis")]
 
 
 def _restored(text: str, arrays: Mapping[str, Array]) -> object:

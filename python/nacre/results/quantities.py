@@ -1,15 +1,20 @@
-"""The quantities of results: one table.
+"""Quantities of results: each is declared once, at its field or its property.
 
-Files, tables, printed forms, JSON, outputs of studies, labels and units follow from it. To add a
-quantity, give the result an attribute of its name, and add a row here.
+Files, tables, printed forms, JSON, outputs of studies, labels and units follow from it. Its words
+are the first sentence of its docstring.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
-from typing import Any
+from functools import cache, reduce
+from itertools import pairwise
+from typing import Any, TypeVar, dataclass_transform
+
+from nacre.results.values import result_class
 
 AXIS = ("axis",)
 """Dimensions of a number along x and one along y."""
@@ -25,12 +30,12 @@ ERROR = "_discretisation"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A row of the table."""
+    """What is known of a quantity, wherever it is shown."""
 
-    name: str
+    name: str = ""
     """Name in files, outputs and JSON."""
-    words: str
-    """What it is."""
+    told: str = ""
+    """What it is, where no docstring says so."""
     unit: str = ""
     """SI unit; "" where it has none."""
     line: str | None = None
@@ -45,11 +50,27 @@ class Quantity:
     """Whether files hold the field although it follows from the others."""
     rolling: tuple[str, str] | None = None
     """SI units in rolling, and in rolling line contact, where they are others."""
+    after: str = ""
+    """Quantity after which this one and the next ones stand; after all by default."""
+    owner: type | None = None
+    """Class that declares it."""
+
+    @property
+    def words(self) -> str:
+        """What it is: the first sentence of its docstring, up to the unit."""
+        if self.told or self.owner is None:
+            return self.told
+        attribute = (self.path or self.name).rpartition(".")[2]
+        return _words(_docstrings(self.owner).get(attribute, attribute.replace("_", " ")))
 
     @property
     def is_field(self) -> bool:
         """Whether it has a value for each cell."""
         return self.dims[-2:] == CELLS
+
+    def renamed(self, name: str) -> Quantity:
+        """Return the quantity under another name in files."""
+        return replace(self, name=name, path=self.path or self.name)
 
     def of(self, result: object) -> Any:
         """Return the value in a result."""
@@ -76,131 +97,121 @@ class Quantity:
         return self.line if line and self.line is not None else self.unit
 
 
-CONTACT = (
-    Quantity("load", "normal force", "N", "N/m", label="load"),
-    Quantity("eccentricity", "point where the force acts", "m", dims=AXIS, label="acts at"),
-    Quantity("moment", "first moments of the pressure", "N m", "N", AXIS, "moment"),
-    Quantity("approach", "approach of the origin", "m", label="approach"),
-    Quantity("tilt", "slopes", dims=AXIS, label="tilt"),
-    Quantity("peak_pressure", "largest pressure of a cell", "Pa", label="peak pressure"),
-    Quantity("peak_position", "centre of that cell", "m", dims=AXIS, label="at"),
-    Quantity("contact_extent", "ends of the contact", "m", dims=("axis", "end"), label="contact"),
-    Quantity("contact_area", "area in contact", "m²", "m", label="area"),
-    Quantity("contact_share", "share of the grid in contact", label="share"),
-    Quantity("central_pressure", "pressure at the origin", "Pa"),
-    Quantity("elastic_energy", "elastic energy of the bodies", "J", "J/m"),
-    Quantity("plastic_work", "energy that the permanent indentation has taken", "J", "J/m"),
-    Quantity("pressure", "pressure", "Pa", dims=CELLS),
-    Quantity("gap", "gap; infinite where the shape cannot touch", "m", dims=CELLS),
-    Quantity("displacement", "normal displacement of both bodies together", "m", dims=CELLS),
-    Quantity(
-        "hardness", "largest pressure that the surfaces can carry", "Pa", None, CELLS, "hardness"
-    ),
-    Quantity("indentation", "permanent indentation", "m", None, CELLS, "indentation"),
-    Quantity(
-        "compliance",
-        "compliance of springs between the surfaces",
-        "m/Pa",
-        None,
-        CELLS,
-        "springs",
-    ),
-    Quantity("in_contact", "whether a cell is in contact", dims=CELLS),
-    Quantity("line_load", "force per length along x", "N/m", dims=("x",), follows=True),
-    Quantity(
-        "coefficients",
-        "influence coefficients that the contact was given",
-        "m/Pa",
-        dims=("offset_x", "offset_y"),
-    ),
-    Quantity("x", "x of the cell centre", "m", dims=("x",)),
-    Quantity("y", "y of the cell centre", "m", dims=("y",)),
-)
-"""Quantities of a normal contact, numbers first, in the order in which they are printed."""
+Kind = TypeVar("Kind")
+Getter = TypeVar("Getter", bound=Callable[[Any], Any])
 
-WEAR = (
-    Quantity("distance", "sliding distance, cycles or passes", "m", dims=("step",)),
-    Quantity("volume", "volume removed", "m³", "m²", ("step", "member")),
-    Quantity("deepest", "largest depth removed", "m", dims=("step", "member")),
-    Quantity("peak_pressure", "largest pressure of a cell", "Pa", dims=("step",)),
-    Quantity("contact_area", "area in contact", "m²", "m", ("step",)),
-    Quantity("approach", "approach of the origin", "m", dims=("step",)),
-    Quantity("load", "normal force", "N", "N/m", ("step",)),
-    Quantity("depth", "last depth removed from the body", "m", dims=CELLS),
-    Quantity("counter_depth", "last depth removed from the counterbody", "m", dims=CELLS),
-    Quantity("pressure", "last pressure", "Pa", dims=CELLS),
-)
-"""Quantities of a history of wear."""
-WORN = (
-    Quantity("life", "distance after which the first layer is through", "m"),
-    Quantity("worn_volume", "volume removed from both bodies", "m³", "m²"),
-    *(replace(row, dims=()) for row in WEAR if row.dims[:1] == ("step",) and row.name != "volume"),
-)
-"""Numbers of a history of wear: those of its end."""
 
-FRICTION = (
-    Quantity("force", "force of the tractions on the body", "N", "N/m", AXIS, "force"),
-    Quantity("torque", "torque of the tractions about the origin", "N m", "N", label="torque"),
-    Quantity("shift", "shift of the counterbody over the body", "m", dims=AXIS, label="shift"),
-    Quantity("twist", "twist of the counterbody over the body", "rad", label="twist"),
-    Quantity("creepage", "creepages along and across", dims=AXIS, label="creepage"),
-    Quantity("spin", "spin", "1/m", label="spin"),
-    Quantity(
-        "dissipated",
-        "energy that friction dissipates",
-        "J",
-        "J/m",
-        label="dissipated",
-        rolling=("J/m", "J/m²"),
-    ),
-    Quantity("tangential_energy", "elastic energy that tractions add", "J", "J/m"),
-    Quantity("elastic_energy", "elastic energy of pressure and tractions", "J", "J/m"),
-    Quantity("stick_share", "share of the contact that sticks"),
-    Quantity("convolutions", "convolutions of the solve", path="report.convolutions"),
-    Quantity("traction", "traction on the body", "Pa", dims=VECTOR),
-    Quantity("displacement", "displacement of the body less counterbody", "m", dims=VECTOR),
-    Quantity(
-        "slip", "slip in the step; over the way in rolling", "m", None, VECTOR, rolling=("", "")
-    ),
-    Quantity("stick", "whether a cell sticks", dims=CELLS, follows=True),
-    Quantity("friction", "coefficient of friction", dims=CELLS),
-)
-"""Quantities of a contact with friction, numbers first, in the order in which they are printed."""
+def quantity(
+    unit: str = "",
+    line: str | None = None,
+    dims: tuple[str, ...] = (),
+    label: str = "",
+    **options: Any,
+) -> Any:
+    """Declare a quantity at its field; `options` are those of `Quantity`."""
+    row = Quantity(unit=unit, line=line, dims=dims, label=label, **options)
+    return dataclasses.field(metadata={Quantity: row})
 
-CREEP = (
-    Quantity("c11", "coefficient of the longitudinal creepage"),
-    Quantity("c22", "coefficient of the lateral creepage"),
-    Quantity("c23", "coefficient of the spin in the lateral force"),
-    Quantity("c33", "coefficient of the spin in the torque"),
-    Quantity("errors", "estimated errors of c11, c22, c23 and c33", dims=("coefficient",)),
-    Quantity("shear", "shear modulus", "Pa"),
-    Quantity("semi_axes", "semi-axes along and across rolling", "m", dims=("semi_axis",)),
-)
-"""Kalker's coefficients."""
-ROUGHNESS = (
-    Quantity("sa", "mean of the absolute heights", "m", label="Sa"),
-    Quantity("sq", "root of the mean square of the heights", "m", label="Sq"),
-    Quantity("sp", "highest point above the mean", "m", label="Sp"),
-    Quantity("sv", "lowest point below the mean", "m", label="Sv"),
-    Quantity("ssk", "skewness of the heights", label="Ssk"),
-    Quantity("sku", "kurtosis of the heights", label="Sku"),
-    Quantity("rms_slope", "root of the mean square of the gradient", label="rms slope"),
-    Quantity("rms_curvature", "rms of half the Laplacian", "1/m", label="rms curvature"),
-)
-"""Parameters of the roughness of a map."""
 
-NORMAL = {name: name for name in ("load", "approach", "pressure", "gap", "coefficients")}
-NORMAL |= {"displacement": "normal_displacement", "x": "x", "y": "y"}
-"""Quantities of the normal contact that one with friction has too, and their names there."""
-WITH_FRICTION = (
-    *(
-        replace(row, name=NORMAL[row.name], path=f"normal.{row.name}", label="")
-        for row in CONTACT
-        if row.name in NORMAL
-    ),
-    *FRICTION,
-)
-"""All quantities of a contact with friction."""
+def derived(
+    unit: str = "",
+    line: str | None = None,
+    dims: tuple[str, ...] = (),
+    label: str = "",
+    **options: Any,
+) -> Callable[[Getter], Getter]:
+    """Declare a quantity at its property, below ``@property``."""
+    row = Quantity(unit=unit, line=line, dims=dims, label=label, **options)
+
+    def declare(getter: Getter) -> Getter:
+        vars(getter)["quantity"] = row
+        return getter
+
+    return declare
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(quantity, dataclasses.field))
+def frozen(*, eq: bool = True) -> Callable[[type[Kind]], type[Kind]]:
+    """Make a class a frozen dataclass with quantities, which has its own `__repr__`."""
+    return dataclass(frozen=True, repr=False, eq=eq)
+
+
+def declared(kind: type) -> list[Quantity]:
+    """Return the quantities that the body of a class declares: fields, then properties."""
+    inherited = {
+        field
+        for base in kind.__mro__[1:]
+        for field in vars(base).get("__dataclass_fields__", {}).values()
+    }
+    rows: dict[str, Quantity] = {}
+    for name, field in vars(kind).get("__dataclass_fields__", {}).items():
+        if Quantity in field.metadata and field not in inherited:
+            rows[name] = field.metadata[Quantity]
+    for name, member in vars(kind).items():
+        getter = getattr(member, "fget", None) or getattr(member, "func", None)
+        if isinstance(row := getattr(getter, "quantity", None), Quantity):
+            rows[name] = row
+    return [
+        replace(row, name=row.name or name, path=name if row.name else "", owner=kind)
+        for name, row in rows.items()
+    ]
+
+
+@cache
+def quantities_of(kind: type) -> tuple[Quantity, ...]:
+    """Return the quantities of a class of results and its bases, as they are declared."""
+    rows: list[Quantity] = []
+    for base in reversed(kind.__mro__):
+        place = len(rows)
+        for row in declared(base):
+            names = [quantity.name for quantity in rows]
+            if row.name in names:
+                rows[names.index(row.name)] = row
+                continue
+            place = names.index(row.after) + 1 if row.after else place
+            rows.insert(place, row)
+            place += 1
+    return tuple(rows)
+
+
+class Declared:
+    """Attribute of a class of results: the quantities that it declares."""
+
+    def __init__(self, of: Callable[[type], tuple[Quantity, ...]] = quantities_of) -> None:
+        self._of = cache(of)
+
+    def __get__(self, instance: object, owner: type) -> tuple[Quantity, ...]:
+        """Return the quantities of the class."""
+        return self._of(owner)
+
+
+@cache
+def _docstrings(kind: type) -> dict[str, str]:
+    """Return the docstrings of the properties of a class, and of its fields, from its source."""
+    import ast
+    import inspect
+    import textwrap
+
+    docstrings = {name: member.__doc__ for name, member in vars(kind).items() if member.__doc__}
+    try:
+        source = textwrap.dedent(inspect.getsource(kind))
+    except (OSError, TypeError):  # a program without its source
+        return docstrings
+    body = ast.parse(source).body[0].body  # type: ignore[attr-defined]
+    for field, text in pairwise(body):
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
+            docstrings[ast.unparse(field.target)] = ast.literal_eval(text.value)
+    return docstrings
+
+
+def _words(docstring: str) -> str:
+    """Return the first sentence of a docstring, up to a colon or the unit, else a semicolon."""
+    sentence = re.split(r"\.(?:\s|$)|:\s", " ".join(docstring.split()), maxsplit=1)[0]
+    words, unit, _ = sentence.partition(" [")
+    words = words if unit else words.partition("; ")[0]
+    words = re.sub(r",? ``.*?``", "", words)
+    return words[0].lower() + words[1:] if words[1:2].islower() or words[1:2] == " " else words
+
 
 STRESS = tuple(
     Quantity(name, words, "Pa")
@@ -282,138 +293,6 @@ SHAKEDOWN = (
 )
 """Columns of the table of a shakedown map."""
 
-INDENT = (
-    Quantity("load", "load, below 0 where the tip is pulled", "N", label="load"),
-    Quantity("approach", "approach", "m", label="approach"),
-    Quantity("radius", "contact radius", "m", label="radius"),
-    Quantity("stiffness", "stiffness of this contact area", "N/m", label="stiffness"),
-    Quantity("outer_radius", "radius up to which the surfaces attract each other", "m"),
-    Quantity("central_pressure", "pressure on the axis", "Pa", label="central pressure"),
-    Quantity("pull_off_load", "load of the last stable contact of a tip that is pulled", "N"),
-    Quantity("pull_off_approach", "approach of that contact", "m"),
-    Quantity("pull_off_radius", "radius of that contact", "m"),
-)
-"""Quantities of an indentation."""
-
-FIT = (
-    Quantity("depth", "depth as measured", "m"),
-    Quantity("force", "force as measured", "N"),
-    Quantity("load", "load of the model", "N"),
-    Quantity("approach", "depth without nuisances", "m"),
-    Quantity("residual", "residual"),
-)
-"""Quantities at the points of the curves of a fit."""
-
-UNLOADING = (
-    Quantity("hardness", "hardness", "Pa", label="hardness"),
-    Quantity("hardness_error", "its standard error", "Pa", label="±"),
-    Quantity("reduced_modulus", "reduced modulus, with the tip", "Pa", label="reduced modulus"),
-    Quantity("reduced_modulus_error", "its standard error", "Pa", label="±"),
-    Quantity("modulus", "E/(1 − ν²) of the sample", "Pa", label="modulus E/(1 − ν²)"),
-    Quantity("modulus_error", "its standard error", "Pa", label="±"),
-    Quantity("stiffness", "slope at the largest depth", "N/m", label="slope"),
-    Quantity("stiffness_error", "its standard error", "N/m", label="±"),
-    Quantity("power", "power of the unloading", label="power m"),
-    Quantity("power_error", "its standard error", label="±"),
-    Quantity("final_depth", "depth at which the law has no force", "m", label="final depth"),
-    Quantity("largest_depth", "largest depth", "m", label="largest depth"),
-    Quantity("largest_force", "force of the law there", "N", label="largest force"),
-    Quantity("contact_depth", "depth of contact", "m", label="contact depth"),
-    Quantity("area", "area of the tip's section there", "m²", label="area"),
-    Quantity("epsilon", "factor ε of the depth of contact", label="ε"),
-    Quantity("beta", "factor β of the modulus", label="β"),
-    Quantity("points", "number of points of the fit", label="points"),
-)
-"""Quantities of an unloading curve."""
-
-PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
-"""Dimensions of numbers of each contact of a bearing, and of its laminae."""
-BEARING = (
-    Quantity("displacement", "displacement of the ring", "m", None, ("direction",), "displacement"),
-    Quantity("tilt", "slopes of the inner ring", dims=AXIS, label="tilt"),
-    Quantity("force", "force on the inner ring", "N", None, ("direction",), "force"),
-    Quantity("moment", "moment on the inner ring", "N m", dims=AXIS, label="moment"),
-    Quantity("largest_load", "largest force of a contact", "N", label="largest load"),
-    Quantity("peak_pressure", "largest pressure", "Pa", label="peak pressure"),
-    Quantity("edge_pressure", "largest pressure in outer tenths", "Pa", label="edge pressure"),
-    Quantity("reference_life", "life of ISO/TS 16281", "million revolutions"),
-    Quantity("loaded", "number of loaded elements"),
-    Quantity("cage_speed", "speed of the elements about the axis", "rad/s", label="cage speed"),
-    Quantity("angles", "angles of the elements", "rad", dims=("element",)),
-    Quantity("approaches", "approaches of the contacts", "m", dims=PER_CONTACT),
-    Quantity("loads", "forces of the contacts", "N", None, PER_CONTACT, "load"),
-    Quantity("tilts", "slopes of the elements to the rings", "", None, PER_CONTACT, "tilt"),
-    Quantity("moments", "first moments of the pressure", "N m", dims=PER_CONTACT),
-    Quantity("peak_pressures", "largest pressures", "Pa", None, PER_CONTACT, "peak pressure"),
-    Quantity("edge_pressures", "pressures at the edges", "Pa", None, PER_CONTACT, "edge pressure"),
-    Quantity("contact_angles", "contact angles", "rad", dims=PER_CONTACT),
-    Quantity("lamina_loads", "loads of laminae", "N", dims=PER_LAMINA),
-    Quantity("lamina_pressures", "largest pressures of laminae", "Pa", dims=PER_LAMINA),
-)
-"""Quantities of a bearing: of its rings, and of each element."""
-BEARING_LIFE = (
-    Quantity("revolutions", "life, revolutions"),
-    Quantity("hours", "life, hours"),
-    Quantity("l10", "life L10r, million revolutions"),
-    Quantity("equivalent_load", "equivalent reference load", "N", label="equivalent load"),
-    Quantity("capacity", "dynamic load rating", "N", label="rating"),
-    Quantity("ring_capacities", "ratings of contacts", "N", dims=("ring",), label="of contacts"),
-    Quantity("reliability", "share of bearings that reach the life"),
-    Quantity("reliability_factor", "factor a_1"),
-    Quantity("modification_factor", "factor a_ISO", label="a_ISO"),
-    Quantity("viscosity_ratio", "viscosity ratio κ", label="viscosity ratio κ"),
-    Quantity("contamination_factor", "contamination factor e_C", label="contamination e_C"),
-    Quantity("fatigue_load_limit", "fatigue load limit C_u", "N", label="fatigue load limit"),
-    Quantity("simple_fatigue_load_limit", "C_u by simple formula", "N", label="by C_0 alone"),
-)
-"""Quantities of the life of a bearing."""
-STATIC_LOAD = (
-    Quantity("rating", "static load rating C_0", "N", label="static rating"),
-    Quantity("equivalent_load", "equivalent static load P_0", "N", label="equivalent load"),
-    Quantity("safety", "static safety factor", label="static safety"),
-)
-"""Quantities of the static load of a bearing."""
-PAIR_LIFE = (
-    Quantity("revolutions", "life of both in revolutions", label="life of both"),
-    Quantity("hours", "life of both in hours"),
-    Quantity("first", "life of the first bearing in revolutions", label="first bearing"),
-    Quantity("second", "life of the second bearing in revolutions", label="second bearing"),
-)
-"""Quantities of the lives of a pair of bearings."""
-COATING = (
-    Quantity("coating_tension", "largest tension in the layers", "Pa", label="coating tension"),
-    Quantity("interface_shear", "largest shear at an interface", "Pa", label="interface shear"),
-    Quantity("interface_tension", "largest tension there", "Pa", label="interface tension"),
-)
-STRESS_VOLUME = (
-    Quantity("integral", "integral of the stress"),
-    Quantity("change", "change where it begins at half the depth", label="change"),
-    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
-    Quantity("slope", "Weibull slope", label="slope e"),
-    *COATING,
-)
-"""Quantities of the volume under stress."""
-LIFE_RATIO = (
-    Quantity("ratio", "life over that of the reference"),
-    Quantity("slope", "Weibull slope", label="slope e"),
-    Quantity("largest", "largest stress that counts", "Pa", label="largest stress"),
-    Quantity("reference_largest", "the same of the reference", "Pa", label="of the reference"),
-    Quantity("change", "change where integrals begin at half the depth", label="change"),
-    *COATING,
-)
-"""Quantities of a ratio of lives."""
-FILM = (
-    Quantity("central", "central thickness of the film", "m", label="central film"),
-    Quantity("minimum", "smallest thickness of the film", "m", label="smallest film"),
-    Quantity("film_ratio", "smallest thickness over roughness", label="film ratio λ"),
-    Quantity("radius", "radius in the direction of rolling", "m", label="radius"),
-    Quantity("load", "load, per length in line contact", "N", "N/m", label="load"),
-    Quantity("ellipticity", "width across over along rolling", label="ellipticity"),
-    Quantity("viscosity_parameter", "viscosity parameter g_V", label="viscosity g_V"),
-    Quantity("elasticity_parameter", "elasticity parameter g_E", label="elasticity g_E"),
-)
-"""Quantities of an oil film."""
-
 
 def units(
     *,
@@ -424,6 +303,9 @@ def units(
     wears: bool = False,
 ) -> dict[str, str]:
     """Return the SI units of the quantities of a kind of result, by their names."""
-    contact = (*FRICTION, *CONTACT, *STRESS, *ASSESSMENT)
-    rows = INDENT if indents else BEARING if bears else WORN if wears else contact
+    kinds = ["FrictionSolution", "Solution"]
+    if indents or bears or wears:
+        kinds = ["IndentSolution" if indents else "BearingSolution" if bears else "WearHistory"]
+    rows = [row for kind in kinds for row in result_class(kind)._QUANTITIES]
+    rows += [*STRESS, *ASSESSMENT] if len(kinds) > 1 else []
     return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}

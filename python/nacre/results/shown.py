@@ -203,7 +203,7 @@ class Shown(Fields):
 class TableResult(Shown, Warned, Result, is_base=True):
     """Base of results that are a list of numbers, a row for each of their quantities.
 
-    The dataclass needs ``repr=False``, and `_QUANTITIES` and `_TITLE`.
+    The class is `frozen` and needs a `_TITLE`.
     """
 
     @property

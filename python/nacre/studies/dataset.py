@@ -21,12 +21,11 @@ from nacre.results.journal import Record
 from nacre.results.parameters import VALUES, quantity_of
 from nacre.results.quantities import ERROR
 from nacre.studies.outputs import (
-    AXES,
     ESTIMATED_OF_RINGS,
     ESTIMATED_OF_WEAR,
     OF_CONTACTS,
-    RING_AXES,
     Output,
+    axes,
     errors,
 )
 
@@ -135,11 +134,11 @@ def assemble(
     units = quantities.units(**kinds)
     if any(record.get("counts") for record in records):  # cycles or passes
         units = {name: unit for name, unit in units.items() if name not in ("life", "distance")}
-    axes = RING_AXES if kinds["bears"] else AXES
+    axes_of_outputs = axes("bearing" if kinds["bears"] else "contact")
     for name, output in outputs.items():
         values = _values(records, name)
         extra_dims = tuple(f"{name}_{k}" for k in range(values.ndim - 1))
-        if output in axes:
+        if output in axes_of_outputs:
             dataset, extra_dims = dataset.assign_coords(axis=["x", "y"]), ("axis",)
             if values.ndim == 1:  # every case failed
                 values = np.full((len(records), 2), np.nan)

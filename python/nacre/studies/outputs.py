@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from nacre.results.quantities import AXIS, BEARING, CONTACT, ERROR, FRICTION, INDENT, WORN
+from nacre.results.quantities import AXIS, ERROR, Quantity
+from nacre.results.values import result_class
 
 if TYPE_CHECKING:
     from nacre.bearing.solution import BearingSolution
@@ -47,21 +48,19 @@ USUAL: dict[CaseKind, tuple[str, ...]] = {
 }
 """Outputs by default."""
 
-NUMBERS = [row.name for row in CONTACT]
-"""Quantities of a solution."""
-OF_FRICTION = {row.name: row for row in FRICTION if row.dims in ((), AXIS)}
-"""Numbers of a contact with friction."""
-OF_INDENT = [row.name for row in INDENT]
-"""Numbers of an indentation."""
-OF_BEARING = {row.name: row for row in BEARING}
-"""Numbers of a bearing."""
-OF_WEAR = [row.name for row in WORN]
-"""Numbers of a history of wear."""
-AXES = {row.name for row in (*CONTACT, *FRICTION) if row.dims == AXIS}
-"""Outputs with a value along x and one along y."""
-
-RING_AXES = {row.name for row in BEARING if row.dims == AXIS}
-"""The same of a bearing."""
+WORDS: dict[CaseKind, str] = {
+    "wear": "a history of wear",
+    "indent": "an indentation",
+    "bearing": "a bearing",
+}
+"""What is no single contact."""
+CLASSES: dict[CaseKind, str] = {
+    "contact": "Solution",
+    "wear": "WearHistory",
+    "indent": "IndentSolution",
+    "bearing": "BearingSolution",
+}
+"""Classes of results."""
 
 Estimated = tuple[float, float]
 """A number, and its error due to the size of the cells, estimated; NaN where it is not known."""
@@ -118,6 +117,47 @@ NO_PART: Estimated = (np.nan, np.nan)
 """Extreme of a body that has no such part."""
 
 
+def rows_of(kind: CaseKind) -> dict[str, Quantity]:
+    """Return the quantities of a kind of result by their names."""
+    rows = result_class(CLASSES[kind])._QUANTITIES
+    return {row.name: row for row in rows if kind != "wear" or row.name != "volume"}
+
+
+def _of_friction() -> dict[str, Quantity]:
+    """Return the numbers that a contact with friction has beside those of its normal contact."""
+    rows = result_class("FrictionSolution")._QUANTITIES
+    own = (row for row in rows if not row.path.startswith("normal."))
+    return {row.name: row for row in own if row.dims in ((), AXIS)}
+
+
+def axes(kind: CaseKind) -> set[str]:
+    """Return the outputs with a value along x and one along y."""
+    rows = rows_of(kind) | (_of_friction() if kind == "contact" else {})
+    return {name for name, row in rows.items() if row.dims == AXIS}
+
+
+def _names(kind: CaseKind) -> set[str]:
+    """Return the names of all outputs of a kind of result."""
+    others = (_of_friction(), STRESSES, FATIGUES, MARGINS) if kind == "contact" else ()
+    return set(rows_of(kind)).union(*others)
+
+
+def _choices(kind: CaseKind) -> str:
+    """Return the outputs of a kind of result in words."""
+    if kind == "contact":
+        return (
+            "attributes of Solution that hold numbers "
+            f"({', '.join(sorted(rows_of(kind)))}), or of FrictionSolution "
+            f"({', '.join(_of_friction())}), stresses ({', '.join(STRESSES)}), "
+            f"fatigue ({', '.join((*FATIGUES, *MARGINS))})"
+        )
+    owner = "numbers of a history of wear"
+    if kind != "wear":
+        owner = f"attributes of {result_class(CLASSES[kind]).__module__.rpartition('.')[0]}."
+        owner += f"{CLASSES[kind]} that hold numbers"
+    return f"{owner} ({', '.join(rows_of(kind))})"
+
+
 def _factors(summary: FatigueSummary, names: list[str]) -> list[float]:
     """Return the safety factors of all layers that have these names."""
     by_layer = (layer.safety_factors for layer in summary.layers)
@@ -134,27 +174,10 @@ def outputs_by_name(
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    choices: dict[CaseKind, str] = {
-        "contact": "attributes of Solution that hold numbers "
-        f"({', '.join(sorted(NUMBERS))}), or of FrictionSolution "
-        f"({', '.join(OF_FRICTION)}), stresses ({', '.join(STRESSES)}), "
-        f"fatigue ({', '.join((*FATIGUES, *MARGINS))})",
-        "wear": f"numbers of a history of wear ({', '.join(OF_WEAR)})",
-        "indent": "attributes of nacre.indent.IndentSolution that hold numbers "
-        f"({', '.join(OF_INDENT)})",
-        "bearing": "attributes of nacre.bearing.BearingSolution that hold numbers "
-        f"({', '.join(OF_BEARING)})",
-    }
-    names_by_kind: dict[CaseKind, set[str]] = {
-        "contact": {*NUMBERS, *OF_FRICTION, *STRESSES, *FATIGUES, *MARGINS},
-        "wear": {*OF_WEAR},
-        "indent": {*OF_INDENT},
-        "bearing": {*OF_BEARING},
-    }
     kinds: list[CaseKind] = ["indent", "contact", "wear", "bearing"] if kind is None else [kind]
     for name, output in items:
-        if not (any(output in names_by_kind[kind] for kind in kinds) or callable(output)):
-            all_choices = ", ".join(choices[kind] for kind in kinds)
+        if not (any(output in _names(kind) for kind in kinds) or callable(output)):
+            all_choices = ", ".join(map(_choices, kinds))
             raise ValueError(f"outputs must be {all_choices}, or functions, got {output!r}")
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
@@ -165,21 +188,13 @@ def outputs_by_name(
     return by_name
 
 
-OTHERS: dict[CaseKind, tuple[Iterable[str], str]] = {
-    "wear": (OF_WEAR, "a history of wear"),
-    "indent": (OF_INDENT, "an indentation"),
-    "bearing": (OF_BEARING, "a bearing"),
-}
-"""Outputs of what is no single contact, and what it is."""
-
-
 def plain(
     solution: WearHistory | IndentSolution | BearingSolution,
     outputs: Mapping[str, Output],
     kind: CaseKind,
 ) -> dict[str, object]:
     """Return the outputs of wear, of an indentation or of a bearing as plain numbers."""
-    own, words = OTHERS[kind]
+    own, words = rows_of(kind), WORDS[kind]
     number: Callable[[Any, str], Any] = worn if kind == "wear" else getattr
     numbers: dict[str, object] = {}
     for name, output in outputs.items():
@@ -264,18 +279,19 @@ def output_values(
 
 def _attribute(solution: Any, name: str) -> object:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
-    if name in OF_INDENT and name not in NUMBERS:
+    numbers, of_friction = rows_of("contact"), _of_friction()
+    if name not in numbers and name in rows_of("indent"):
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")
-    if name in OF_BEARING and name not in {*NUMBERS, *OF_FRICTION}:
+    if name not in numbers | of_friction and name in rows_of("bearing"):
         raise ValueError(f"the output {name} needs a bearing in the case")
     normal = getattr(solution, "normal", None)
     if normal is None:
-        if name in OF_FRICTION and name not in NUMBERS:
+        if name in of_friction and name not in numbers:
             raise ValueError(f"the output {name} needs friction in the case")
         return getattr(solution, name)
-    if name not in OF_FRICTION:
+    if name not in of_friction:
         return getattr(normal, name)
-    value = OF_FRICTION[name].of(solution)
+    value = of_friction[name].of(solution)
     if value is None:
         raise ValueError(
             f"the output {name} is not one of {'rolling' if rolls(solution) else 'sliding'}"

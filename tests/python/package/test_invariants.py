@@ -20,7 +20,6 @@ import pytest
 import nacre
 from bodies import quiet
 from nacre.bearing import CylindricalRoller
-from nacre.results.quantities import CONTACT, FRICTION
 from support import assert_close
 
 Array = npt.NDArray[np.float64]
@@ -369,7 +368,7 @@ def printed(name: str) -> None:
     cells = [re.split(r" {2,}", row, maxsplit=1) for row in str(result).splitlines()]
     rows = {row[0]: row[1] for row in cells if len(row) == 2}
     compared = 0
-    for quantity in (*CONTACT, *FRICTION):
+    for quantity in (*nacre.Solution._QUANTITIES, *nacre.types.FrictionSolution._QUANTITIES):
         text = rows.get(quantity.label, "")
         if (
             not quantity.label

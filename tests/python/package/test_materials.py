@@ -41,7 +41,7 @@ def test_every_number_has_a_source_and_lies_in_its_range(card: nacre.types.Card)
     assert card.source == card.numbers["young"].source
 
 
-SOURCED = """
+SEEN = """
 100Cr6: young 203.4e9 190e9 210e9, poisson 0.285 0.27 0.3
 M50: young 214e9, poisson 0.29, conductivity 35
 440C: young 209.6e9, poisson 0.28, yield_stress 1.896e9, conductivity 22.8
@@ -67,7 +67,7 @@ CrN: young 422e9 375e9 422e9, poisson 0.25 0.2 0.3, hardness 17.9e9
 
 
 def test_digits_are_those_of_the_sources() -> None:
-    rows = dict(line.split(": ") for line in SOURCED.strip().splitlines())
+    rows = dict(line.split(": ") for line in SEEN.strip().splitlines())
     assert rows.keys() == nacre.materials.keys()
     for name, row in rows.items():
         typed = {word: [*map(float, numbers)] for word, *numbers in map(str.split, row.split(", "))}

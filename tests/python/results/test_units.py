@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
 import re
 import sys
 import threading
@@ -15,9 +16,8 @@ import pytest
 import nacre
 from nacre._tools.units import Scale, symbol, system, written
 from nacre.bearing import CylindricalRoller
-from nacre.results import quantities
 from nacre.results.parameters import VALUES
-from nacre.results.quantities import Quantity
+from nacre.results.values import LATE, RESULTS
 
 # Read by hand here, apart from the code that writes: units of SI in newtons, metres and others.
 PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
@@ -64,11 +64,12 @@ def read(unit: str) -> tuple[float, Counter[str]]:
 
 
 def all_units() -> Iterator[str]:
-    """Yield the units of all tables of quantities, and of parameters."""
-    for table in vars(quantities).values():
-        for row in table if isinstance(table, tuple) else ():
-            if isinstance(row, Quantity):
-                yield from (row.unit, row.line or "", *(row.rolling or ()))
+    """Yield the units of all quantities, and of parameters."""
+    for module in LATE:
+        importlib.import_module(module)
+    for kind in RESULTS.values():
+        for row in kind._QUANTITIES:
+            yield from (row.unit, row.line or "", *(row.rolling or ()))
     yield from (*VALUES.values(), "Pa/m", "J/m³", "1/Pa", "m⁴")
 
 
