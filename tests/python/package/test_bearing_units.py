@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import re
 import warnings
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from nacre.bearing import BearingSolution, CylindricalRoller, Pair, film_thickne
 from nacre.bearing.geometry import KNOWN
 from nacre.case import Case
 from nacre.results.parameters import VALUES, quantity_of
+from nacre.results.rows import Row
 from nacre.results.values import CALLS, CONSTRUCTORS
 from support import assert_close
 
@@ -161,6 +163,11 @@ def quantities(text: str) -> list[float]:
     ]
 
 
+def texts(rows: Iterable[Row]) -> dict[str, str]:
+    """Return what rows say, by their keys."""
+    return {row.key: row.text for row in rows}
+
+
 def test_every_keyword_with_a_unit_is_tried() -> None:
     tried = {quantity_of(key) for _, entries in BEARINGS.values() for key in entries}
     asked = (CylindricalRoller.solve, BearingSolution.life, film_thickness)
@@ -200,10 +207,10 @@ def test_prints_and_reports_say_what_a_bearing_was_given(name: str, key: str, un
     solution = solved(name, units)
     with nacre.display_units(units):
         sections, text = solution._sections(), str(solution)
-    rows, asked = dict(sections.inputs), table.removeprefix("solve.")
+    rows, asked = texts(sections.inputs), table.removeprefix("solve.")
     if table.startswith("solve."):  # loads and places of the ring are among the results
         printed = re.findall(rf"^{asked}  +(.*)", text, re.MULTILINE)[0]
-        assert dict(sections.numbers)[asked] == printed
+        assert texts(sections.numbers)[asked] == printed
         number = quantities(printed)["xyz".index(last)]
     else:
         labels = (key, last, f"bearing.{last}", f"bearing.{table}")
@@ -313,8 +320,7 @@ def test_indentations_give_back_what_went_in(name: str, key: str, units: str) ->
         sections, text = solution._sections(), str(solution)
         entry = entry_at(read.data, place)
         study = nacre.sweep(read, {place: [entry]}, progress=False)
-    are_inputs = key.startswith(("tip", "adhesion"))
-    rows = {row.label: row.text for row in (sections.inputs if are_inputs else sections.numbers)}
+    rows = texts(sections.inputs if key.startswith(("tip", "adhesion")) else sections.numbers)
     shown = rows[key if key in rows else last]
     assert shown in text or key in rows  # inputs are in the report alone
     assert_close(quantities(shown)[2 if isinstance(value, list) else 0], expected, rtol=1e-3)
