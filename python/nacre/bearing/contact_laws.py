@@ -134,16 +134,16 @@ class Slices:
         loads: Array = self.spring * self.deflections(places) ** LINE
         return loads
 
-    def heaviest(self, places: Array) -> Array:
+    def largest_loads(self, places: Array) -> Array:
         """Return the largest loads per length of the contacts ``(Z, 2)`` [N/m]."""
-        heaviest: Array = self.loads(places).max(-1) * LAMINAE / self.length
-        return heaviest
+        loads: Array = self.loads(places).max(-1) * LAMINAE / self.length
+        return loads
 
-    def touching(self) -> Array:
+    def touching_loads(self) -> Array:
         """Return the loads per length of contacts a millionth of the diameter deep [N/m]."""
         force = self.spring[:, 0] * (1e-6 * self.diameter) ** LINE
-        touching: Array = force * (LAMINAE / self.length)
-        return touching
+        loads: Array = force * (LAMINAE / self.length)
+        return loads
 
     def approach(self, force: float) -> float:
         """Return a guess of the approach of an element that is pressed on the outer ring [m]."""
@@ -170,14 +170,14 @@ class Hertzian:
         self.unit = [bearing.ellipse(ring, 1.0) for ring in RINGS]
         self.spring = np.array([ellipse.approach**-1.5 for ellipse in self.unit])
 
-    def heaviest(self, places: Array) -> Array:
+    def largest_loads(self, places: Array) -> Array:
         """Return the loads of the contacts ``(Z, 2)`` [N]."""
         return self(places).force[..., 0]
 
-    def touching(self) -> Array:
+    def touching_loads(self) -> Array:
         """Return the loads of contacts a millionth of the diameter deep [N]."""
-        touching: Array = self.spring * (1e-6 * self.diameter) ** 1.5
-        return touching
+        loads: Array = self.spring * (1e-6 * self.diameter) ** 1.5
+        return loads
 
     def approach(self, force: float) -> float:
         """Return the approach of an element that is pressed on the outer ring [m]."""
@@ -246,7 +246,7 @@ class Solved:
 
     def _foresee(self, places: Array) -> None:
         """Widen grids of contacts that are expected to be far wider than them."""
-        lines = self.bearing.law("solved").heaviest(places)
+        lines = self.bearing.law("solved").largest_loads(places)
         while True:
             allowed = TOO_NARROW * self.heaviest / np.maximum(lines, 1e-100 * self.heaviest)
             most = floor(np.log2(allowed) / self.power)
@@ -292,7 +292,7 @@ class Solved:
                 self._widen()
             initial = None
 
-    def coarser(self, ring: int, contact: Solution) -> Solution | None:
+    def coarse_contact(self, ring: int, contact: Solution) -> Solution | None:
         """Return a contact on half the cells, under the same load and moment.
 
         None where half the cells do not carry them, as where a corner bears on the outermost cells.

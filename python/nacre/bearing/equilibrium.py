@@ -435,7 +435,7 @@ class Problem:
         own = np.abs(state.slack / self.kinematics.lengths).max(axis=1) / force
         return max(float(ring.max(initial=0.0)) / force, float(own.max(initial=0.0))), own
 
-    def settled(self, state: State, mismatch: float) -> State:
+    def settled_state(self, state: State, mismatch: float) -> State:
         """Return the state with no element above a mismatch, at this place of the ring.
 
         Each element makes Newton's steps of its own, which are made again at a quarter where its
@@ -551,7 +551,7 @@ class Problem:
 
         def settled_state(ring: Array, own: Array, balance: float) -> State:
             mismatch = balance if self.costly else 0.0
-            return self.settled(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
+            return self.settled_state(self.state(ring, own), max(mismatch, ELEMENTS * tolerance))
 
         state, reach = settled_state(ring, own, math.inf), FARTHEST
         # Steps must go below the lowest values so far: steps of rounding alone would never end.

@@ -178,9 +178,9 @@ def solved_contacts(
     bearing: Bearing, law: Slices | Hertzian, places: Array, options: BearingOptions
 ) -> Solved:
     """Return contacts that nacre solves, on grids for the loads of a first guess."""
-    lines = law.heaviest(places)
+    lines = law.largest_loads(places)
     if not lines.any():
-        lines = lines + law.touching()
+        lines = lines + law.touching_loads()
     cells = options.cells or bearing.usual_cells
     return Solved(bearing, lines, cells, FINER * options.tolerance, options.threads)
 
@@ -355,7 +355,7 @@ def _discretisation(
     errors: dict[str, float | None] = dict.fromkeys(names[: len(pressures)], 0.0)
     heaviest = {int(np.unravel_index(field.argmax(), field.shape)[0]) for field in pressures}
     for key in [key for key in contacts if key[0] in heaviest]:
-        coarse = law.coarser(key[1], contacts[key])
+        coarse = law.coarse_contact(key[1], contacts[key])
         if coarse is None:
             return dict.fromkeys(errors)
         singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)

@@ -330,7 +330,7 @@ def _search(problem: Problem, x: Array, course: _Course) -> tuple[Array, str]:
         ends = {"ftol": least}
         ends |= {"ftol": factor * least} if problem.limits else {"gtol": factor * least}
         minimum = minimize(
-            lambda x, factor=factor: problem.scaled(x, factor),
+            lambda x, factor=factor: problem.scaled_objective(x, factor),
             x,
             jac=True,
             bounds=box,

@@ -98,7 +98,7 @@ class Problem:
         lacking = [max(-float(p.slack.min(initial=0.0)), self.tolerance) for p in points]
         return min(zip(lacking, points, strict=True), key=lambda pair: (pair[0], pair[1].value))[1]
 
-    def scaled(self, x: Array, factor: float) -> tuple[float, Array]:
+    def scaled_objective(self, x: Array, factor: float) -> tuple[float, Array]:
         """Return the objective and its slope, times a factor."""
         point = self.at(x)
         return factor * point.value, factor * point.slope

@@ -45,7 +45,7 @@ class System:
         indentation = core.Indentation(self.body, self.tip, self.counterbody, self.adhesion)
         return {k: parameters[k] for k in indentation.parameters() if k != "adhesion.strength"}
 
-    def changed(self, values: Mapping[str, float]) -> System:
+    def with_values(self, values: Mapping[str, float]) -> System:
         """Return the system with other values of some parameters, but for the area of the tip."""
         fields = vars(self)
         for path, value in values.items():
@@ -53,12 +53,12 @@ class System:
                 fields = core.with_value(fields, path, value)
         return System(**fields)
 
-    def narrowed(self, factor: float) -> System:
+    def narrower_system(self, factor: float) -> System:
         """Return the system with lateral lengths divided by a factor, but for those of the tip."""
         values = {k: v / factor for k, v in self.values().items() if k.endswith(".thickness")}
         if self.adhesion is not None:
             values["adhesion.work"] = self.adhesion.work * factor
-        return self.changed(values)
+        return self.with_values(values)
 
     def curve(self, approach: Array, wrt: Sequence[str] = ()) -> IndentCurve:
         """Return the loads at these approaches, without issuing the warnings that they hold."""

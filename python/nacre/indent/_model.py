@@ -181,9 +181,9 @@ class Model:
         """Return the derivative of each value with respect to its x."""
         return np.array([u.rate(float(x[k])) for k, u in enumerate(self.unknowns)])
 
-    def fitted(self, x: Array) -> System:
+    def system_at(self, x: Array) -> System:
         """Return the system at x, but for the area of the tip."""
-        return self.system.changed(self._system_values(x))
+        return self.system.with_values(self._system_values(x))
 
     def _system_values(self, x: Array) -> dict[str, float]:
         return {u.name: u.value(float(x[k])) for k, u in enumerate(self.unknowns) if not u.kind}
@@ -220,12 +220,12 @@ class Model:
         self.evaluations += 1
         values = self._system_values(x)
         area = values.pop("tip.area", 1.0)
-        system = self.system.changed(values)
+        system = self.system.with_values(values)
         # A tip of all sections κ times as large, r → r√κ, is the old one on layers 1/√κ as thick
         # under √κ of the load: derived here, from the similarity of the integral equation.
         wider = math.sqrt(area)
         if area != 1:
-            system = system.narrowed(wider)
+            system = system.narrower_system(wider)
         wrt = [unknown.name for unknown in self.unknowns if not unknown.kind]
         curve = system.curve(self.approach(x), wrt)
         load = wider * curve.load
@@ -278,7 +278,7 @@ class Model:
             jacobian = np.concatenate([jacobian, rows])
         return residuals, jacobian
 
-    def wider(self, free: Sequence[str], nuisance: Sequence[str], x: Array) -> Model:
+    def wider_model(self, free: Sequence[str], nuisance: Sequence[str], x: Array) -> Model:
         """Return the model with more that is free, and with these nuisances.
 
         A compliance is pulled by the loads at x: the noise of the force would be in its column, and
@@ -298,7 +298,7 @@ class Model:
         model.trust, model.pull = self.trust, self.loads(x)[0]
         return model
 
-    def trusting(self, trust: float) -> None:
+    def weigh_priors(self, trust: float) -> None:
         """Set the standard deviation of the residuals against which priors are weighed."""
         self.trust = trust
         self._at.clear()

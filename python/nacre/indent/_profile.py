@@ -63,7 +63,7 @@ class Estimate:
         return np.sqrt(np.diag(self.covariance))
 
 
-def estimated(model: Model, x: Array) -> Estimate:
+def estimate_at(model: Model, x: Array) -> Estimate:
     """Return the statistics of a minimum at x."""
     with extra("fit"):
         from scipy.special import stdtrit
@@ -307,7 +307,7 @@ def _partner(model: Model, best: Estimate, k: int) -> str:
 def _structure(model: Model, best: Estimate, k: int) -> str:
     """Return what degenerates, where it is known."""
     name = model.names[k]
-    system = model.fitted(best.x)
+    system = model.system_at(best.x)
     body = system.body
     if name.endswith(".thickness") and name.startswith("body.layers["):
         number = int(name[len("body.layers[") : name.index("]")])

@@ -97,7 +97,7 @@ class FixedParameters:
         is_timed = all(c.time is not None and np.ptp(c.time) > 0 for c in model.curves)
         kinds = [kind for kind in NUISANCES if kind != "drift" or is_timed]
         try:
-            wider = model.wider(free, kinds, x)
+            wider = model.wider_model(free, kinds, x)
             place = np.zeros(len(wider.names))
             place[[wider.names.index(name) for name in model.names]] = x
             _, jacobian = wider.at(place)

@@ -16,7 +16,7 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import among
 from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
-from nacre.indent._profile import Estimate, estimated, interval, minimum, reasons, shifted_starts
+from nacre.indent._profile import Estimate, estimate_at, interval, minimum, reasons, shifted_starts
 from nacre.indent._residuals import Examination, examine, likeliest_noise
 from nacre.indent._result import UNFIT, Fit
 from nacre.indent.checks import check, contact_point, suspicious_units
@@ -198,7 +198,7 @@ def _model_fit(
             x = minimum(model, np.clip(place, model.low, model.high), rough=True)
             if (chi2 := model.chi2(x)) < best.chi2 - 1e-3 * best.variance:
                 minima.append((best.x, best.chi2))
-                best = estimated(model, minimum(model, x))
+                best = estimate_at(model, minimum(model, x))
             else:
                 minima.append((x, chi2))
     examination = examine(model, best)
@@ -335,12 +335,12 @@ def _scaled_start(model: Model, x: Array) -> Array:
 
 
 def _weighed_minimum(model: Model, start: Array) -> Estimate:
-    best = estimated(model, minimum(model, start))
+    best = estimate_at(model, minimum(model, start))
     if model.prior and not model.is_known:
         # Priors are weighed against residuals, whose size the residuals themselves tell.
         for _ in range(3):
-            model.trusting(math.sqrt(_scatter(model, best.x)))
-            best = estimated(model, minimum(model, best.x))
+            model.weigh_priors(math.sqrt(_scatter(model, best.x)))
+            best = estimate_at(model, minimum(model, best.x))
     return best
 
 
@@ -384,7 +384,7 @@ def _result(
     sigma = 1 / float(model.weight[0]) * (1.0 if model.is_known else math.sqrt(best.variance))
     with np.errstate(invalid="ignore"):
         covariance = best.covariance * np.outer(rates, rates)
-    system = model.fitted(x)
+    system = model.system_at(x)
     curve_warnings = system.curve(approach).warnings
     for sentence in curve_warnings:
         warnings.warn(sentence, core.NacreWarning, stacklevel=3)

@@ -195,7 +195,7 @@ def plain(
 ) -> dict[str, object]:
     """Return the outputs of wear, of an indentation or of a bearing as plain numbers."""
     own, words = rows_of(kind), WORDS[kind]
-    number: Callable[[Any, str], Any] = worn if kind == "wear" else getattr
+    number: Callable[[Any, str], Any] = wear_number if kind == "wear" else getattr
     numbers: dict[str, object] = {}
     for name, output in outputs.items():
         if isinstance(output, str) and output not in own:
@@ -216,7 +216,7 @@ def plain(
     return numbers
 
 
-def worn(history: WearHistory, name: str) -> float:
+def wear_number(history: WearHistory, name: str) -> float:
     """Return a number of the end of a history of wear; its life is NaN if no layer is through."""
     if name == "life":
         return math.nan if history.life is None else history.life.distance

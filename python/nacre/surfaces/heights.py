@@ -133,7 +133,7 @@ def text(path: Path, channel: str | int | None = None) -> Heights:
     counters that nothing tells from heights are refused, whatever the ending.
     """
     file = Text.of(path)
-    table = file.chosen(channel)
+    table = file.channel_table(channel)
     return file.points(table) or file.matrix(table)
 
 
@@ -279,7 +279,7 @@ class Text:
                 return [column_of(name) for name in names[:width]] if len(names) >= width else []
         return []
 
-    def chosen(self, channel: str | int | None) -> Table:
+    def channel_table(self, channel: str | int | None) -> Table:
         """Return the table that a channel names, or the only one that the head describes."""
         if len(self.tables) == 1:
             if channel is not None:

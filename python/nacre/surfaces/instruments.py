@@ -135,7 +135,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
 
     has_channels = all(table.title.startswith("#") for table in text.tables[1:])
     if len(text.tables) > 1 and not has_channels:
-        text.tables = [text.chosen(channel)]
+        text.tables = [text.channel_table(channel)]
         channel = None
     first = text.tables[0]
     points = text.points(first)
