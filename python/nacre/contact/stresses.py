@@ -18,7 +18,7 @@ from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, am
 from nacre._tools.units import rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
-from nacre.results.quantities import EXTREMES, frozen, quantity
+from nacre.results.quantities import Quantity, frozen, quantity
 from nacre.results.report import Picture, Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -36,6 +36,17 @@ Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
 Extreme = tuple[str, str, float, float, float, float, float, float]
 """Cells of a row of the table of extremes, as `EXTREMES` names them."""
+EXTREMES = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the extreme"),
+    Quantity("value", "largest value", "Pa"),
+    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or strength over the value"),
+)
+"""Columns of the table of a stress summary."""
 Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}

@@ -22,7 +22,7 @@ from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
-from nacre.results.quantities import FATIGUE, PROFILE, frozen, quantity
+from nacre.results.quantities import PROFILE, Quantity, frozen, quantity
 from nacre.results.report import Picture, Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -41,6 +41,16 @@ Balanced = tuple[float, Place, tuple[float, float]]
 """Yield stress in shear, point, and residual stresses along x and y."""
 Need = tuple[str, str, float, float, float, float, float]
 """Cells of a row of the table of what is needed, as `FATIGUE` names them."""
+FATIGUE = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the value"),
+    Quantity("value", "value", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or limit over the value"),
+)
+"""Columns of the table of a summary of fatigue."""
 
 DEPTHS = np.r_[0.03, 0.07, 0.12:1.38:0.09, 1.5, 1.75, 2.1, 2.6]
 """Depths in a body, in half-widths of the contact: maxima are at .3 to .8 of them as a rule."""

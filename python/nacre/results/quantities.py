@@ -215,18 +215,6 @@ def _words(docstring: str) -> str:
     return words[0].lower() + words[1:] if words[1:2].islower() or words[1:2] == " " else words
 
 
-EXTREMES = (
-    Quantity("part", "layer or interface"),
-    Quantity("quantity", "name of the extreme"),
-    Quantity("value", "largest value", "Pa"),
-    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
-    Quantity("safety_factor", "yield stress or strength over the value"),
-)
-"""Columns of the table of a stress summary."""
-
 PROFILE = (
     Quantity("depth", "depth; an interface is there twice, for its two sides", "m"),
     Quantity(
@@ -242,17 +230,6 @@ PROFILE = (
     Quantity("Matake", "equivalent stress of Matake", "Pa", label="Matake"),
 )
 """What a material needs at each depth under a contact that rolls."""
-
-FATIGUE = (
-    Quantity("part", "layer or interface"),
-    Quantity("quantity", "name of the value"),
-    Quantity("value", "value", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
-    Quantity("safety_factor", "yield stress or limit over the value"),
-)
-"""Columns of the table of a summary of fatigue."""
 
 
 EXTREMES_OF = {
