@@ -20,7 +20,7 @@ from nacre._tools.units import rounded, written
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
-from nacre.results.quantities import EXTREME_UNITS, EXTREMES
+from nacre.results.quantities import Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -37,6 +37,17 @@ Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
 Extreme = tuple[str, str, float, float, float, float, float, float]
 """Cells of a row of the table of extremes, as `EXTREMES` names them."""
+EXTREMES = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the extreme"),
+    Quantity("value", "largest value", "Pa"),
+    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or strength over the value"),
+)
+"""Columns of the table of a stress summary."""
 Progress = Callable[[float], object]
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
@@ -105,7 +116,7 @@ class StressLimits:
     refine: float | None
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@frozen(eq=False)
 class Stress(Result, Warned):
     """Stress below the surface, and displacement where it was asked for.
 
@@ -127,20 +138,14 @@ class Stress(Result, Warned):
     (0.31, 0.5)
     """
 
-    _UNITS = dict.fromkeys("xyz", "m") | {
-        "components": "Pa",
-        "displacement": "m",
-        "uncertainty": "Pa",
-    }
-
     _DERIVED = ("warnings",)
     _LATER = ("uncertainty",)
 
-    z: Array
+    z: Array = quantity("m")
     """Depths ``(nz,)`` [m]."""
-    x: Array
+    x: Array = quantity("m")
     """Coordinates along x ``(nx,)`` [m]."""
-    y: Array
+    y: Array = quantity("m")
     """Coordinates along y ``(ny,)`` [m]."""
     axes: tuple[str, ...]
     """Axes of the fields: those of "z", "x" and "y" that were not given as a number."""
@@ -150,7 +155,7 @@ class Stress(Result, Warned):
     """Side of an interface, for depths that lie on one: "above" or "below"."""
     friction: tuple[float, float]
     """Traction divided by pressure, ``(x, y)``: the coefficient of friction times its direction."""
-    uncertainty: Array | None
+    uncertainty: Array | None = quantity("Pa")
     """Estimated error of the components at each depth ``(nz,)`` [Pa], due to the size of the cells.
 
     It belongs to the worst place of a depth, of those that were evaluated: at the edge of the
@@ -159,9 +164,9 @@ class Stress(Result, Warned):
     layer: take smaller cells. `None` for `nacre.stress`, whose pressure is given as uniform over
     cells, and in files of earlier versions.
     """
-    components: dict[str, Array]
+    components: dict[str, Array] = quantity("Pa")
     """Components ``xx`` to ``xz`` by name [Pa], each ``(nz, nx, ny)`` whatever the `axes`."""
-    displacement: dict[str, Array] | None
+    displacement: dict[str, Array] | None = quantity("m")
     """Displacements ``ux`` to ``uz`` likewise [m]; None without ``displacement=True``."""
     warnings: list[str]
     """Warnings about depths that the cells do not resolve, each also issued as `NacreWarning`."""
@@ -334,7 +339,6 @@ class _Extremes(Result):
 
     _COMPILED = True
     _DERIVED = ("uncertainty",)
-    _UNITS = EXTREME_UNITS
     _PEAKS: ClassVar[tuple[str, ...]]
 
     uncertainty: dict[str, float]
@@ -357,7 +361,7 @@ class _Extremes(Result):
         return state
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class LayerStress(_Extremes):
     """Extremes of the stress in one layer, or in the substrate.
 
@@ -378,19 +382,19 @@ class LayerStress(_Extremes):
     """Number of the layer, from 0 at the surface; the substrate comes after the last layer."""
     name: str | None
     """Name of the layer; None where it has none."""
-    depths: tuple[float, float]
+    depths: tuple[float, float] = quantity("m")
     """Depths of the two faces [m]; the lower one is infinite for the substrate."""
-    von_mises: Peak
+    von_mises: Peak = quantity("Pa")
     """Largest von Mises stress [Pa], and its point [m]."""
-    tension: Peak
+    tension: Peak = quantity("Pa")
     """Largest principal stress [Pa], tension where it is positive, and its point [m]."""
-    max_shear: Peak
+    max_shear: Peak = quantity("Pa")
     """Largest shear stress on any plane [Pa], and its point [m]."""
     yield_safety_factor: float | None
     """Yield stress divided by the largest von Mises stress; None without a yield stress."""
     strength_safety_factor: float | None
     """Strength divided by the largest tension; None without a strength, or without tension."""
-    uncertainty: dict[str, float]
+    uncertainty: dict[str, float] = quantity("Pa")
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
     Each is the largest sum of a value and its error over all places, less the value: another place,
@@ -404,7 +408,7 @@ class LayerStress(_Extremes):
         return f"<LayerStress of {display.part(self)}: von Mises {mises}, tension {tension}>"
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class InterfaceStress(_Extremes):
     """Extremes of the tractions at one interface.
 
@@ -423,17 +427,17 @@ class InterfaceStress(_Extremes):
 
     interface: int
     """Number of the interface, from 0 below the first layer."""
-    depth: float
+    depth: float = quantity("m")
     """Depth of the interface [m]."""
-    tension: Peak
+    tension: Peak = quantity("Pa")
     """Largest normal traction [Pa], tension where it is positive, and its point [m]."""
-    compression: Peak
+    compression: Peak = quantity("Pa")
     """Smallest normal traction [Pa], and its point [m]."""
-    shear: Peak
+    shear: Peak = quantity("Pa")
     """Largest shear traction [Pa], and its point [m]."""
-    jump: Peak | None
+    jump: Peak | None = quantity("Pa")
     """Largest jump of the in-plane stress [Pa], and its point [m]; None on a rigid base."""
-    uncertainty: dict[str, float]
+    uncertainty: dict[str, float] = quantity("Pa")
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
     Each is the largest sum of a value and its error over all places, less the value: another place,

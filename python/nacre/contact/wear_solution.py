@@ -492,7 +492,7 @@ class WearHistory(Shown, Result):
     @property
     @derived("m")
     def life(self) -> WearThrough | None:
-        """First layer that is through; None where none is."""
+        """First layer that is through, and its distance [m]; None where none is."""
         return self.events[0] if self.events else None
 
     @property

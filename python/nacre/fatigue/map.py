@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -33,7 +32,7 @@ from nacre.fatigue.summary import (
 from nacre.results import display, files
 from nacre.results.base import Result, Warned
 from nacre.results.charts import Axis, Chart, Curve
-from nacre.results.quantities import SHAKEDOWN
+from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -45,7 +44,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, repr=False, eq=False)
+@frozen(eq=False)
 class ShakedownMap(Shown, Warned, Result):
     """Shakedown limits of the layers of a contact over the coefficient of friction.
 
@@ -61,18 +60,18 @@ class ShakedownMap(Shown, Warned, Result):
     array([[4. , 3.2]])
     """
 
-    friction: Array
-    """Coefficients of friction ``(nf,)``."""
-    limits: Array
-    """Peak pressure over the yield stress in shear for shakedown ``(layers, nf)``."""
-    first_yield: Array
-    """That ratio with which nothing yields ``(layers, nf)``."""
-    depths: Array
-    """Depths ``(layers, nf)`` that decide the limits [m]."""
+    friction: Array = quantity()
+    """Coefficient of friction ``(nf,)``."""
+    limits: Array = quantity()
+    """Peak pressure over shear yield stress, for shakedown ``(layers, nf)``."""
+    first_yield: Array = quantity()
+    """Peak pressure over shear yield stress, at first yield ``(layers, nf)``."""
+    depths: Array = quantity("m")
+    """Depth that decides the shakedown ``(layers, nf)`` [m]."""
     _TITLE = "shakedown map"
 
-    names: tuple[str, ...]
-    """Names of the layers, from the surface down."""
+    names: tuple[str, ...] = quantity(name="layer")
+    """Layer: names from the surface down."""
     rule: Rule
     """Condition of yield."""
     peak_pressure: float
@@ -155,14 +154,14 @@ class ShakedownMap(Shown, Warned, Result):
         xarray.Dataset
             Limits, first yield and depths; ``to_dataframe()`` is the table for pandas.
         """
-        table = [(row, row.unit) for row in SHAKEDOWN]
+        table = [(row, row.unit) for row in self._QUANTITIES]
         fields = ("limits", "first_yield", "depths")
         variables = {name: (("layer", "friction"), getattr(self, name)) for name in fields}
         places = {"layer": list(self.names), "friction": self.friction}
         return files.dataset("shakedown map", table, variables, places, self.to_dict())
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
-        yield [row.name for row in SHAKEDOWN]
+        yield ["layer", "friction", "limits", "first_yield", "depths"]
         for layer, name in enumerate(self.names):
             parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
             for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
@@ -188,7 +187,7 @@ class ShakedownMap(Shown, Warned, Result):
         return [Chart(f"{title[:1].upper()}{title[1:]}.", curves, axes, title=title)]
 
     def _tables(self) -> Sequence[Table]:
-        return [table("Limits", self._file_rows(), SHAKEDOWN)]
+        return [table("Limits", self._file_rows(), self._QUANTITIES)]
 
     def _model(self) -> Rows:
         return [remark("theory", note) for note in self._table().notes]

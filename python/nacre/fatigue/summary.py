@@ -24,7 +24,7 @@ from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
-from nacre.results.quantities import EXTREME_UNITS, FATIGUE, PROFILE
+from nacre.results.quantities import PROFILE, Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
@@ -42,6 +42,16 @@ Balanced = tuple[float, Place, tuple[float, float]]
 """Yield stress in shear, point, and residual stresses along x and y."""
 Need = tuple[str, str, float, float, float, float, float]
 """Cells of a row of the table of what is needed, as `FATIGUE` names them."""
+FATIGUE = (
+    Quantity("part", "layer or interface"),
+    Quantity("quantity", "name of the value"),
+    Quantity("value", "value", "Pa"),
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+    Quantity("safety_factor", "yield stress or limit over the value"),
+)
+"""Columns of the table of a summary of fatigue."""
 
 DEPTHS = np.r_[0.03, 0.07, 0.12:1.38:0.09, 1.5, 1.75, 2.1, 2.6]
 """Depths in a body, in half-widths of the contact: maxima are at .3 to .8 of them as a rule."""
@@ -72,7 +82,7 @@ SHAKES = ("Does not shake down", "Cannot tell", "Shakes down")
 PLASTICITY = "shakedown of a perfectly plastic material, without hardening, in steady rolling"
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class LayerFatigue(Result):
     """What one layer needs, or the substrate.
 
@@ -87,31 +97,29 @@ class LayerFatigue(Result):
     4.0
     """
 
-    _UNITS = EXTREME_UNITS
-
     layer: int
     """Number of the layer, from 0 at the surface; the substrate comes after the last layer."""
     name: str | None
     """Name of the layer; None where it has none."""
-    depths: tuple[float, float]
+    depths: tuple[float, float] = quantity("m")
     """Depths of the two faces [m]; the lower one is infinite for the substrate."""
-    shakedown: Balanced
+    shakedown: Balanced = quantity("Pa")
     """Smallest yield stress in shear [Pa] with which it shakes down, point, and residual stresses.
 
     The residual stresses along x and y [Pa] make it possible there.
     """
-    first_yield: Peak
+    first_yield: Peak = quantity("Pa")
     """Smallest yield stress in shear with which nothing yields [Pa], and point."""
-    orthogonal_shear: Peak
+    orthogonal_shear: Peak = quantity("Pa")
     """Largest range of the shear stress yz at a depth [Pa], and point of its largest value."""
-    criteria: dict[str, Peak]
+    criteria: dict[str, Peak] = quantity("Pa")
     """Equivalent stress of each criterion [Pa], and point, by the name of the criterion."""
     safety_factors: dict[str, float]
     """Yield stress or limit over the value, by name: "shakedown", "first_yield", criteria.
 
     Those of criteria are of the substrate alone, whose limits the user gives.
     """
-    uncertainty: dict[str, float] = field(default_factory=dict)
+    uncertainty: dict[str, float] = quantity("Pa", default_factory=dict)
     """Estimated errors of the values [Pa], by name, due to the size of the cells.
 
     They are what the largest sum of a value and its error over all depths exceeds the largest value
@@ -157,7 +165,7 @@ class LayerFatigue(Result):
         )
 
 
-@dataclass(frozen=True, repr=False)
+@frozen()
 class InterfaceFatigue(Result):
     """Ranges of the tractions at one interface.
 
@@ -172,15 +180,13 @@ class InterfaceFatigue(Result):
     (1.5e-05, True)
     """
 
-    _UNITS = EXTREME_UNITS
-
     interface: int
     """Number of the interface, from 0 below the first layer."""
-    depth: float
+    depth: float = quantity("m")
     """Depth of the interface [m]."""
-    shear_range: float
+    shear_range: float = quantity("Pa")
     """Range of the shear traction: the largest distance of two of its values [Pa]."""
-    tension: float
+    tension: float = quantity("Pa")
     """Largest normal traction [Pa], tension where it is positive; 0 of the stress-free state."""
 
     def __repr__(self) -> str:

@@ -487,19 +487,17 @@ UNITS = {row.name: row.unit for row in IndentSolution._QUANTITIES}
 """SI units of the numbers of an indentation."""
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False, repr=True)
 class IndentCurve(Warned):
     """Loads at approaches, with their derivatives; see `Indentation.curve`."""
 
-    _UNITS = UNITS | {"slope": "N/m"}
-
-    approach: Field
+    approach: Field = quantity("m")
     """Approaches [m]."""
-    load: Field
+    load: Field = quantity("N")
     """Loads [N]."""
-    radius: Field
+    radius: Field = quantity("m")
     """Contact radii [m]."""
-    slope: Field
+    slope: Field = quantity("N/m")
     """dP/dδ along the curve [N/m]."""
     derivatives: Field
     """Derivatives of the loads at given approach, (points, parameters), per unit of each parameter.
@@ -511,19 +509,17 @@ class IndentCurve(Warned):
     """
 
 
-@dataclass(frozen=True)
+@frozen(repr=True)
 class PullOff(Fields):
     """Last stable state of a tip that is pulled off; see `Indentation.pull_off`."""
 
-    _UNITS = UNITS
-
-    load: float
+    load: float = quantity("N")
     """Load [N], below 0."""
-    approach: float
+    approach: float = quantity("m")
     """Approach [m]."""
-    radius: float
+    radius: float = quantity("m")
     """Contact radius [m]; 0 where the surfaces attract each other without touching."""
-    outer_radius: float
+    outer_radius: float = quantity("m")
     """Radius up to which the surfaces attract each other [m]."""
 
 

@@ -146,11 +146,12 @@ def _fitted(kind: object, value: object) -> object:
 class Fields:
     """Base of what is read by its fields: NumPy makes no array of it, notebooks show a table."""
 
-    _UNITS: ClassVar[Mapping[str, str]] = {}
-    """SI units of fields that have one, in the table of a notebook."""
+    _QUANTITIES = Declared()
+    """Quantities that the class declares."""
 
     def _repr_html_(self) -> str:
-        rows = [(row.label, row.text) for row in display.fields(self, self._UNITS)]
+        units = {row.path or row.name: row.unit for row in self._QUANTITIES}
+        rows = [(row.label, row.text) for row in display.fields(self, units)]
         return display.markup(rows, getattr(self, "warnings", ()))
 
     def __array__(
@@ -192,8 +193,6 @@ class Warned(Fields):
 class Result(Fields):
     """Base of results: each is a dataclass whose fields are its state."""
 
-    _QUANTITIES = Declared()
-    """Quantities that the class declares."""
     _COMPILED: ClassVar[bool] = False
     """Whether the compiled module makes the result, and checks its state."""
     _DERIVED: ClassVar[tuple[str, ...]] = ()

@@ -106,11 +106,13 @@ def quantity(
     line: str | None = None,
     dims: tuple[str, ...] = (),
     label: str = "",
+    *,
+    default_factory: Any = dataclasses.MISSING,
     **options: Any,
 ) -> Any:
     """Declare a quantity at its field; `options` are those of `Quantity`."""
     row = Quantity(unit=unit, line=line, dims=dims, label=label, **options)
-    return dataclasses.field(metadata={Quantity: row})
+    return dataclasses.field(default_factory=default_factory, metadata={Quantity: row})
 
 
 def derived(
@@ -131,9 +133,9 @@ def derived(
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(quantity, dataclasses.field))
-def frozen(*, eq: bool = True) -> Callable[[type[Kind]], type[Kind]]:
-    """Make a class a frozen dataclass with quantities, which has its own `__repr__`."""
-    return dataclass(frozen=True, repr=False, eq=eq)
+def frozen(*, eq: bool = True, repr: bool = False) -> Callable[[type[Kind]], type[Kind]]:
+    """Make a class a frozen dataclass with quantities; as a rule it has its own `__repr__`."""
+    return dataclass(frozen=True, repr=repr, eq=eq)
 
 
 def declared(kind: type) -> list[Quantity]:
@@ -213,50 +215,6 @@ def _words(docstring: str) -> str:
     return words[0].lower() + words[1:] if words[1:2].islower() or words[1:2] == " " else words
 
 
-STRESS = tuple(
-    Quantity(name, words, "Pa")
-    for name, words in {
-        "von_mises": "largest von Mises stress",
-        "tension": "largest principal stress",
-        "max_shear": "largest shear stress",
-        "coating_tension": "largest principal stress in a layer",
-        "interface_shear": "largest shear stress at an interface",
-        "interface_tension": "largest tension at an interface",
-    }.items()
-)
-"""Extremes of the stress that studies keep."""
-ASSESSMENT = (
-    Quantity("shakedown", "largest shear yield stress that a layer needs to shake down", "Pa"),
-    Quantity("substrate_shakedown", "shear yield stress that the substrate needs", "Pa"),
-    Quantity("orthogonal_shear", "largest range of the shear stress yz", "Pa"),
-    Quantity("interface_shear_range", "largest range of the shear at an interface", "Pa"),
-    Quantity("shakedown_safety_factor", "smallest safety factor of shakedown"),
-    Quantity("first_yield_safety_factor", "smallest safety factor of first yield"),
-    Quantity("fatigue_safety_factor", "smallest safety factor of the criteria of fatigue"),
-)
-"""Numbers of fatigue that studies keep."""
-
-EXTREME_UNITS = dict.fromkeys(("depth", "depths"), "m") | dict.fromkeys(
-    (
-        *("von_mises", "max_shear", "tension", "compression", "shear", "jump", "uncertainty"),
-        *("shakedown", "first_yield", "orthogonal_shear", "criteria", "shear_range"),
-    ),
-    "Pa",
-)
-"""SI units of fields of a layer or an interface in summaries of stress and fatigue."""
-
-EXTREMES = (
-    Quantity("part", "layer or interface"),
-    Quantity("quantity", "name of the extreme"),
-    Quantity("value", "largest value", "Pa"),
-    Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
-    Quantity("safety_factor", "yield stress or strength over the value"),
-)
-"""Columns of the table of a stress summary."""
-
 PROFILE = (
     Quantity("depth", "depth; an interface is there twice, for its two sides", "m"),
     Quantity(
@@ -273,25 +231,14 @@ PROFILE = (
 )
 """What a material needs at each depth under a contact that rolls."""
 
-FATIGUE = (
-    Quantity("part", "layer or interface"),
-    Quantity("quantity", "name of the value"),
-    Quantity("value", "value", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
-    Quantity("safety_factor", "yield stress or limit over the value"),
-)
-"""Columns of the table of a summary of fatigue."""
 
-SHAKEDOWN = (
-    Quantity("layer", "layer"),
-    Quantity("friction", "coefficient of friction"),
-    Quantity("limits", "peak pressure over shear yield stress, for shakedown"),
-    Quantity("first_yield", "peak pressure over shear yield stress, at first yield"),
-    Quantity("depths", "depth that decides the shakedown", "m"),
-)
-"""Columns of the table of a shakedown map."""
+EXTREMES_OF = {
+    "LayerStress": ("", "coating_"),
+    "LayerFatigue": ("", "substrate_"),
+    "InterfaceStress": ("interface_",),
+    "InterfaceFatigue": ("interface_",),
+}
+"""Classes of extremes that studies keep, and how the names of these begin there."""
 
 
 def units(
@@ -307,5 +254,11 @@ def units(
     if indents or bears or wears:
         kinds = ["IndentSolution" if indents else "BearingSolution" if bears else "WearHistory"]
     rows = [row for kind in kinds for row in result_class(kind)._QUANTITIES]
-    rows += [*STRESS, *ASSESSMENT] if len(kinds) > 1 else []
-    return {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}
+    numbers = {row.name: unit for row in rows if (unit := row.si(line=line, rolls=rolls))}
+    extremes = {
+        prefix + row.name: row.unit
+        for kind, prefixes in EXTREMES_OF.items()
+        for row in result_class(kind)._QUANTITIES
+        for prefix in prefixes
+    }
+    return numbers if len(kinds) == 1 else extremes | numbers

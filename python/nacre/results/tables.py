@@ -23,7 +23,7 @@ SOURCE = f"nacre {core.__version__}"
 
 
 class HasQuantities(Protocol):
-    """A result with rows in the table of quantities."""
+    """A result that declares quantities."""
 
     @property
     def _QUANTITIES(self) -> tuple[Quantity, ...]: ...
@@ -71,7 +71,7 @@ class Peaked(Gridded, Protocol):
 
 
 def numbers(result: HasQuantities) -> Iterator[tuple[Quantity, Any]]:
-    """Yield the numbers of a contact, those that it has, with their rows of the table.
+    """Yield the numbers of a contact, those that it has, with their quantities.
 
     One that is NaN along both axes, as the moment of a periodic contact, is none.
     """
@@ -82,7 +82,7 @@ def numbers(result: HasQuantities) -> Iterator[tuple[Quantity, Any]]:
 
 
 def fields(result: HasQuantities) -> dict[Quantity, Array]:
-    """Return the fields of a contact that tables and pictures show, by their rows of the table."""
+    """Return the fields of a contact that tables and pictures show, by their quantities."""
     state, arrays = result.to_dict(), {}
     for row in result._QUANTITIES:
         if row.is_field and (row.follows or isinstance(row.within(state), np.ndarray)):

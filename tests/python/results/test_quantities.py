@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import json
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import xarray
 
+from nacre.results import quantities
+from nacre.results.quantities import Quantity
+from nacre.results.values import LATE, RESULTS
 from support import python
 
 TRIED = """
@@ -75,3 +81,26 @@ def test_an_attribute_is_in_every_place(tmp_path: Path) -> None:
     rows = list(csv.DictReader(line for line in lines if line[0] != "#"))
     assert float(rows[-1]["dummy field [Pa]"]) == 3 * float(rows[-1]["pressure [Pa]"])
     assert b"dummy_field" in (tmp_path / "a.vtr").read_bytes()
+
+
+def declarations() -> Iterator[tuple[type, Quantity]]:
+    for module in LATE:
+        importlib.import_module(module)
+    for kind in RESULTS.values():
+        for row in kind._QUANTITIES:
+            yield kind, row
+
+
+def test_the_docstring_of_a_quantity_has_its_words_and_its_unit() -> None:
+    seen = set()
+    for kind, row in declarations():
+        assert row.owner is not None
+        name = (row.path or row.name).rpartition(".")[2]
+        docstring = quantities._docstrings(row.owner)[name]
+        units = [unit.replace("^2", "²") for unit in re.findall(r"\[([^]]+)\]", docstring)]
+        if row.name != "residual":  # it is a force for absolute noise alone
+            assert not units or {row.unit, row.line} & {*units[0].split(", ")}, (kind, row)
+        assert units or not row.unit, (kind, row)
+        assert not re.search(r"[\[`]|\.$", row.words), row.words
+        seen.add(row.words)
+    assert {"slopes of the inner ring", "E/(1 − ν²) of the sample", "x of the cell centre"} <= seen
