@@ -30,6 +30,7 @@ const FEW: usize = 6;
 
 /// Load over approach. Where nothing touches, all but the approach is 0.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Curve {
     /// Loads \[N\].
     pub load: Vec<f64>,

@@ -472,7 +472,7 @@ impl Refined<'_> {
         for i in patch.window[0].clone() {
             patch.window[1].clone().for_each(|j| outside[[i, j]] = 0.0);
         }
-        let threads = StressOptions::with_threads(self.options.threads);
+        let threads = StressOptions::default().with_threads(self.options.threads);
         let planned = |body: &HalfSpace, pressure: &Array2<f64>| {
             let source = PressureSource {
                 body,
