@@ -194,7 +194,7 @@ impl FrictionSolution {
     ) -> Result<Stress> {
         let mut watched_options = options.into();
         let options = watched_options.options();
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.stress(depths, options.watched(&mut progress))
     }
@@ -211,7 +211,7 @@ impl FrictionSolution {
     ) -> Result<StressSummary> {
         let mut watched_options = options.into();
         let options = watched_options.options();
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.summary(strengths, options.watched(&mut progress))
     }

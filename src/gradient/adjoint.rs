@@ -131,7 +131,7 @@ impl<'a> Linearisation<'a> {
             None => self.parameters.clone(),
             Some(paths) => {
                 // Only stresses depend on friction, each by itself.
-                let slides = outputs.iter().any(|one| matches!(one, Output::Stress(_)));
+                let slides = outputs.iter().any(|output| matches!(output, Output::Stress(_)));
                 let others = paths.iter().filter(|path| !(slides && **path == "friction"));
                 named(self.solution, &self.parameters, &others.copied().collect::<Vec<_>>())?
             }

@@ -82,7 +82,7 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
         let Some(Ok(body)) = body.map(|body| layered(body, "")) else {
             continue;
         };
-        let named = |one: BodyParameter| Parameter::Body(member, one, one.path(&body));
+        let named = |number: BodyParameter| Parameter::Body(member, number, number.path(&body));
         parameters.extend(body.parameters().into_iter().map(named));
     }
     if let Some(shape) = shape {
@@ -116,7 +116,7 @@ pub(super) fn named(
     paths: &[&str],
 ) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
-        let parameter = known.iter().find(|one| one.to_string() == **path);
+        let parameter = known.iter().find(|parameter| parameter.to_string() == **path);
         parameter.cloned().ok_or_else(|| refusal(solution, path, known))
     };
     paths.iter().map(find).collect()
@@ -130,7 +130,7 @@ fn refusal(solution: &Solution, path: &str, known: &[Parameter]) -> Error {
             "cells join and leave where a shape is cut off, one by one; take the drop of its profile near the end"
         }
         _ if path.starts_with("shape.")
-            && !known.iter().any(|one| matches!(one, Parameter::Shape(_))) =>
+            && !known.iter().any(|parameter| matches!(parameter, Parameter::Shape(_))) =>
         {
             "the shape is not given, or has no number on which the gap depends smoothly (a flat punch's radius moves \
              whole cells); give `shape`, or use the derivative with respect to the gap itself, gradient.gap"

@@ -134,9 +134,9 @@ impl<'a> WatchedStress<'a> {
     }
 
     /// Tells the callback the fraction of the work done.
-    pub(crate) fn tell(&mut self, part: f64) -> ControlFlow<()> {
+    pub(crate) fn tell(&mut self, fraction: f64) -> ControlFlow<()> {
         match &mut self.progress {
-            Some(progress) => progress(part),
+            Some(progress) => progress(fraction),
             None => ControlFlow::Continue(()),
         }
     }

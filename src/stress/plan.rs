@@ -158,7 +158,7 @@ impl<'a> PressureSource<'a> {
     /// [`PressureSource::plan`], of which a stop is an error.
     pub(super) fn planned(&self, mut watched_options: WatchedStress) -> Result<StressPlan> {
         let threads = watched_options.options().threads;
-        let plan = self.plan(threads, &mut |part| watched_options.tell(part))?;
+        let plan = self.plan(threads, &mut |fraction| watched_options.tell(fraction))?;
         plan.ok_or(Error::Stopped)
     }
 
@@ -171,7 +171,7 @@ impl<'a> PressureSource<'a> {
     ) -> Result<Option<T>> {
         check_memory(self.grid.shape(), memory + self.memory())?;
         let threads = watched_options.options().threads;
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.plan(threads, &mut progress)?;
         Ok(plan.map(|plan| evaluate(&plan, &mut progress)))
     }
@@ -233,7 +233,7 @@ impl StressPlan {
         let request =
             Request::checked(body, grid, &self.sliding, depths, watched_options.options())?;
         check_memory(grid.shape(), request.memory())?;
-        Ok(request.evaluate(self, &mut |part| watched_options.tell(part)))
+        Ok(request.evaluate(self, &mut |fraction| watched_options.tell(fraction)))
     }
 
     /// Σ_c Σ_k K_c[k − i] w_c[k] in the cells i that the plan's pressure loads: the derivative with respect to the pressure
@@ -614,7 +614,7 @@ impl<'a> Request<'a> {
         let mut evaluation = Evaluation::new(plan, self.friction, self.options.displacement);
         for (done, place) in self.places.iter().enumerate() {
             let total = self.places.len() as f64;
-            let mut progress = |part: f64| progress((done as f64 + part) / total);
+            let mut progress = |fraction: f64| progress((done as f64 + fraction) / total);
             let mut here: Vec<&mut [f64]> = fields
                 .iter_mut()
                 .map(|field| &mut field[done * count..(done + 1) * count])

@@ -329,7 +329,7 @@ impl StressPlan {
         )?;
         let scope = Scope::of(self);
         Ok(request
-            .evaluate(self, scope, &mut |part| watched_options.tell(part))
+            .evaluate(self, scope, &mut |fraction| watched_options.tell(fraction))
             .summary(&self.whole.body, strengths))
     }
 }
@@ -621,7 +621,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     fn evaluate(&mut self, place: &Place, points: bool) -> ControlFlow<()> {
         let (done, planned) = (self.done as f64, self.planned as f64);
         let progress = &mut self.progress;
-        let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
+        let mut progress = |fraction: f64| progress(((done + fraction) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
         if let Some(beside) = &mut self.scope.beside {
@@ -892,8 +892,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         if self.scope.beside.is_some() || !self.scope.without.is_empty() {
             return ControlFlow::Continue(peaks);
         }
-        let part = (self.done as f64 / self.planned as f64).min(1.0);
-        let mut progress = |_| (self.progress)(part);
+        let fraction = (self.done as f64 / self.planned as f64).min(1.0);
+        let mut progress = |_| (self.progress)(fraction);
         let inside = (peaks, largest_of(&peaks), best);
         let [peaks, beyond] =
             self.beyond.peaks(inside, places, self.residual, of, &mut progress)?;

@@ -24,8 +24,8 @@ pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
     let window = [0, 1].map(|k| {
         cells[k].start.saturating_sub(WINDOW_MARGIN)..(cells[k].end + WINDOW_MARGIN).min(shape[k])
     });
-    let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
-    if part > LARGEST_PART { full_window(shape) } else { window }
+    let share = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
+    if share > LARGEST_PART { full_window(shape) } else { window }
 }
 
 /// The smallest window that holds both.
