@@ -95,7 +95,7 @@ fn convolution(c: &mut Criterion) {
 
 fn hertz(n: usize, threads: usize) -> Result<(Contact, Paraboloid, Motion)> {
     let grid = Grid::new([n, n], [2.0, 2.0])?;
-    let setup = Setup { threads: Some(threads), ..Setup::default() };
+    let setup = Setup::default().with_threads(threads);
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     // The load 4/3 E* a³/R for a contact radius a of a third.
     let load = 4.0 / 81.0 / HERTZ_RADIUS;
@@ -127,7 +127,7 @@ fn contact(c: &mut Criterion) {
             });
         }
     }
-    let reference = Options { algorithm: Algorithm::PolonskyKeer, ..Options::default() };
+    let reference = Options::default().with_algorithm(Algorithm::PolonskyKeer);
     let (plan, shape, motion) = hertz(256, 1).expect("valid");
     group.bench_function("hertz_polonsky_keer/256", |b| {
         b.iter(|| converged(&plan, &shape, &motion, &reference));
@@ -144,11 +144,7 @@ fn contact(c: &mut Criterion) {
 /// are 1.
 fn straight(ends: [Option<f64>; 2]) -> Result<Contact> {
     let race = HalfSpace::from(Elastic::new(0.91, 0.3)?);
-    let setup = Setup {
-        counterbody: Some(race.clone().with_ends(ends)?.into()),
-        threads: Some(1),
-        ..Setup::default()
-    };
+    let setup = Setup::default().with_counterbody(race.clone().with_ends(ends)?).with_threads(1);
     Contact::plan(&race, Grid::new([1024, 128], [20.0, 4.0])?, setup)
 }
 
@@ -178,8 +174,8 @@ fn roller() -> Result<(Contact, Motion)> {
     let steel = Elastic::new(210e9, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(Elastic::new(840e9, 0.3)?, 40e-6)?])?;
     let grid = Grid::new([1024, 128], [29e-3, 0.16e-3])?;
-    let setup = Setup { threads: Some(1), ..Setup::default() };
-    let motion = Motion { eccentricity: [Some(2.8695e-3), Some(0.0)], ..Motion::load(1e3) };
+    let setup = Setup::default().with_threads(1);
+    let motion = Motion::load(1e3).with_eccentricity([Some(2.8695e-3), Some(0.0)]);
     Ok((Contact::plan(&body, grid, setup)?, motion))
 }
 
@@ -188,7 +184,7 @@ fn interior(c: &mut Criterion) {
     group.sample_size(10);
     let body = coated(1).expect("valid");
     let depths: Vec<f64> = (0..16).map(|k| 0.5 + f64::from(k)).collect();
-    let options = StressOptions { threads: Some(1), ..StressOptions::default() };
+    let options = StressOptions::default().with_threads(1);
     for n in [128, 512] {
         let grid = square(n).expect("valid");
         let inside = |i: usize| (n / 4..3 * n / 4).contains(&i);

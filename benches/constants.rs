@@ -83,8 +83,8 @@ fn main() -> Result<()> {
         body(&[(3.0, 0.1), (0.5, 0.2), (2.0, 0.4)])?,
         HalfSpace::new(Elastic::new(1.0, 0.3)?, vec![slipping])?,
     ];
-    let eccentric = Motion { eccentricity: [Some(0.3), None], ..Motion::load(LOAD) };
-    let along = Motion { eccentricity: [Some(1.0), None], ..Motion::load(20.0 * LOAD) };
+    let eccentric = Motion::load(LOAD).with_eccentricity([Some(0.3), None]);
+    let along = Motion::load(20.0 * LOAD).with_eccentricity([Some(1.0), None]);
     let mut work = Work::default();
     for body in &bodies {
         work.solve(body, Grid::new([128, 128], [6.0, 6.0])?, &ball, &load, &options)?;
@@ -113,27 +113,24 @@ fn main() -> Result<()> {
     }
     let grid = Grid::new([128, 128], [3.0, 3.0])?;
     for body in &bodies[..3] {
-        let hard = Options { hardness: Some(Hardness::Uniform(3e-3)), ..Options::default() };
+        let hard = Options::default().with_hardness(Hardness::Uniform(3e-3));
         work.solve(body, grid, &ball, &load, &hard)?;
-        let soft = Options { compliance: Some(Compliance::Uniform(0.3)), ..Options::default() };
+        let soft = Options::default().with_compliance(Compliance::Uniform(0.3));
         work.solve(body, grid, &ball, &load, &soft)?;
     }
-    let friction = FrictionOptions { tolerance: 1e-6, ..FrictionOptions::default() };
+    let friction = FrictionOptions::default().with_tolerance(1e-6);
     for body in &bodies[..3] {
-        let setup = Setup { counterbody: Some(bodies[0].clone().into()), ..Setup::default() };
+        let setup = Setup::default().with_counterbody(bodies[0].clone());
         let contact = Contact::plan(body, Grid::new([64, 64], [3.6, 3.6])?, setup)?;
         let press = Step::press(load, FRICTION);
-        let push =
-            |share: f64| Step { force: [Some(share * FRICTION * LOAD), None], ..press.clone() };
+        let push = |share: f64| press.clone().with_force([Some(share * FRICTION * LOAD), None]);
         for step in contact.slide(&ball, &[push(0.4), push(0.9), push(-0.5)], &friction, None)? {
             work.add(step.report.convolutions as f64, step.report.converged());
         }
         for (creepage, spin) in [(0.5, 0.0), (2.0, 0.0), (0.5, 2.0)] {
-            let rolling = Rolling {
-                creepage: [Some(creepage * FRICTION * LOAD), None],
-                spin: spin * FRICTION * LOAD,
-                ..Rolling::new(load, FRICTION, RollingDirection::PlusX)
-            };
+            let rolling = Rolling::new(load, FRICTION, RollingDirection::PlusX)
+                .with_creepage([Some(creepage * FRICTION * LOAD), None])
+                .with_spin(spin * FRICTION * LOAD);
             let report = contact.roll(&ball, &rolling, &friction)?.report;
             work.add(report.convolutions as f64, report.converged());
         }

@@ -52,7 +52,7 @@ fn best(cells: usize, threads: usize) -> Result<f64> {
 /// share outside kernels, transforms and products.
 fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
     const SIDE: f64 = 2.0;
-    let setup = Setup { threads: Some(threads), ..Setup::default() };
+    let setup = Setup::default().with_threads(threads);
     let grid = Grid::new([cells, cells], [SIDE; 2])?;
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     let shape = Paraboloid::new(1.0, 1.0)?;

@@ -57,7 +57,7 @@ fn measure(name: &str, pressure: &Array2<f64>, depths: usize, threads: usize) ->
     let convolution = Convolution::plan(&coefficients, Some(threads))?;
     let mut workspace = convolution.workspace();
     let mut displacement = Array2::zeros([cells, cells]);
-    let options = StressOptions { threads: Some(threads), ..StressOptions::default() };
+    let options = StressOptions::default().with_threads(threads);
     let planes = planes(cells, depths);
     let (mut one, mut all) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
@@ -87,11 +87,11 @@ fn measure_plan(cells: usize, depths: usize, threads: usize) -> Result<()> {
     let solution = contact.solve(&shape, &load, &Options::default())?;
     let planes = planes(cells, depths);
     let whole = StressOptions::default();
-    let line = StressOptions { section: Section::Y(0.0), ..StressOptions::default() };
+    let line = StressOptions::default().with_section(Section::Y(0.0));
     let [mut plan, mut evaluate, mut section] = [f64::INFINITY; 3];
     for _ in 0..ROUNDS {
         let (time, planned) = seconds(|| {
-            solution.stress_plan(Member::Body, &StressOptions::with_threads(Some(threads)))
+            solution.stress_plan(Member::Body, &StressOptions::default().with_threads(threads))
         })?;
         plan = plan.min(time);
         let (time, field) = seconds(|| planned.stress(&planes, &whole))?;

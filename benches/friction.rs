@@ -27,8 +27,7 @@ impl Pair {
         let steel = Elastic::new(2.0 * 1.42, 0.42)?;
         let layer = Layer::new(Elastic::new(8.0 * 1.42, 0.42)?, 0.3)?;
         let body = HalfSpace::new(steel, coated.then_some(layer))?;
-        let setup =
-            Setup { counterbody: Some(body.clone().into()), threads: Some(1), ..Setup::default() };
+        let setup = Setup::default().with_counterbody(body.clone()).with_threads(1);
         let width = 2.0 / 0.83;
         Ok(Self {
             contact: Contact::plan(&body, Grid::new([cells, cells], [width, width])?, setup)?,
@@ -44,10 +43,8 @@ impl Pair {
     }
 
     fn slide(&self, force: f64, last: Option<&FrictionSolution>) -> FrictionSolution {
-        let step = Step {
-            force: [Some(force * self.bears()), None],
-            ..Step::press(Motion::load(self.load), FRICTION)
-        };
+        let step = Step::press(Motion::load(self.load), FRICTION)
+            .with_force([Some(force * self.bears()), None]);
         let solutions = self.contact.slide(&self.ball, &[step], &options(), last);
         let solution = solutions.expect("valid").pop().expect("one step");
         assert!(solution.report.converged());
@@ -55,19 +52,19 @@ impl Pair {
     }
 
     fn roll(&self, friction: f64, creepage: f64) -> FrictionSolution {
-        self.rolled(&Rolling {
-            creepage: [Some(creepage * self.bears()), None],
-            ..Rolling::new(Motion::load(self.load), friction, RollingDirection::PlusX)
-        })
+        self.rolled(
+            &Rolling::new(Motion::load(self.load), friction, RollingDirection::PlusX)
+                .with_creepage([Some(creepage * self.bears()), None]),
+        )
     }
 
     /// Lateral creepage against spin, with the pole of the motion in the contact.
     fn spin(&self) -> FrictionSolution {
-        self.rolled(&Rolling {
-            creepage: [None, Some(-CREEPAGE * self.bears())],
-            spin: SPIN * self.bears(),
-            ..Rolling::new(Motion::load(self.load), FRICTION, RollingDirection::PlusX)
-        })
+        self.rolled(
+            &Rolling::new(Motion::load(self.load), FRICTION, RollingDirection::PlusX)
+                .with_creepage([None, Some(-CREEPAGE * self.bears())])
+                .with_spin(SPIN * self.bears()),
+        )
     }
 
     fn rolled(&self, rolling: &Rolling) -> FrictionSolution {
@@ -85,7 +82,7 @@ const SPIN: f64 = 0.34;
 const CREEPAGE: f64 = 0.17;
 
 fn options() -> FrictionOptions {
-    FrictionOptions { tolerance: 1e-6, ..FrictionOptions::default() }
+    FrictionOptions::default().with_tolerance(1e-6)
 }
 
 fn friction(c: &mut Criterion) {

@@ -34,7 +34,7 @@ impl Worn {
         let layer = Layer::new(Elastic::new(4.0 * 0.91, 0.3)?, 0.3)?;
         let body = HalfSpace::new(Elastic::new(0.91, 0.3)?, [layer])?;
         let grid = Grid::new([CELLS, CELLS], [4.0, 4.0])?;
-        let setup = Setup { threads: Some(1), ..Setup::default() };
+        let setup = Setup::default().with_threads(1);
         // E* = 1 and a contact radius of 1.
         let load = 4.0 / 3.0 / RADIUS;
         Ok(Self {
@@ -48,10 +48,8 @@ impl Worn {
     /// All states of the history.
     fn history(&self) -> Vec<WearState> {
         let end = |k: usize| self.distance * k as f64 / STEPS as f64;
-        let wear = Wear {
-            steps: WearSteps::Ends((1..=STEPS).map(end).collect()),
-            ..Wear::sliding([vec![1.0, 1.0], vec![0.0]], self.distance)
-        };
+        let wear = Wear::sliding([vec![1.0, 1.0], vec![0.0]], self.distance)
+            .with_steps(WearSteps::Ends((1..=STEPS).map(end).collect()));
         let plan = Arc::clone(&self.plan);
         let session = WearSession::new(plan, self.ball, self.motion, wear, false);
         let mut session = session.expect("valid");

@@ -19,7 +19,7 @@ pub(crate) fn peaks(fractions: &[f64]) -> Result<Vec<f64>> {
     let mut peaks = Vec::new();
     for fraction in fractions {
         let eccentricity = [Some(fraction * HALF_FLAT), None];
-        let motion = Motion { eccentricity, ..Motion::load(1e3) };
+        let motion = Motion::load(1e3).with_eccentricity(eccentricity);
         let options = Options::default();
         let solution = contact.solve(&roller, &motion, &options)?;
         let solution = solution.require_converged(options.tolerance)?;

@@ -31,6 +31,7 @@ pub type State = [f64; 6];
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[non_exhaustive]
 pub enum YieldRule {
     /// √J₂ ≤ k.
     #[default]
@@ -42,6 +43,7 @@ pub enum YieldRule {
 
 /// What a perfectly plastic material needs to shake down under a history.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Shakedown {
     /// The smallest yield stress in shear k with which it does \[Pa\].
     pub shear_yield: f64,

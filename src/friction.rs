@@ -65,10 +65,10 @@ impl Contact {
     /// use nacre::friction::{FrictionOptions, Step};
     /// use nacre::{Contact, Elastic, Grid, Motion, Paraboloid, Setup};
     /// let steel = Elastic::new(1.0, 0.0)?;
-    /// let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    /// let setup = Setup::default().with_counterbody(steel);
     /// let contact = Contact::plan(steel, Grid::new([64, 64], [0.24, 0.24])?, setup)?;
     /// let load = 1e-6;
-    /// let pull = Step { force: [Some(0.15 * load), None], ..Step::press(Motion::load(load), 0.3) };
+    /// let pull = Step::press(Motion::load(load), 0.3).with_force([Some(0.15 * load), None]);
     /// let solutions = contact.slide(&Paraboloid::new(1e3, 1e3)?, &[pull], &FrictionOptions::default(), None)?;
     /// // Cattaneo and Mindlin: the radius that sticks is (1 − Q/μP)^{1/3} of the contact's.
     /// let [stick, contact] = [solutions[0].stick(), solutions[0].normal.in_contact()];

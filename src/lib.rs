@@ -27,7 +27,8 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | errors | [`mod@error`]: the error type |
+//! | builders | methods `with_…` of options |
+//! | error | [`mod@error`]: the error type |
 //! | numerics | small dense systems, Fourier transforms, threads |
 //! | model | [`material`], [`body`]: elastic materials, layers, half-spaces; [`grid`]: cells of uniform pressure; [`surface`]: undeformed shapes; [`hertz`]: closed forms for points, lines and ellipses |
 //! | compliance | [`response`]: frequency response û(α)/p̂(α) of a body; [`influence`]: influence coefficients `C[i, j]`; [`convolution`]: displacement from pressure, by DC-FFT; [`traction`]: the same of tractions; [`ends`]: free ends of bodies |
@@ -36,6 +37,7 @@
 //! | stress | [`mod@stress`]: stress and displacement below the surface |
 //! | fatigue | [`fatigue`]: shakedown and multiaxial fatigue of a history of stresses |
 //! | friction | [`friction`]: partial slip, histories and rolling |
+//! | wear | [`wear`]: pressure, contact and depths as layers wear |
 //! | indent | [`indent`]: indentation by axisymmetric tips, without a grid |
 //! | gradient | [`gradient`]: derivatives of solved contacts |
 //!
@@ -54,6 +56,8 @@
 //! - The Fourier transform is f̂(m, n) = ∬ f e^{−i(mx+ny)} dx dy, with α = √(m² + n²). The discrete
 //!   forward transform is unscaled, and the inverse divides by the number of points.
 
+#[macro_use]
+mod builders;
 mod compliance;
 pub mod contact;
 pub mod error;
@@ -79,7 +83,7 @@ pub use contact::{
 };
 pub use convolution::Convolution;
 pub use error::{Error, Result};
-pub use grid::Grid;
+pub use grid::{Axis, Grid};
 pub use influence::Method;
 pub use material::Elastic;
 pub use response::{Body, Response};

@@ -74,7 +74,7 @@ use summary::summary_once;
 /// // Under the middle of a uniformly loaded square of side 2: Love (1929), doi:10.1098/rsta.1929.0006.
 /// let grid = Grid::new([2, 2], [2.0, 2.0])?;
 /// let pressure = array![[1.0, 1.0], [1.0, 1.0]];
-/// let options = StressOptions { section: nacre::Section::Y(0.0), ..StressOptions::default() };
+/// let options = StressOptions::default().with_section(nacre::Section::Y(0.0));
 /// let field = stress(&Elastic::new(1.0, 0.3)?.into(), &grid, &pressure, &[0.0, 1.0], &options)?;
 /// assert!((field.zz()[[0, 0, 0]] + 1.0).abs() < 1e-12);
 /// assert!(field.zz()[[1, 0, 0]] > -0.7);

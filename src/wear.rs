@@ -39,6 +39,7 @@ pub use session::WearSession;
 
 /// What slides how far, and what it wears.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Wear {
     /// Specific wear rates \[m²/N\] of body and counterbody: of the layers from the surface down and of the substrate, or one
     /// for all of them.
@@ -61,6 +62,19 @@ pub struct Wear {
     pub options: Options,
 }
 
+builders! {
+    Wear {
+        with_slip(slip: Slip),
+        with_steps(steps: WearSteps),
+        with_scheme(scheme: WearScheme),
+        with_thickness(thickness: Thickness),
+        with_until_through(until_through: bool),
+        with_initial(initial: impl Into<Option<[Array2<f64>; 2]>>),
+        with_goes_on(goes_on: bool),
+        with_options(options: Options),
+    }
+}
+
 impl Wear {
     /// Gross sliding over a `distance` \[m\], with steps that keep an error of 1e-3 of the peak pressure.
     pub fn sliding(rates: [Vec<f64>; 2], distance: f64) -> Self {
@@ -80,6 +94,7 @@ impl Wear {
 
 /// Where surfaces slip, per unit of the distance.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub enum Slip {
     /// Everywhere by 1: the distance is that of sliding.
     #[default]
@@ -94,6 +109,7 @@ pub enum Slip {
 
 /// The steps of a history.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum WearSteps {
     /// Steps that add an error of at most a `tolerance` to the pressure, up to the `end`: the root of its mean square within the
     /// contact, relative to the largest pressure of the history. Cells at the edge do not count: they join the contact at once.
@@ -111,6 +127,7 @@ pub enum WearSteps {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum WearScheme {
     /// The mean of its start and its end: second order. Short waves that it does not resolve change sign from step to step
     /// and fade slowly.
@@ -124,6 +141,7 @@ pub enum WearScheme {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Thickness {
     /// As before wear.
     #[default]
@@ -136,6 +154,7 @@ pub enum Thickness {
 
 /// A worn contact.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct WearState {
     /// Sliding distance \[m\], cycles or passes.
     pub distance: f64,
@@ -163,6 +182,7 @@ pub struct WearState {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Idle {
     /// No cell in contact slips.
     Sticks,
@@ -173,6 +193,7 @@ pub enum Idle {
 /// A layer is worn through at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct WearThrough {
     /// Distance at which it is.
     pub distance: f64,

@@ -19,6 +19,7 @@ mod contact {
     mod foundation;
     mod fuzz;
     mod hardness;
+    mod interface;
     mod invariants;
     #[cfg(feature = "serde")]
     mod json;

@@ -1,4 +1,4 @@
-"""Check the order of the modules of `src/` and that no files import each other, for `make check`.
+"""Check the modules of `src/`: their order, no circle of files, and their table, for `make check`.
 
 `python tests/house.py [ROOT]` prints what is wrong, and exits with 1 if anything is. A file needs
 each item that it imports or names by a path. An item counts where it is defined: re-exports are
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 CHAIN = [
-    *("error", "numerics", "model", "compliance", "contact"),
+    *("builders", "error", "numerics", "model", "compliance", "contact"),
     *("stress", "fatigue", "friction", "wear", "indent", "gradient", "python"),
 ]
 """Modules; each imports only from those before it."""
@@ -125,9 +125,23 @@ class Crate:
         yield from (home for home in homes if home is not None and home != module)
 
 
+def missing_in_table(library: str) -> Iterator[str]:
+    """Yield the modules of the text of `lib.rs` that the table of its documentation leaves out."""
+    table = "\n".join(re.findall(r"^//! \| .*", library, re.MULTILINE))
+    rows = set(re.findall(r"^//! \| (\w+) \|", table, re.MULTILINE))
+    links = set(re.findall(r"\[`(?:mod@)?(\w+)`\]", table))
+    for public, module in re.findall(r"^(pub )?mod (\w+);", library, re.MULTILINE):
+        if module not in rows | {"python"} or (public and module not in links):
+            yield module
+    for names in re.findall(r"^pub use (?:\w+)::\{([a-z_, ]+)\};", library, re.MULTILINE):
+        yield from (name for name in names.split(", ") if name not in links)
+
+
 def violations(root: Path) -> Iterator[str]:
     """Yield what is wrong in the crate at `root`."""
     crate = Crate(root / "src")
+    for module in missing_in_table((root / "src" / "lib.rs").read_text("utf-8")):
+        yield f"{module}: not in the table of modules of src/lib.rs"
     graph = {module: sorted(crate.needs(module)) for module in sorted(crate.files)}
     for module, needs in graph.items():
         if module and module[0] not in CHAIN:

@@ -72,8 +72,8 @@ pub(crate) trait Beside: fmt::Debug + Send + Sync {
     /// The operator on a `window` of its cells.
     fn on_window(&self, window: &Window, threads: &Threads) -> Arc<dyn Beside>;
 
-    /// What it adds to the displacement of `one` cell under unit pressure on an `other`.
-    fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64;
+    /// What it adds to the displacement of `cell` under unit pressure on the cell `loaded`.
+    fn entry(&self, cell: [usize; 2], loaded: [usize; 2]) -> f64;
 
     /// Cost of an application, as that of [`Convolution::work`].
     fn work(&self) -> f64;
@@ -223,14 +223,14 @@ impl Convolution {
         springs.map_or(0.0, |springs| springs.iter().sum::<f64>() / springs.len() as f64)
     }
 
-    /// What all but the coefficients contributes to the displacement of `one` cell under unit pressure on an `other`.
-    pub(crate) fn added(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
-        let distance = one[1].abs_diff(other[1]);
+    /// What all but the coefficients contributes to the displacement of `cell` under unit pressure on the cell `loaded`.
+    pub(crate) fn added(&self, cell: [usize; 2], loaded: [usize; 2]) -> f64 {
+        let distance = cell[1].abs_diff(loaded[1]);
         let additions = self.additions.iter();
-        let added: f64 = additions.map(|added| added.entry([one[0], other[0]], distance)).sum();
-        let beside: f64 = self.beside.iter().map(|beside| beside.entry(one, other)).sum();
-        let own = self.springs.as_ref().filter(|_| one == other);
-        added + beside + own.map_or(0.0, |springs| springs[one[0] * self.shape[1] + one[1]])
+        let added: f64 = additions.map(|added| added.entry([cell[0], loaded[0]], distance)).sum();
+        let beside: f64 = self.beside.iter().map(|beside| beside.entry(cell, loaded)).sum();
+        let own = self.springs.as_ref().filter(|_| cell == loaded);
+        added + beside + own.map_or(0.0, |springs| springs[cell[0] * self.shape[1] + cell[1]])
     }
 
     /// [`Convolution::companion`] for a `window`, with the part of the additions, the springs and the operators beside there.
@@ -239,7 +239,8 @@ impl Convolution {
         let additions = additions.map(|a| a.on_rows(window[0].clone())).collect();
         let springs =
             self.springs.as_deref().map(|springs| copied_slice(springs, self.shape[1], window));
-        let beside = self.beside.iter().map(|one| one.on_window(window, &self.threads)).collect();
+        let beside =
+            self.beside.iter().map(|beside| beside.on_window(window, &self.threads)).collect();
         let within = self.companion(coefficients, [false; 2]).plus(additions);
         Self { springs: springs.map(Into::into), beside, ..within }
     }

@@ -296,7 +296,7 @@ impl Samples {
                     true => f64::from(one.z < from),
                     false => (0.5 * (a + b) - one.z) / (two.z - one.z),
                 };
-                let mean = |one: f64, two: f64| one + t * (two - one);
+                let mean = |first: f64, second: f64| first + t * (second - first);
                 young += each * mean(one.material.young(), two.material.young());
                 poisson += each * mean(one.material.poisson(), two.material.poisson());
                 width += each;

@@ -262,7 +262,8 @@ impl Response for HalfSpace {
             .flat_map(|layer| layer.interface().compliances())
             .fold(0.0, f64::max);
         let materials = self.layers().iter().map(Layer::material).chain(substrate_material(self));
-        let stiffest = materials.map(|one| one.plane_strain_modulus()).fold(0.0, f64::max);
+        let stiffest =
+            materials.map(|material| material.plane_strain_modulus()).fold(0.0, f64::max);
         Some([top, self.thickness().max(softest * stiffest)])
     }
 

@@ -173,10 +173,10 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
         };
         let mut rows = Array3::zeros((nx, DISPLACEMENTS, ny));
         let chunks = rows.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate();
-        chunks.for_each(|(chunk, mut part)| {
+        chunks.for_each(|(chunk, mut values)| {
             let first = chunk * ROWS;
-            source.rows(first..first + part.len_of(Axis(0)), &mut |i, k, row| {
-                let mut components = part.index_axis_mut(Axis(0), i - first);
+            source.rows(first..first + values.len_of(Axis(0)), &mut |i, k, row| {
+                let mut components = values.index_axis_mut(Axis(0), i - first);
                 components.row_mut(k).assign(&ArrayView1::from(row));
             });
         });

@@ -18,11 +18,19 @@ use crate::numerics::parallel::{CAN_START_THREADS, SetOnDrop, Threads, check_mem
 
 /// One of many load cases.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Case<'a> {
     /// The shape that is pressed into the body.
     pub shape: &'a dyn Surface,
     /// The motion that is prescribed, or the load.
     pub motion: Motion,
+}
+
+impl<'a> Case<'a> {
+    /// `shape`, under `motion`.
+    pub fn new(shape: &'a dyn Surface, motion: Motion) -> Self {
+        Self { shape, motion }
+    }
 }
 
 /// Time between two calls that ask the caller whether to go on: far below the 0.2 s within which an
@@ -47,7 +55,7 @@ impl Contact {
     ///
     /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let shape = Paraboloid::new(1e3, 1e3)?;
-    /// let cases = [1e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
+    /// let cases = [1e-3, 8e-3].map(|load| Case::new(&shape, Motion::load(load)));
     /// let solved = contact.solve_many(&cases, &Options::default(), &mut |_| ControlFlow::Continue(()))?;
     /// // Hertz: δ grows as W^{2/3}
     /// let approach: Vec<f64> = solved.into_iter().flatten().map(|s| Ok(s?.approach)).collect::<nacre::Result<_>>()?;
@@ -90,7 +98,7 @@ impl Contact {
     ///
     /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let shape = Paraboloid::new(1e3, 1e3)?;
-    /// let cases = [1e-3, 2e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
+    /// let cases = [1e-3, 2e-3, 8e-3].map(|load| Case::new(&shape, Motion::load(load)));
     /// let peak = Mutex::new(0.0_f64);
     /// let take = |_, solved: nacre::Result<nacre::Solution>| {
     ///     if let (Ok(solution), Ok(mut peak)) = (solved, peak.lock()) {

@@ -174,7 +174,7 @@ pub(super) fn halved(grid: &Grid) -> [bool; 2] {
 
 /// The next coarser grid, whose cells are twice as long in the directions that are halved; it starts where `fine` does.
 /// `None` where there is none.
-pub(super) fn coarser(fine: &Grid) -> Result<Option<Grid>> {
+pub(super) fn next_coarser_grid(fine: &Grid) -> Result<Option<Grid>> {
     let halved = halved(fine);
     if halved == [false; 2] {
         return Ok(None);

@@ -9,6 +9,7 @@ use crate::error::{Result, fraction, require};
 
 /// Options of a plan, beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Setup {
     /// Body that carries the shape; `None` is rigid.
     pub counterbody: Option<Body>,
@@ -19,6 +20,22 @@ pub struct Setup {
     /// Threads of the plan. Default: all of the machine's, or fewer where an environment variable says so:
     /// `NACRE_NUM_THREADS`, else `RAYON_NUM_THREADS`, else `OMP_NUM_THREADS`.
     pub threads: Option<usize>,
+}
+
+builders! {
+    Setup {
+        with_coefficients(coefficients: impl Into<Option<ArcArray2<f64>>>),
+        with_threads(threads: impl Into<Option<usize>>),
+    }
+}
+
+impl Setup {
+    /// This, with a counterbody that carries the shape.
+    #[must_use]
+    pub fn with_counterbody(mut self, counterbody: impl Into<Body>) -> Self {
+        self.counterbody = Some(counterbody.into());
+        self
+    }
 }
 
 /// Algorithm that a solve starts with; [`Report::solver`](super::Report::solver) says which one ended it.
@@ -35,7 +52,19 @@ pub enum Algorithm {
 }
 
 /// Options of a solve: where it starts and when it ends.
+///
+/// ```
+/// let options = nacre::Options::default().with_tolerance(1e-10).with_max_iterations(500);
+/// assert_eq!(options.max_iterations, Some(500));
+/// ```
+///
+/// As options may gain fields, other crates do not write them as literals:
+///
+/// ```compile_fail,E0639
+/// let options = nacre::Options { tolerance: 1e-10, ..nacre::Options::default() };
+/// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// Largest residual and overlap of a converged solution. Default: 1e-8.
     pub tolerance: f64,
@@ -55,6 +84,19 @@ pub struct Options {
     /// Largest number of cells of a grid that is chosen, at least 4096. Where the peak pressure needs more, the solution
     /// has a warning. Default: 2²², which take 0.7 GB.
     pub cells: Option<usize>,
+}
+
+builders! {
+    Options {
+        with_tolerance(tolerance: f64),
+        with_max_iterations(max_iterations: impl Into<Option<usize>>),
+        with_algorithm(algorithm: Algorithm),
+        with_initial(initial: impl Into<Option<Array2<f64>>>),
+        with_hardness(hardness: impl Into<Option<Hardness>>),
+        with_compliance(compliance: impl Into<Option<Compliance>>),
+        with_indentation(indentation: impl Into<Option<Array2<f64>>>),
+        with_cells(cells: impl Into<Option<usize>>),
+    }
 }
 
 impl Default for Options {
@@ -115,12 +157,13 @@ pub(super) struct StopCriteria {
 /// ```
 /// use nacre::Motion;
 /// // Free to tilt along x only, under a force at x = 2.87 mm.
-/// let motion = Motion { eccentricity: [Some(2.87e-3), None], ..Motion::load(1e3) };
+/// let motion = Motion::load(1e3).with_eccentricity([Some(2.87e-3), None]);
 /// assert_eq!(motion.load, Some(1e3));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Motion {
     /// Force Σ p dA \[N\], above 0.
     pub load: Option<f64>,
@@ -132,6 +175,16 @@ pub struct Motion {
     pub moment: [Option<f64>; 2],
     /// Slopes s_x, s_y.
     pub tilt: [Option<f64>; 2],
+}
+
+builders! {
+    Motion {
+        with_load(load: impl Into<Option<f64>>),
+        with_approach(approach: impl Into<Option<f64>>),
+        with_eccentricity(eccentricity: [Option<f64>; 2]),
+        with_moment(moment: [Option<f64>; 2]),
+        with_tilt(tilt: [Option<f64>; 2]),
+    }
 }
 
 impl Motion {

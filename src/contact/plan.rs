@@ -12,7 +12,7 @@ use crate::compliance::influence::{Method, coefficients_on};
 use crate::compliance::response::{Body, refuse_free};
 use crate::compliance::traction::Tangential;
 use crate::contact::cascade::discretisation::Unresolved;
-use crate::contact::cascade::{Level, coarse_means, coarser, halved};
+use crate::contact::cascade::{Level, coarse_means, halved, next_coarser_grid};
 use crate::contact::options::Setup;
 use crate::error::{Error, Result, all_finite, refuse_if, same_shape};
 use crate::model::grid::Grid;
@@ -97,7 +97,7 @@ impl Contact {
         let convolution = convolution.plus(operator.additions.clone());
         let mut levels = vec![Level::new(grid, &operator.coefficients, convolution, &both)];
         let mut finer = grid;
-        while let Some(coarse) = coarser(&finer)? {
+        while let Some(coarse) = next_coarser_grid(&finer)? {
             let coefficients = total_coefficients(&body, &setup, &coarse, &threads)?;
             let coefficients = datum.moved(coefficients, &coarse);
             let convolution = levels[0].convolution.companion(&coefficients, coarse.is_periodic());

@@ -186,9 +186,9 @@ impl Problem<'_> {
             let fields = [p, self.bounds.row(row.number), u, h];
             let (extremes, not_finite) = depths_of(multipliers, row, fields);
             let inside = row.within(window, fields);
-            let carried = inside.map(|(row, fields)| works_of(multipliers, row, fields));
-            let [work, mismatch, at_hardness, not_allowed] = carried.unwrap_or_default();
-            let sums = QualitySums::of_row(extremes, [work, mismatch, at_hardness]);
+            let carried = inside.map(|(row, fields)| row_sums(multipliers, row, fields));
+            let RowSums { works, not_allowed } = carried.unwrap_or_default();
+            let sums = QualitySums::of_row(extremes, works);
             (sums, [not_finite, not_allowed])
         });
         let quality = self.quality(sums, &fit);
@@ -293,13 +293,24 @@ fn depths_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) 
     (extremes, not_finite)
 }
 
-/// [`works`] of one row, and the number of its pressures that are not allowed.
-fn works_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> [f64; 4] {
+/// Sums over one row.
+#[derive(Debug, Clone, Copy, Default)]
+struct RowSums {
+    /// Work, mismatch and number of cells at the hardness, as [`works`] has them.
+    works: [f64; 3],
+    /// Number of pressures that are not allowed.
+    not_allowed: f64,
+}
+
+/// Sums over one row of its cells' [`works`], and the number of its pressures that are not allowed.
+fn row_sums(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> RowSums {
     let overlap = multipliers.overlap(row);
-    sum([p, limit, u, h, row.y], |[p, limit, u, h, y]| {
-        let [work, mismatch, at_hardness] = works(p, limit, u, overlap([u, h, y]));
-        [work, mismatch, at_hardness, not_allowed(p, limit)]
-    })
+    let [work, mismatch, at_hardness, not_allowed] =
+        sum([p, limit, u, h, row.y], |[p, limit, u, h, y]| {
+            let [work, mismatch, at_hardness] = works(p, limit, u, overlap([u, h, y]));
+            [work, mismatch, at_hardness, not_allowed(p, limit)]
+        });
+    RowSums { works: [work, mismatch, at_hardness], not_allowed }
 }
 
 /// Overlap of cells below the hardness, and the magnitude of the displacement of cells that can touch.

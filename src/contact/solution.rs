@@ -29,6 +29,7 @@ use crate::numerics::parallel::{Row, update_with_largest};
 
 /// A solved contact. Arrays are (nx, ny), at cell centres.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Solution {
     /// Pressure \[Pa\], ≥ 0.
     pub pressure: Array2<f64>,
@@ -383,6 +384,7 @@ impl Gap {
 
 /// Course of a solve and quality of its solution. All numbers are computed afresh at the end.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Report {
     /// How the iteration ended.
     pub termination: Termination,
@@ -515,6 +517,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct Balance {
     /// |Σ p dA − W| / W; 0 where the force is not given.
     pub force: f64,

@@ -13,6 +13,7 @@ use crate::stress::Tensor;
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[non_exhaustive]
 pub enum CriterionKind {
     /// max over t of τ(t) + a σ_h(t) ≤ b. s* is the centre of the smallest hypersphere around the deviators s, and τ half
     /// the difference of the largest and smallest principal value of s − s*. Dang Van, ASTM STP 1191 (1993) 120,
@@ -51,6 +52,7 @@ pub struct Criterion {
 
 /// The left side of a criterion, for one history.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Equivalent {
     /// The stress that is compared with the limit \[Pa\].
     pub stress: f64,

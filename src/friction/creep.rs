@@ -30,6 +30,7 @@ use crate::numerics::parallel::{Threads, check_memory};
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct CreepCoefficients {
     /// C11, of the longitudinal creepage.
     pub c11: f64,

@@ -167,8 +167,8 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// A part of a whole, or 0 where there is none.
-fn over(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
+fn over(amount: f64, whole: f64) -> f64 {
+    if whole > 0.0 { amount / whole } else { 0.0 }
 }
 
 /// Errors of sliding and of rolling steadily, from the solution on cells of twice the length.

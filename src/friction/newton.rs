@@ -106,19 +106,19 @@ impl TractionProblem<'_> {
     fn stand(&self, q: &[f64], response: &mut [f64], weights: &[Vec<f64>]) -> Standing {
         let largest = self.operator.apply(q, response);
         let pairs = response.iter().zip(&self.displacements);
-        let rest: Vec<f64> = pairs.map(|(u, g)| u - g).collect();
+        let mismatch: Vec<f64> = pairs.map(|(u, g)| u - g).collect();
         // Cells at their bound slip, or at the δ of all others would slip along the traction and stick.
         let mut states = self.law.at_bound(q);
-        let mut residual = rest.clone();
+        let mut residual = mismatch.clone();
         self.operator.centre(&states, &mut residual);
         let multipliers = self.multipliers(weights, &states, &residual);
-        residual.copy_from_slice(&rest);
+        residual.copy_from_slice(&mismatch);
         self.release(&mut residual, &multipliers);
         self.law.states(q, &residual, &mut states);
         if let Some(second_order) = self.operator.second_order {
             second_order.weigh(&self.law.bound, &residual, &mut states);
         }
-        residual = rest;
+        residual = mismatch;
         self.operator.centre(&states, &mut residual);
         let multipliers = self.multipliers(weights, &states, &residual);
         self.release(&mut residual, &multipliers);
@@ -668,14 +668,14 @@ impl<'a> NewtonSystem<'a> {
                     add(&mut z, -h, v);
                     column.push(h);
                 }
-                let rest = dot(&z, &z).sqrt();
-                column.push(rest);
+                let norm = dot(&z, &z).sqrt();
+                column.push(norm);
                 stop = watch().is_break();
                 let residual = least.add(column);
-                if residual <= goal || rest <= 1e-300 {
+                if residual <= goal || norm <= 1e-300 {
                     break;
                 }
-                basis.push(z.iter().map(|z| z / rest).collect());
+                basis.push(z.iter().map(|z| z / norm).collect());
             }
             for (y, v) in least.solve().into_iter().zip(&basis) {
                 add(&mut d, y, v);

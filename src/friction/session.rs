@@ -49,6 +49,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// The state at which a move begins.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Last<'a> {
     /// The solution that is left behind.
     pub solution: &'a FrictionSolution,

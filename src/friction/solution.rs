@@ -43,6 +43,7 @@ pub enum TangentialMotion {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct FrictionDiscretisation {
     /// Error of the force \[N\]: the length of the difference; 0 where both forces are given.
     pub force: f64,
@@ -71,6 +72,7 @@ pub struct FrictionDiscretisation {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct FrictionReport {
     /// How the iteration ended.
     pub termination: Termination,
@@ -119,6 +121,7 @@ impl FrictionReport {
 /// Tractions act on the body; on the counterbody their opposites do. Displacements are those of the body less those of
 /// the counterbody.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FrictionSolution {
     /// Pressure, gap and approach.
     pub normal: Solution,
@@ -191,7 +194,7 @@ impl FrictionSolution {
     ) -> Result<Stress> {
         let mut watched_options = options.into();
         let options = watched_options.options();
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.stress(depths, options.watched(&mut progress))
     }
@@ -208,7 +211,7 @@ impl FrictionSolution {
     ) -> Result<StressSummary> {
         let mut watched_options = options.into();
         let options = watched_options.options();
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.summary(strengths, options.watched(&mut progress))
     }

@@ -8,6 +8,7 @@ use crate::model::grid::Grid;
 
 /// Coefficient of friction μ ≥ 0.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Friction {
     /// One number.
     Uniform(f64),
@@ -56,10 +57,11 @@ impl Friction {
 /// use nacre::friction::Step;
 /// use nacre::Motion;
 /// // Press, then pull along x.
-/// let steps = [Step::press(Motion::load(10.0), 0.3), Step { force: [Some(2.0), None], ..Step::default() }];
+/// let steps = [Step::press(Motion::load(10.0), 0.3), Step::default().with_force([Some(2.0), None])];
 /// assert_eq!(steps[1].motion, None);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Step {
     /// Load or approach, and tilts. What it leaves open, and all of it where it is `None`, is as in the step before.
     pub motion: Option<Motion>,
@@ -73,6 +75,27 @@ pub struct Step {
     pub twist: Option<f64>,
     /// Torque Σ (x q_y − y q_x) dA \[N m\] of the tractions on the body, about the origin.
     pub torque: Option<f64>,
+}
+
+builders! {
+    Step {
+        with_motion(motion: impl Into<Option<Motion>>),
+        with_shift(shift: [Option<f64>; 2]),
+        with_force(force: [Option<f64>; 2]),
+        with_twist(twist: impl Into<Option<f64>>),
+        with_torque(torque: impl Into<Option<f64>>),
+    }
+    Rolling {
+        with_creepage(creepage: [Option<f64>; 2]),
+        with_force(force: [Option<f64>; 2]),
+        with_spin(spin: f64),
+    }
+    FrictionOptions {
+        with_tolerance(tolerance: f64),
+        with_max_convolutions(max_convolutions: usize),
+        with_coupling(coupling: bool),
+        with_order(order: usize),
+    }
 }
 
 /// A motion of any size but one at which numbers overflow.
@@ -90,6 +113,13 @@ impl Step {
     /// A first step: the motion along z and the friction.
     pub fn press(motion: Motion, friction: impl Into<Friction>) -> Self {
         Self { motion: Some(motion), friction: Some(friction.into()), ..Self::default() }
+    }
+
+    /// This, with a coefficient of friction.
+    #[must_use]
+    pub fn with_friction(mut self, friction: impl Into<Friction>) -> Self {
+        self.friction = Some(friction.into());
+        self
     }
 
     /// Degrees of freedom along x, along y, and about z.
@@ -191,6 +221,7 @@ impl RollingDirection {
 /// Rolling at constant speed. The material flows against the direction of rolling; relative to it the counterbody slips
 /// by creepages: ξ along the direction of rolling e, η along z × e, and the spin φ about +z.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Rolling {
     /// Load or approach, and tilts.
     pub motion: Motion,
@@ -260,6 +291,7 @@ pub enum Move<'a> {
 
 /// How tangential problems are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct FrictionOptions {
     /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement; also the tolerance
     /// of the normal contact, and of the pressure's change where both act on each other. Default: 1e-8.

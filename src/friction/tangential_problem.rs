@@ -435,7 +435,7 @@ impl TangentialProblem<'_> {
                 field[cell] = s * unit;
             }
         }
-        let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        let over = |amount: f64, whole: f64| if whole > 0.0 { amount / whole } else { 0.0 };
         FrictionFields {
             traction,
             displacement,

@@ -18,6 +18,7 @@ const MARGIN: f64 = 1e-10;
 
 /// How linear systems are solved.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct LinearOptions<'a> {
     /// Residual of the linear systems, relative to their right sides. Default: 1e-9.
     pub tolerance: f64,
@@ -28,6 +29,22 @@ pub struct LinearOptions<'a> {
 impl Default for LinearOptions<'_> {
     fn default() -> Self {
         Self { tolerance: 1e-9, watch: None }
+    }
+}
+
+impl<'a> LinearOptions<'a> {
+    /// This, with another [`tolerance`](field@Self::tolerance).
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// This, asking `watch` before each iteration.
+    #[must_use]
+    pub fn with_watch(mut self, watch: &'a dyn Fn() -> ControlFlow<()>) -> Self {
+        self.watch = Some(watch);
+        self
     }
 }
 
@@ -114,7 +131,7 @@ impl<'a> Linearisation<'a> {
             None => self.parameters.clone(),
             Some(paths) => {
                 // Only stresses depend on friction, each by itself.
-                let slides = outputs.iter().any(|one| matches!(one, Output::Stress(_)));
+                let slides = outputs.iter().any(|output| matches!(output, Output::Stress(_)));
                 let others = paths.iter().filter(|path| !(slides && **path == "friction"));
                 named(self.solution, &self.parameters, &others.copied().collect::<Vec<_>>())?
             }
@@ -202,7 +219,7 @@ impl<'a> Linearisation<'a> {
         }
         value += match parameter {
             Parameter::Approach => seed.prescribed[0],
-            Parameter::Tilt(axis) => seed.prescribed[axis + 1],
+            Parameter::Tilt(axis) => seed.prescribed[axis.index() + 1],
             _ => {
                 let at = |cell: [usize; 2]| slope.at(self.solution, &self.state, cell);
                 let part = usize::from(seed.is_gap);
@@ -267,7 +284,7 @@ impl<'a> Linearisation<'a> {
             add(&slope, *rate);
             match parameter {
                 Parameter::Approach => prescribed[0] += rate,
-                Parameter::Tilt(axis) => prescribed[axis + 1] += rate,
+                Parameter::Tilt(axis) => prescribed[axis.index() + 1] += rate,
                 _ => {}
             }
         }

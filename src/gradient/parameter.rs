@@ -10,7 +10,7 @@ use crate::compliance::response::{Body, ResponseSlope};
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
 use crate::model::body::{BodyParameter, HalfSpace};
-use crate::model::grid::{full_window, repeating};
+use crate::model::grid::{Axis, full_window, repeating};
 use crate::model::surface::Surface;
 use crate::stress::Member;
 
@@ -19,6 +19,7 @@ use crate::stress::Member;
 /// Its text is its path in a case file: `body.layers[0].material.young`, `counterbody.substrate.poisson`,
 /// `shape.radius`, `load`, `eccentricity[0]`, `moment[1]`, `approach`, `tilt[0]`.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Parameter {
     /// A number of one of the bodies: a modulus, Poisson's ratio or a thickness.
     Body(Member, BodyParameter, String),
@@ -27,13 +28,13 @@ pub enum Parameter {
     /// The load W.
     Load,
     /// The eccentricity of the load along x or y.
-    Eccentricity(usize),
+    Eccentricity(Axis),
     /// The prescribed moment Σ p x dA or Σ p y dA.
-    Moment(usize),
+    Moment(Axis),
     /// The prescribed approach.
     Approach,
     /// The prescribed slope along x or y.
-    Tilt(usize),
+    Tilt(Axis),
     /// The coefficient of friction of the stress that is the output.
     Friction,
 }
@@ -45,10 +46,10 @@ impl fmt::Display for Parameter {
             Self::Body(Member::Counterbody, _, path) => write!(f, "counterbody.{path}"),
             Self::Shape(name) => write!(f, "shape.{name}"),
             Self::Load => f.write_str("load"),
-            Self::Eccentricity(axis) => write!(f, "eccentricity[{axis}]"),
-            Self::Moment(axis) => write!(f, "moment[{axis}]"),
+            Self::Eccentricity(axis) => write!(f, "eccentricity[{}]", axis.index()),
+            Self::Moment(axis) => write!(f, "moment[{}]", axis.index()),
             Self::Approach => f.write_str("approach"),
-            Self::Tilt(axis) => write!(f, "tilt[{axis}]"),
+            Self::Tilt(axis) => write!(f, "tilt[{}]", axis.index()),
             Self::Friction => f.write_str("friction"),
         }
     }
@@ -81,7 +82,7 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
         let Some(Ok(body)) = body.map(|body| layered(body, "")) else {
             continue;
         };
-        let named = |one: BodyParameter| Parameter::Body(member, one, one.path(&body));
+        let named = |number: BodyParameter| Parameter::Body(member, number, number.path(&body));
         parameters.extend(body.parameters().into_iter().map(named));
     }
     if let Some(shape) = shape {
@@ -94,13 +95,14 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
         None => Parameter::Approach,
     });
     let grid = solution.grid();
-    for axis in 0..2 {
+    for direction in Axis::ALL {
+        let axis = direction.index();
         // A line contact has no tilt along its strips.
         let tilts = !(grid.is_periodic()[axis] || grid.is_line() && axis == 0);
         match (motion.eccentricity[axis], motion.moment[axis]) {
-            (Some(_), _) => parameters.push(Parameter::Eccentricity(axis)),
-            (_, Some(_)) => parameters.push(Parameter::Moment(axis)),
-            _ if tilts => parameters.push(Parameter::Tilt(axis)),
+            (Some(_), _) => parameters.push(Parameter::Eccentricity(direction)),
+            (_, Some(_)) => parameters.push(Parameter::Moment(direction)),
+            _ if tilts => parameters.push(Parameter::Tilt(direction)),
             _ => {}
         }
     }
@@ -114,7 +116,7 @@ pub(super) fn named(
     paths: &[&str],
 ) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
-        let parameter = known.iter().find(|one| one.to_string() == **path);
+        let parameter = known.iter().find(|parameter| parameter.to_string() == **path);
         parameter.cloned().ok_or_else(|| refusal(solution, path, known))
     };
     paths.iter().map(find).collect()
@@ -128,7 +130,7 @@ fn refusal(solution: &Solution, path: &str, known: &[Parameter]) -> Error {
             "cells join and leave where a shape is cut off, one by one; take the drop of its profile near the end"
         }
         _ if path.starts_with("shape.")
-            && !known.iter().any(|one| matches!(one, Parameter::Shape(_))) =>
+            && !known.iter().any(|parameter| matches!(parameter, Parameter::Shape(_))) =>
         {
             "the shape is not given, or has no number on which the gap depends smoothly (a flat punch's radius moves \
              whole cells); give `shape`, or use the derivative with respect to the gap itself, gradient.gap"
@@ -200,10 +202,10 @@ impl Slope {
                     Parameter::Moment(_) => 1.0,
                     _ => load,
                 };
-                Self::of_target(state, unit(axis + 1).map(|of| of * moment / area))
+                Self::of_target(state, unit(axis.index() + 1).map(|of| of * moment / area))
             }
             Parameter::Approach => Self::of_motion(state, unit(0)),
-            Parameter::Tilt(axis) => Self::of_motion(state, unit(axis + 1)),
+            Parameter::Tilt(axis) => Self::of_motion(state, unit(axis.index() + 1)),
             Parameter::Friction => Self::of_motion(state, [0.0; 3]),
         })
     }

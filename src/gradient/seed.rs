@@ -6,7 +6,7 @@ use crate::contact::Solution;
 use crate::error::{Error, Result, finite, require, same_shape};
 use crate::gradient::parameter::Parameter;
 use crate::gradient::state::Linearised;
-use crate::model::grid::{Grid, Window};
+use crate::model::grid::{Axis, Grid, Window};
 use crate::stress::{Member, Side};
 
 /// Relative difference of two pressures that tie.
@@ -48,16 +48,16 @@ impl Seed {
         Ok(match output {
             Output::Approach => Self::of_motion(state, 0),
             Output::Tilt(axis) | Output::Moment(axis)
-                if solution.grid().is_periodic()[axis_of(*axis)?] =>
+                if solution.grid().is_periodic()[axis.index()] =>
             {
                 return Err(Error::no_derivative(
                     "a tilt or a moment",
                     "the grid is periodic along this axis: there is neither a tilt nor a moment",
                 ));
             }
-            Output::Tilt(axis) => Self::of_motion(state, 1 + axis_of(*axis)?),
+            Output::Tilt(axis) => Self::of_motion(state, 1 + axis.index()),
             Output::Load => Self::of_moment(state, 0, area),
-            Output::Moment(axis) => Self::of_moment(state, 1 + axis_of(*axis)?, area),
+            Output::Moment(axis) => Self::of_moment(state, 1 + axis.index(), area),
             Output::PressureNorm(r) => Self::pressure_norm(state, area, *r)?,
             Output::ParticipationArea => {
                 let (sum, square) = (p.iter().sum::<f64>(), p.iter().map(|p| p * p).sum::<f64>());
@@ -289,10 +289,6 @@ fn number_in([x, y]: &Window, [i, j]: [usize; 2]) -> Option<usize> {
     (x.contains(&i) && y.contains(&j)).then(|| (i - x.start) * y.len() + (j - y.start))
 }
 
-fn axis_of(axis: usize) -> Result<usize> {
-    require("axis", axis as f64, axis < 2, "0 (x) or 1 (y)").map(|_| axis)
-}
-
 /// The largest and the second largest of `values`, with their numbers.
 pub(super) fn largest(values: &[f64]) -> [(usize, f64); 2] {
     let mut largest_two = [(0, f64::NEG_INFINITY); 2];
@@ -420,15 +416,16 @@ pub(super) fn parabola([before, at, after]: [f64; 3]) -> Option<[f64; 3]> {
     derive(serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub enum Output {
     /// Approach of the origin \[m\].
     Approach,
     /// Slope along x or y.
-    Tilt(usize),
+    Tilt(Axis),
     /// Load Σ p dA \[N\].
     Load,
     /// First moment Σ p x dA or Σ p y dA \[N m\].
-    Moment(usize),
+    Moment(Axis),
     /// (Σ pʳ dA)^{1/r}, a smooth stand-in for the peak pressure where r is 8 to 30.
     PressureNorm(f64),
     /// Peak of parabolas through the cell of the largest pressure and its neighbours along x and y \[Pa\].
@@ -459,6 +456,7 @@ pub enum Output {
 /// A stress under the pressure as uniform over each cell, which is what [`stress`](crate::stress()) computes.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct StressOutput {
     /// The body.
     pub member: Member,
@@ -470,6 +468,14 @@ pub struct StressOutput {
     pub friction: f64,
     /// Direction of the traction on the body; the counterbody gets the opposite. Default: that in which the shape rolls.
     pub direction: Option<[f64; 2]>,
+}
+
+builders! {
+    StressOutput {
+        with_member(member: Member),
+        with_friction(friction: f64),
+        with_direction(direction: impl Into<Option<[f64; 2]>>),
+    }
 }
 
 impl StressOutput {
@@ -486,6 +492,7 @@ impl StressOutput {
     derive(serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub enum Measure {
     /// σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz, by number.
     Component(usize),
@@ -506,6 +513,7 @@ pub enum Measure {
     derive(serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub enum StressPlace {
     /// The point (x, y, z), bilinear between cell centres, above or below an interface.
     Point([f64; 3], Side),
@@ -542,6 +550,7 @@ impl StressPlace {
 
 /// Derivatives of one output.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Gradient {
     /// The output.
     pub output: Output,
@@ -568,6 +577,7 @@ impl Gradient {
 
 /// Change of a solution along a direction of parameters, while the contact stays.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Direction {
     /// ṗ (nx, ny); 0 outside the contact.
     pub pressure: Array2<f64>,

@@ -238,14 +238,14 @@ impl Linearised {
                 }
                 factors.push(factor);
             }
-            let rest = dot(&values, &values).sqrt();
-            if rest <= SINGULAR * size {
+            let norm = dot(&values, &values).sqrt();
+            if norm <= SINGULAR * size {
                 return Err(refused(
                     "the cells in contact are too few for the loaded freedoms: refine the grid",
                 ));
             }
-            values.iter_mut().for_each(|v| *v /= rest);
-            factors.push(rest);
+            values.iter_mut().for_each(|v| *v /= norm);
+            factors.push(norm);
             columns.push(LoadedColumn { freedom, values, factors });
         }
         self.columns = columns;
@@ -275,14 +275,14 @@ impl Linearised {
             sums.push(sum);
         }
         let mut image = vec![0.0; right.len()];
-        let mut rest = right.to_vec();
+        let mut residual = right.to_vec();
         if sums.iter().any(|sum| *sum != 0.0) {
             self.tangent.apply(&psi, &mut image);
-            rest.iter_mut().zip(&image).for_each(|(r, image)| *r -= image);
+            residual.iter_mut().zip(&image).for_each(|(r, image)| *r -= image);
         }
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
         let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
-        let correction = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
+        let correction = self.tangent.solve_beside(&residual, &span, tolerance, &mut ask)?;
         psi.iter_mut().zip(correction).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
         image.iter_mut().zip(right).for_each(|(image, r)| *image -= r);

@@ -8,6 +8,7 @@ use crate::error::{Result, positive, require};
 
 /// How the surfaces adhere.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Adhesion {
     /// They do not.
     #[default]

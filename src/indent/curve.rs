@@ -30,6 +30,7 @@ const FEW: usize = 6;
 
 /// Load over approach. Where nothing touches, all but the approach is 0.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Curve {
     /// Loads \[N\].
     pub load: Vec<f64>,
@@ -61,9 +62,9 @@ struct CurveTable {
 impl CurveTable {
     /// ln a at the position from −1 to 1.
     fn place(&self, position: f64) -> f64 {
-        let part = 0.5 * (1.0 + position);
-        let part = if self.has_root { part * part } else { part };
-        self.low + (self.high - self.low) * part
+        let fraction = 0.5 * (1.0 + position);
+        let fraction = if self.has_root { fraction * fraction } else { fraction };
+        self.low + (self.high - self.low) * fraction
     }
 
     /// The table of `row` from ln a = `low` to `high`; none where it is not resolved.
@@ -111,8 +112,8 @@ impl CurveTable {
 
     /// Barycentric weights of the rows at ln a, normed.
     fn weights(&self, log: f64) -> Vec<f64> {
-        let part = ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
-        let part = if self.has_root { part.sqrt() } else { part };
+        let fraction = ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
+        let fraction = if self.has_root { fraction.sqrt() } else { fraction };
         let n = self.rows.len() - 1;
         let node = |k: usize| {
             let end = if k == 0 || k == n { 0.5 } else { 1.0 };
@@ -120,7 +121,7 @@ impl CurveTable {
             [chebyshev(k, n), sign * end]
         };
         let nodes: Vec<[f64; 2]> = (0..=n).map(node).collect();
-        barycentric(&nodes, 2.0 * part - 1.0)
+        barycentric(&nodes, 2.0 * fraction - 1.0)
     }
 
     fn column(&self, weights: &[f64], column: usize) -> f64 {

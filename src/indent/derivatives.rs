@@ -54,6 +54,7 @@ pub enum Variable {
 
 /// Derivatives of a state, per unit of the variable.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Change<'a> {
     /// Derivative of the contact radius.
     pub radius: f64,
@@ -462,7 +463,7 @@ impl Point {
         let edge = self.step();
         let system = &self.parts.system;
         let around = self.zone.as_ref().map_or(0.0, Zone::slope);
-        let mut needed = edge / (2.0 * self.radius) + around - self.density().edge_slope();
+        let mut needed = edge / (2.0 * self.radius) + around - self.density().slope_at_edge();
         let mut more = edge;
         if edge.abs() > 0.0 {
             let wider = self.widening(edge);

@@ -438,6 +438,7 @@ const NO_ZONE: Error = Error::NoState(
 
 /// Surfaces that attract each other and do not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Apart {
     /// Radius c \[m\] up to which the surfaces attract each other.
     pub outer_radius: f64,

@@ -17,6 +17,7 @@ pub use interior::InteriorStress;
 
 /// One state of an indentation.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Point {
     /// Contact radius a \[m\].
     pub radius: f64,
@@ -272,6 +273,7 @@ impl fmt::Display for IndentWarning {
 
 /// The last stable state of a tip that is pulled off.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct PullOff {
     /// What was given.
     pub control: Control,

@@ -76,7 +76,7 @@ impl Density<'_> {
     }
 
     /// φ'(a) at the edge.
-    pub(super) fn edge_slope(&self) -> f64 {
+    pub(super) fn slope_at_edge(&self) -> f64 {
         let parts = self.parts;
         let a = parts.system.radius;
         let [_, slope, _] = parts.tip.transform(a);

@@ -93,17 +93,19 @@ impl Indent {
             return Ok(touching);
         }
         // δ(c) falls from −w/σ₀ and may rise again before the tip touches.
-        let at = |part: f64| {
-            let outer = part * touching.outer_radius;
+        let at = |fraction: f64| {
+            let outer = fraction * touching.outer_radius;
             Apart::new(&self.stack, &self.tip, outer, numbers)
         };
-        let approach = |part: f64| at(part).approach;
-        let slope = |part: f64| Ok(approach(part * (1.0 + 1e-5)) - approach(part * (1.0 - 1e-5)));
+        let approach = |fraction: f64| at(fraction).approach;
+        let slope = |fraction: f64| {
+            Ok(approach(fraction * (1.0 + 1e-5)) - approach(fraction * (1.0 - 1e-5)))
+        };
         if slope(1.0)? <= 0.0 {
             return Ok(touching);
         }
         match bracketed(slope, [1e-3, 1.0]) {
-            Ok(part) => Ok(at(part)),
+            Ok(fraction) => Ok(at(fraction)),
             Err(_) => Ok(touching),
         }
     }

@@ -26,6 +26,7 @@ pub struct Tip {
 
 /// A number that the profile of a tip depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TipParameter {
     /// The number of this position in [`Tip::numbers`].
     Number(usize),

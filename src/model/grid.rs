@@ -1,5 +1,6 @@
 //! Grids of rectangular cells. The pressure is uniform over each cell.
 
+use std::fmt;
 use std::ops::Range;
 
 use ndarray::Array1;
@@ -7,6 +8,40 @@ use ndarray::Array1;
 use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::data::value;
 use crate::numerics::parallel::check_memory;
+
+/// An axis of the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(try_from = "usize"))]
+pub enum Axis {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+}
+
+impl Axis {
+    /// Both, x first.
+    pub const ALL: [Self; 2] = [Self::X, Self::Y];
+
+    /// 0 of x, 1 of y: its place in a pair such as [`Grid::spacing`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl TryFrom<usize> for Axis {
+    type Error = Error;
+
+    fn try_from(index: usize) -> Result<Self> {
+        require("axis", index as f64, index < 2, "0 (x) or 1 (y)").map(|_| Self::ALL[index])
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(["x", "y"][self.index()])
+    }
+}
 
 /// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
 ///

@@ -138,6 +138,7 @@ pub fn contact_modulus(body: &Elastic, counterbody: Option<&Elastic>) -> f64 {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Point {
     /// Contact radius a = (3WR/4E*)^{1/3} \[m\].
     pub radius: f64,
@@ -194,6 +195,7 @@ impl Point {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Line {
     /// Half-width b = √(4W'R/πE*) \[m\].
     pub half_width: f64,
@@ -287,6 +289,7 @@ const RATIO_ITERATIONS: usize = 60;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Ellipse {
     /// Semi-axes a along x and b along y \[m\].
     pub semi_axes: [f64; 2],
@@ -368,6 +371,7 @@ fn axis_ratio(radii: f64) -> f64 {
 /// Largest shear stress, and the depth at which it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Shear {
     /// Half the difference of the largest and the smallest principal stress \[Pa\].
     pub stress: f64,

@@ -454,6 +454,7 @@ fn alternative<S: Surface>(shape: &S, number: usize) -> Box<dyn Surface + '_> {
 
 /// The extent of a shape along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Extent {
     /// A shape whose gap increases without limit in both directions.
     Rising,

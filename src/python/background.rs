@@ -70,7 +70,7 @@ where
     T: Send + 'static,
 {
     if !CAN_START_THREADS {
-        return run_here(py, callback, work);
+        return run_on_calling_thread(py, callback, work);
     }
     let (sender, mut messages) = mpsc::channel();
     let (answer, answers) = mpsc::channel::<bool>();
@@ -117,7 +117,7 @@ where
 }
 
 /// [`run`] on this thread.
-fn run_here<M, T>(
+fn run_on_calling_thread<M, T>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
     work: impl FnOnce(&mut Caller<M>) -> T + Send,

@@ -37,9 +37,9 @@ pub(super) fn fatigue_stress<'py>(
     let numbers = |of: fn(&crate::fatigue::Equivalent) -> f64| {
         equivalents.iter().map(of).collect::<Array1<f64>>().into_pyarray(py)
     };
-    let at: Array1<usize> = equivalents.iter().map(|one| one.at).collect();
-    let stresses = numbers(|one| one.stress);
-    Ok((stresses, at.into_pyarray(py), numbers(|one| one.gap.unwrap_or(f64::NAN))))
+    let at: Array1<usize> = equivalents.iter().map(|equivalent| equivalent.at).collect();
+    let stresses = numbers(|equivalent| equivalent.stress);
+    Ok((stresses, at.into_pyarray(py), numbers(|equivalent| equivalent.gap.unwrap_or(f64::NAN))))
 }
 
 /// Yield stress in shear and residual stresses (x, y) of the shakedown of each history (n, times, 6), its first yield,

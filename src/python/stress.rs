@@ -235,7 +235,7 @@ pub(super) fn stress_plan(
     threads: Argument<'_>,
 ) -> PyResult<PyStressPlan> {
     let (member, _) = of.body(&body)?;
-    let options = StressOptions::with_threads(threads.count("threads", 1)?);
+    let options = StressOptions::default().with_threads(threads.count("threads", 1)?);
     let plan = watched(py, None, move |progress| {
         let options = options.watched(progress);
         Ok(match of {

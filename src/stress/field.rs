@@ -221,6 +221,7 @@ pub(crate) struct Tensor {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct Peak {
     /// The value \[Pa\].
     pub value: f64,

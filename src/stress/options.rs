@@ -28,6 +28,7 @@ pub enum Side {
 /// extrapolated from two of them; on periodic grids the first cell follows the last. Between a free end and the cells
 /// beside it, they are interpolated from the body's side alone: from its last cells, and from the face itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Section {
     /// All cell centres.
     #[default]
@@ -42,6 +43,7 @@ pub enum Section {
 
 /// Options of an evaluation; the depths are an argument of their own.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct StressOptions {
     /// Side of an interface, for depths that lie on one. Default: below.
     pub side: Side,
@@ -69,6 +71,19 @@ pub struct StressOptions {
     pub threads: Option<usize>,
 }
 
+builders! {
+    StressOptions {
+        with_side(side: Side),
+        with_section(section: Section),
+        with_friction(friction: f64),
+        with_direction(direction: impl Into<Option<[f64; 2]>>),
+        with_residual(residual: impl Into<Vec<f64>>),
+        with_displacement(displacement: bool),
+        with_refine(refine: impl Into<Option<f64>>),
+        with_threads(threads: impl Into<Option<usize>>),
+    }
+}
+
 impl Default for StressOptions {
     fn default() -> Self {
         Self {
@@ -85,11 +100,6 @@ impl Default for StressOptions {
 }
 
 impl StressOptions {
-    /// Default options on `threads` threads; none: all of the machine's.
-    pub fn with_threads(threads: Option<usize>) -> Self {
-        Self { threads, ..Self::default() }
-    }
-
     /// These options, with a callback that is told the fraction of the work done, and that may break to stop it.
     pub fn watched<'a>(&'a self, progress: &'a mut StressProgress<'a>) -> WatchedStress<'a> {
         WatchedStress { options: self, progress: Some(progress) }
@@ -124,9 +134,9 @@ impl<'a> WatchedStress<'a> {
     }
 
     /// Tells the callback the fraction of the work done.
-    pub(crate) fn tell(&mut self, part: f64) -> ControlFlow<()> {
+    pub(crate) fn tell(&mut self, fraction: f64) -> ControlFlow<()> {
         match &mut self.progress {
-            Some(progress) => progress(part),
+            Some(progress) => progress(fraction),
             None => ControlFlow::Continue(()),
         }
     }

@@ -38,8 +38,8 @@ pub(crate) type Weights = [Vec<f64>; STRESSES];
 /// let steel = Elastic::new(210e9, 0.3)?;
 /// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
 /// let plan = solution.stress_plan(Member::Body, &StressOptions::default())?;
-/// let axis = StressOptions { section: Section::Axis([0.0, 0.0]), ..StressOptions::default() };
-/// let sliding = StressOptions { friction: 0.3, direction: Some([1.0, 0.0]), ..StressOptions::default() };
+/// let axis = StressOptions::default().with_section(Section::Axis([0.0, 0.0]));
+/// let sliding = StressOptions::default().with_friction(0.3).with_direction([1.0, 0.0]);
 /// let below = plan.stress(&[1e-5, 2e-5, 4e-5], &axis)?;
 /// let surface = plan.stress(&[0.0], &sliding)?;
 /// assert!(below.zz().iter().all(|zz| *zz < 0.0));
@@ -158,7 +158,7 @@ impl<'a> PressureSource<'a> {
     /// [`PressureSource::plan`], of which a stop is an error.
     pub(super) fn planned(&self, mut watched_options: WatchedStress) -> Result<StressPlan> {
         let threads = watched_options.options().threads;
-        let plan = self.plan(threads, &mut |part| watched_options.tell(part))?;
+        let plan = self.plan(threads, &mut |fraction| watched_options.tell(fraction))?;
         plan.ok_or(Error::Stopped)
     }
 
@@ -171,7 +171,7 @@ impl<'a> PressureSource<'a> {
     ) -> Result<Option<T>> {
         check_memory(self.grid.shape(), memory + self.memory())?;
         let threads = watched_options.options().threads;
-        let mut progress = |part| watched_options.tell(part);
+        let mut progress = |fraction| watched_options.tell(fraction);
         let plan = self.plan(threads, &mut progress)?;
         Ok(plan.map(|plan| evaluate(&plan, &mut progress)))
     }
@@ -214,7 +214,7 @@ impl StressPlan {
         pressure: &ArrayRef2<f64>,
         threads: Option<usize>,
     ) -> Result<Self> {
-        let options = StressOptions::with_threads(threads);
+        let options = StressOptions::default().with_threads(threads);
         PressureSource::uniform(body, grid, pressure).planned((&options).into())
     }
 
@@ -233,7 +233,7 @@ impl StressPlan {
         let request =
             Request::checked(body, grid, &self.sliding, depths, watched_options.options())?;
         check_memory(grid.shape(), request.memory())?;
-        Ok(request.evaluate(self, &mut |part| watched_options.tell(part)))
+        Ok(request.evaluate(self, &mut |fraction| watched_options.tell(fraction)))
     }
 
     /// Σ_c Σ_k K_c[k − i] w_c[k] in the cells i that the plan's pressure loads: the derivative with respect to the pressure
@@ -328,7 +328,7 @@ impl StressPlan {
         let friction = self.sliding.traction(body, options)?;
         let window = Points::new(body, grid, options.section)?.window();
         let (points, steps, [_, ny]) =
-            (self.edge_points(), self.whole.steps(&window), grid.shape());
+            (self.edge_points_on_body(), self.whole.steps(&window), grid.shape());
         let lost = self.feels_lost_edge(&points);
         let is_lost = window[0]
             .clone()
@@ -360,7 +360,7 @@ impl StressPlan {
     /// [`Section::Axis`](crate::Section::Axis) gives them. Empty where the edge is not known within cells: sharp edges, rough
     /// surfaces, contacts of few cells, coatings as thick as a cell, pressures that were given, and periodic grids.
     pub fn edge(&self) -> Vec<[f64; 2]> {
-        self.edge_points().iter().map(|point| self.position(point)).collect()
+        self.edge_points_on_body().iter().map(|point| self.position(point)).collect()
     }
 
     /// Coordinates x and y of a point.
@@ -388,7 +388,7 @@ impl StressPlan {
     }
 
     /// Points of the edge that the body has.
-    pub(super) fn edge_points(&self) -> Vec<CellPoint> {
+    pub(super) fn edge_points_on_body(&self) -> Vec<CellPoint> {
         let solved = self.whole.solved.as_ref();
         let mut points = solved.map_or_else(Vec::new, |solved| solved.subcell.edge());
         points.retain(|point| {
@@ -614,7 +614,7 @@ impl<'a> Request<'a> {
         let mut evaluation = Evaluation::new(plan, self.friction, self.options.displacement);
         for (done, place) in self.places.iter().enumerate() {
             let total = self.places.len() as f64;
-            let mut progress = |part: f64| progress((done as f64 + part) / total);
+            let mut progress = |fraction: f64| progress((done as f64 + fraction) / total);
             let mut here: Vec<&mut [f64]> = fields
                 .iter_mut()
                 .map(|field| &mut field[done * count..(done + 1) * count])

@@ -162,7 +162,7 @@ impl Refined<'_> {
         let body = source.body;
         let request =
             SummaryRequest::checked(body, source.grid, &source.sliding, strengths, self.options)?;
-        let mut progress = |part: f64| watched_options.tell(0.5 * part);
+        let mut progress = |fraction: f64| watched_options.tell(0.5 * fraction);
         let Some(plan) = source.plan(self.options.threads, &mut progress)? else {
             return Ok(StressSummary::default());
         };
@@ -172,7 +172,7 @@ impl Refined<'_> {
         if !of_grid.finished {
             return Ok(of_grid.summary(body, strengths));
         }
-        let mut progress = |part: f64| watched_options.tell(0.5 + 0.5 * part);
+        let mut progress = |fraction: f64| watched_options.tell(0.5 + 0.5 * fraction);
         let beyond = std::mem::take(&mut of_grid.beyond);
         // Parts of the grid that finer cells stand for, and the extremes of these.
         let mut cores: Vec<Window> = Vec::new();
@@ -472,7 +472,7 @@ impl Refined<'_> {
         for i in patch.window[0].clone() {
             patch.window[1].clone().for_each(|j| outside[[i, j]] = 0.0);
         }
-        let threads = StressOptions::with_threads(self.options.threads);
+        let threads = StressOptions::default().with_threads(self.options.threads);
         let planned = |body: &HalfSpace, pressure: &Array2<f64>| {
             let source = PressureSource {
                 body,

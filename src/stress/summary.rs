@@ -19,11 +19,19 @@ use crate::numerics::parallel::{check_memory, memory_of};
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
 /// not known.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Strengths {
     /// Yield stresses \[Pa\], which von Mises' stress is compared with.
     pub yield_stress: Vec<Option<f64>>,
     /// Tensile strengths \[Pa\], which the largest principal stress is compared with.
     pub strength: Vec<Option<f64>>,
+}
+
+builders! {
+    Strengths {
+        with_yield_stress(yield_stress: Vec<Option<f64>>),
+        with_strength(strength: Vec<Option<f64>>),
+    }
 }
 
 /// The extremes in one layer, or in the substrate.
@@ -33,6 +41,7 @@ pub struct Strengths {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct LayerSummary {
     /// Number of the layer, from the surface down; the substrate's is the number of layers.
     pub layer: usize,
@@ -69,6 +78,7 @@ fn depths<'de, D: serde::Deserializer<'de>>(of: D) -> std::result::Result<[f64; 
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct InterfaceSummary {
     /// Number of the interface, from the surface down.
     pub interface: usize,
@@ -92,6 +102,7 @@ pub struct InterfaceSummary {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct StressSummary {
     /// Layers from the surface down; the substrate last, unless it is rigid.
     pub layers: Vec<LayerSummary>,
@@ -318,7 +329,7 @@ impl StressPlan {
         )?;
         let scope = Scope::of(self);
         Ok(request
-            .evaluate(self, scope, &mut |part| watched_options.tell(part))
+            .evaluate(self, scope, &mut |fraction| watched_options.tell(fraction))
             .summary(&self.whole.body, strengths))
     }
 }
@@ -559,7 +570,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     ) -> Self {
         let shape @ [_, ny] = plan.whole.grid.shape();
         let cells = shape.iter().product();
-        let edge = plan.edge_points();
+        let edge = plan.edge_points_on_body();
         let mut near_edge = vec![false; cells];
         for [i, j] in edge.iter().flat_map(|point| around(shape, point.cell, 1)) {
             near_edge[i * ny + j] = true;
@@ -610,7 +621,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     fn evaluate(&mut self, place: &Place, points: bool) -> ControlFlow<()> {
         let (done, planned) = (self.done as f64, self.planned as f64);
         let progress = &mut self.progress;
-        let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
+        let mut progress = |fraction: f64| progress(((done + fraction) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
         if let Some(beside) = &mut self.scope.beside {
@@ -881,8 +892,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         if self.scope.beside.is_some() || !self.scope.without.is_empty() {
             return ControlFlow::Continue(peaks);
         }
-        let part = (self.done as f64 / self.planned as f64).min(1.0);
-        let mut progress = |_| (self.progress)(part);
+        let fraction = (self.done as f64 / self.planned as f64).min(1.0);
+        let mut progress = |_| (self.progress)(fraction);
         let inside = (peaks, largest_of(&peaks), best);
         let [peaks, beyond] =
             self.beyond.peaks(inside, places, self.residual, of, &mut progress)?;

@@ -328,7 +328,7 @@ impl<S: Surface> WearSession<S> {
             .thinned_plan(&even)
             .map(|plan| plan.run(|| plan.solve_alone(&worn, &self.motion, &options, progress)));
         let even = even.transpose()?;
-        if !even.iter().chain([&other]).all(|one| one.report.converged()) {
+        if !even.iter().chain([&other]).all(|solution| solution.report.converged()) {
             return Ok(None);
         }
         let pressure = even.as_ref().map_or(pressure, |even| &even.pressure);
@@ -642,8 +642,8 @@ impl<S: Surface> WearSession<S> {
         let now = &begun.solution.pressure;
         match &self.change {
             Some((change, over)) if change.dim() == now.dim() => {
-                let part = (length / over).min(1.0);
-                Zip::from(now).and(change).map_collect(|p, change| (p + part * change).max(0.0))
+                let fraction = (length / over).min(1.0);
+                Zip::from(now).and(change).map_collect(|p, change| (p + fraction * change).max(0.0))
             }
             _ => now.clone(),
         }
@@ -699,28 +699,28 @@ impl<S: Surface> WearSession<S> {
                 return Ok(Some(trial));
             }
         }
-        let part = self.part_of_layer(&trial.reach);
+        let fraction = self.part_of_layer(&trial.reach);
         // Length, and what the part lacks or has beyond; a side that stays counts half (the Illinois method).
         let mut least = [0.0, 1.0 - self.part_of_layer(begun.depth)];
-        let mut most = [trial.length, part - 1.0];
+        let mut most = [trial.length, fraction - 1.0];
         let mut was_beyond = true;
         // The depth jumps, by what a pressure is known to: the nearest trial counts.
-        let (mut off, mut nearest) = (part - 1.0, trial);
+        let (mut off, mut nearest) = (fraction - 1.0, trial);
         for _ in 0..TRIALS {
             let [[a, lacks], [b, beyond]] = [least, most];
             let length = a + (b - a) * lacks / (lacks + beyond);
             let Some(next) = step(length, &nearest.solution.pressure)? else { return Ok(None) };
-            let part = self.part_of_layer(&next.reach);
-            let is_beyond = part > 1.0;
+            let fraction = self.part_of_layer(&next.reach);
+            let is_beyond = fraction > 1.0;
             let [own, other] =
                 if is_beyond { [&mut most, &mut least] } else { [&mut least, &mut most] };
-            *own = [next.length, (part - 1.0).abs()];
+            *own = [next.length, (fraction - 1.0).abs()];
             if was_beyond == is_beyond {
                 other[1] *= 0.5;
             }
             was_beyond = is_beyond;
-            if (part - 1.0).abs() < off {
-                (off, nearest) = ((part - 1.0).abs(), next);
+            if (fraction - 1.0).abs() < off {
+                (off, nearest) = ((fraction - 1.0).abs(), next);
             }
             if off <= MOMENT {
                 return Ok(Some(nearest));
@@ -736,19 +736,19 @@ impl<S: Surface> WearSession<S> {
         let cells = bodies.flat_map(|(k, bottom)| {
             reach[k].indexed_iter().map(move |(at, depth)| (depth / bottom, k, at))
         });
-        cells.max_by(|one, other| one.0.total_cmp(&other.0))
+        cells.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Part of [`Self::furthest`].
     fn part_of_layer(&self, reach: &[Array2<f64>; 2]) -> f64 {
-        self.furthest(reach).map_or(0.0, |(part, ..)| part)
+        self.furthest(reach).map_or(0.0, |(fraction, ..)| fraction)
     }
 
     /// Difference of the distances at which a layer is through where a step ends at it, and its twin does before or after; 0 where
     /// none is. Depths go on as they grow at the end of the step: of the two ends, that at which more is worn, and where neither
     /// wears, as in the step.
     fn apart_in_distance(&self, begun: &Start, ends: [&Trial; 2]) -> f64 {
-        let (part, k, at) = match self.furthest(&ends[0].reach) {
+        let (fraction, k, at) = match self.furthest(&ends[0].reach) {
             Some(furthest) if furthest.0 >= 1.0 - THROUGH => furthest,
             _ => return 0.0,
         };
@@ -761,7 +761,7 @@ impl<S: Surface> WearSession<S> {
         if growth <= 0.0 {
             growth = (ends[0].reach[k][at] - begun.depth[k][at]) / ends[0].length;
         }
-        let apart = (part - self.part_of_layer(&ends[1].reach)).abs().max(THROUGH);
+        let apart = (fraction - self.part_of_layer(&ends[1].reach)).abs().max(THROUGH);
         apart * rates.bottoms[layer] / growth
     }
 
@@ -1053,7 +1053,7 @@ fn passed(before: &FrictionSolution, after: &FrictionSolution) -> Array2<f64> {
         if after.normal.pressure[[i, j]] <= 0.0 {
             let rigid = [moved[0] - moved[2] * y[j], moved[1] + moved[2] * x[i]];
             let [along, across] = [0, 1].map(|axis| {
-                let [a, b] = [before, after].map(|one| one.displacement[axis][[i, j]]);
+                let [a, b] = [before, after].map(|solution| solution.displacement[axis][[i, j]]);
                 rigid[axis] - (b - a)
             });
             *slip = along.hypot(across);

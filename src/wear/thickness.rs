@@ -281,24 +281,25 @@ impl Beside for Thinning {
         Arc::new(self.worn.clone().on(within, threads))
     }
 
-    fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
+    fn entry(&self, cell: [usize; 2], loaded: [usize; 2]) -> f64 {
         let Thinned { depth, worn, layer } = &self.worn;
-        let [one, other] = [one, other].map(|cell| [0, 1].map(|k| self.window[k].start + cell[k]));
+        let [cell, loaded] =
+            [cell, loaded].map(|cell| [0, 1].map(|k| self.window[k].start + cell[k]));
         let strain = |from: [usize; 2], to: [usize; 2]| {
             layer.strain.entry([0, 1].map(|k| to[k] as isize - from[k] as isize))
         };
-        let direct = Constants::trace(&strain(other, one));
-        let mut sum = layer.ratio * (depth[one] + depth[other]) * direct;
-        if one == other {
-            sum += layer.own * depth[one];
+        let direct = Constants::trace(&strain(loaded, cell));
+        let mut sum = layer.ratio * (depth[cell] + depth[loaded]) * direct;
+        if cell == loaded {
+            sum += layer.own * depth[cell];
         }
         for (i, j) in each_cell(worn).filter(|(i, j)| depth[[*i, *j]] > 0.0) {
-            let made = layer.tensor(0.0, &strain(other, [i, j]));
-            let product = match *strain([i, j], one) {
+            let made = layer.tensor(0.0, &strain(loaded, [i, j]));
+            let product = match *strain([i, j], cell) {
                 [xx, xy, yy] => xx * made[0] + 2.0 * xy * made[1] + yy * made[2],
                 ref along => along.iter().sum::<f64>() * made[0],
             };
-            let weights = [one, other].map(|cell| {
+            let weights = [cell, loaded].map(|cell| {
                 layer
                     .strain
                     .resolved([cell[0] as isize - i as isize, cell[1] as isize - j as isize])

@@ -11,7 +11,7 @@ use nacre::{
 use ndarray::Array2;
 
 use crate::support::checks::pressure_off;
-use crate::support::settings::{Controls, by, coated, converged, converted, plan, stack, steel};
+use crate::support::settings::{by, coated, converged, converted, plan, stack, steel};
 
 /// Residual and overlap to which both algorithms solve.
 const TOLERANCE: f64 = 1e-12;
@@ -244,7 +244,7 @@ fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
         (Algorithm::PolonskyKeer, Solver::PolonskyKeer),
     ];
     for (algorithm, expected) in algorithms {
-        let options = Options { algorithm, ..Options::default() };
+        let options = Options::default().with_algorithm(algorithm);
         let mut last = 1;
         for stop in 1.. {
             let (mut calls, mut work) = (0, 0.0);

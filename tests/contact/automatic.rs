@@ -10,7 +10,7 @@ use nacre::{
 use ndarray::Array2;
 
 use crate::support::random::uniform;
-use crate::support::settings::{Controls, by, coated, plan, pressed, stack, steel};
+use crate::support::settings::{by, coated, plan, pressed, stack, steel};
 
 /// Estimated errors are of the size of true errors: few of these are three times as large.
 const ESTIMATES: f64 = 3.0;
@@ -269,7 +269,7 @@ fn a_cap_on_the_cells_is_kept() -> Result<()> {
     let body = Body::from(coated(steel()?, 2.0, 40e-6)?);
     let (roller, motion) = (Roller::new(5e-3, 1e-3, 1.0)?, Motion::load(20.0));
     let solve = |cells| {
-        let options = Options { cells, ..Options::default() };
+        let options = Options::default().with_cells(cells);
         solve_with(&roller, &body, &Setup::default(), &motion, &options)
     };
     let own = solve(None)?;
@@ -297,7 +297,7 @@ fn other_options_solve_on_the_grid_of_the_default_ones() -> Result<()> {
     let solve = |options: &Options| solve_with(&shape, &body, &setup, &motion, options);
     let found = solve(&default)?;
     assert_eq!(*found.grid(), grid);
-    let from = |initial| Options { initial: Some(initial), ..Options::default() };
+    let from = |initial| Options::default().with_initial(initial);
     let reference = by(Algorithm::PolonskyKeer, 1e-8);
     for options in [reference, from(found.pressure.clone())] {
         let other = solve(&options)?;

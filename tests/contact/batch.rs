@@ -10,7 +10,7 @@ use nacre::{
 };
 use ndarray::Array2;
 
-use crate::support::settings::{self, Controls, stack};
+use crate::support::settings::{self, stack};
 
 fn contact(threads: usize) -> Result<Contact> {
     let body = stack(Elastic::new(1.0, 0.25)?, [[4.0, 0.3, 0.1]])?;
@@ -25,14 +25,14 @@ fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
     // Four cases of one sphere are adjacent. One of them has a prescribed approach, which
     // changes what the solver takes for the undeformed gap.
     let cases: Vec<Case> = (0..24)
-        .map(|k| Case {
-            shape: &spheres[k / 4 % 2] as &dyn Surface,
-            motion: if k % 4 == 1 {
+        .map(|k| {
+            let motion = if k % 4 == 1 {
                 Motion::approach(0.001 * (k + 1) as f64).with_tilt([Some(1e-3), None])
             } else {
                 Motion::load(0.02 / (k + 1) as f64)
                     .with_eccentricity([Some(0.01 * (k % 12) as f64), None])
-            },
+            };
+            Case::new(&spheres[k / 4 % 2], motion)
         })
         .collect();
     let options = Options::default();
@@ -61,7 +61,7 @@ fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
 #[test]
 fn a_bad_case_is_its_own_result_and_none_are_none() -> Result<()> {
     let sphere = Sphere::new(50.0)?;
-    let cases = [0.02, -1.0, 0.01].map(|load| Case { shape: &sphere, motion: Motion::load(load) });
+    let cases = [0.02, -1.0, 0.01].map(|load| Case::new(&sphere, Motion::load(load)));
     let go_on = &mut |_| ControlFlow::Continue(());
     let contact = contact(2)?;
     let solved = contact.solve_many(&cases, &Options::default(), go_on)?;
@@ -75,7 +75,7 @@ fn a_bad_case_is_its_own_result_and_none_are_none() -> Result<()> {
 #[test]
 fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
     let sphere = Sphere::new(50.0)?;
-    let cases = [0.02; 2000].map(|load| Case { shape: &sphere, motion: Motion::load(load) });
+    let cases = [0.02; 2000].map(|load| Case::new(&sphere, Motion::load(load)));
     let mut last = 0;
     let solved = contact(2)?.solve_many(&cases, &Options::default(), &mut |done| {
         last = done;
@@ -93,9 +93,8 @@ fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
 #[ignore = "slow"]
 fn each_solution_is_given_away_once() -> Result<()> {
     let (sphere, contact) = (Sphere::new(50.0)?, contact(2)?);
-    let cases: Vec<Case> = (1..=200)
-        .map(|k| Case { shape: &sphere, motion: Motion::load(1e-5 * f64::from(k)) })
-        .collect();
+    let cases: Vec<Case> =
+        (1..=200).map(|k| Case::new(&sphere, Motion::load(1e-5 * f64::from(k)))).collect();
     for stop in [false, true] {
         let given = Mutex::new(vec![0; cases.len()]);
         let take = |number: usize, solved: Result<Solution>| {
@@ -139,9 +138,8 @@ impl Surface for Counted {
 fn cases_of_one_shape_share_its_undeformed_gap() -> Result<()> {
     let counted = |sphere| Counted { sphere, sampled: AtomicUsize::new(0) };
     let shapes = [counted(Sphere::new(50.0)?), counted(Sphere::new(80.0)?)];
-    let cases: Vec<Case> = (0..12)
-        .map(|k| Case { shape: &shapes[k / 6], motion: Motion::load(1e-3 * (k + 1) as f64) })
-        .collect();
+    let cases: Vec<Case> =
+        (0..12).map(|k| Case::new(&shapes[k / 6], Motion::load(1e-3 * (k + 1) as f64))).collect();
     let go_on = &mut |_| ControlFlow::Continue(());
     let solved = contact(1)?.solve_many(&cases, &Options::default(), go_on)?;
     assert_eq!(solved.len(), cases.len());

@@ -6,7 +6,7 @@ use nacre::{
 };
 
 use crate::support::contacts::RandomContact;
-use crate::support::settings::{Controls, plan, pressed, stack, steel};
+use crate::support::settings::{plan, pressed, stack, steel};
 
 /// Relative errors of peak pressure and approach compared with Hertz, and their estimates.
 fn errors(cells: [usize; 2], radius: f64) -> Result<[[f64; 2]; 2]> {
@@ -228,7 +228,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
         let motion = Motion::load(5e-4);
         let mut solution = contact.solve(&shape, &motion, &Options::default())?;
         if initial {
-            let options = Options { initial: Some(solution.pressure), ..Options::default() };
+            let options = Options::default().with_initial(solution.pressure);
             solution = contact.solve(&shape, &motion, &options)?;
         }
         assert_eq!(solution.report.discretisation.is_some(), is_known, "{cells:?}");

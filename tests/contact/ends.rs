@@ -19,9 +19,7 @@ use super::stiffness::assert_stiffness;
 use crate::messages::message;
 use crate::support::checks::{apart, pressure_off};
 use crate::support::random::uniform;
-use crate::support::settings::{
-    Controls, against, by, converged, plan, pressed, stack, steel, tolerance,
-};
+use crate::support::settings::{against, by, converged, plan, pressed, stack, steel, tolerance};
 
 /// A straight roller of this half-length with sharp ends, for which half-width and pressure of Hertz's line are 1 at the
 /// load π/2 per length.
@@ -145,7 +143,7 @@ fn controls_agree() -> Result<()> {
     let moment = Motion::load(LOAD).with_moment([Some(LOAD), None]);
     same("moment", &solved(&moment, &options)?);
     let shape = &ROLLER;
-    let cases = [loaded, moved].map(|motion| Case { shape, motion });
+    let cases = [loaded, moved].map(|motion| Case::new(shape, motion));
     let mut go_on = |_: usize| ControlFlow::Continue(());
     for solution in contact.solve_many(&cases, &options, &mut go_on)? {
         same("one of many", &solution.expect("nothing stops it")?);

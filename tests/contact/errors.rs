@@ -9,7 +9,7 @@ use nacre::{
 use ndarray::Array2;
 
 use crate::messages::message;
-use crate::support::settings::{Controls, plan, steel, threads, tolerance};
+use crate::support::settings::{plan, steel, threads, tolerance};
 
 const NAN: f64 = f64::NAN;
 const INFINITY: f64 = f64::INFINITY;
@@ -28,7 +28,7 @@ fn controls() -> Result<()> {
     let ball = Paraboloid::new(1.0, 1.0)?;
     let (load, approach) = (Motion::load(10.0), Motion::approach(1e-6));
     let moved = |motion: Motion| solved(&ball, &motion);
-    let (both, zero) = (Motion { approach: Some(1e-6), ..load }, Some(0.0));
+    let (both, zero) = (load.with_approach(1e-6), Some(0.0));
     refused! {
         moved(Motion::default()) => "exactly one of load and approach must be given";
         moved(both) => "exactly one of load and approach must be given";
@@ -111,7 +111,7 @@ fn plans_and_options() -> Result<()> {
     }
     let given = |coefficients: Array2<f64>, grid: Grid| {
         let coefficients = Some(coefficients.into_shared());
-        Contact::plan(&body, grid, Setup { coefficients, ..Setup::default() })
+        Contact::plan(&body, grid, Setup::default().with_coefficients(coefficients))
     };
     let exact = influence_coefficients(&body, &grid, Method::Exact)?;
     let mut infinite = exact.clone();
@@ -129,7 +129,7 @@ fn plans_and_options() -> Result<()> {
 
     let shape = Paraboloid::new(1.0, 1.0)?;
     let with = |options: Options| contact()?.solve(&shape, &Motion::load(1.0), &options);
-    let start = |initial| with(Options { initial: Some(initial), ..Options::default() });
+    let start = |initial| with(Options::default().with_initial(initial));
     let mut broken = Array2::zeros([16, 12]);
     broken[[7, 8]] = NAN;
     let to = |asked| with(tolerance(asked));
@@ -220,7 +220,7 @@ fn grids_that_are_not_to_be_found() -> Result<()> {
 
 #[test]
 fn an_iteration_that_did_not_converge_says_how_far_it_came() -> Result<()> {
-    let options = Options { max_iterations: Some(1), tolerance: 1e-10, ..Options::default() };
+    let options = Options::default().with_max_iterations(1).with_tolerance(1e-10);
     let shape = Paraboloid::new(1.0, 1.0)?;
     let solution = contact()?.solve(&shape, &Motion::load(1e4), &options)?;
     assert!(!solution.report.converged());

@@ -9,7 +9,7 @@ use ndarray::Array2;
 
 use crate::support::checks::pressure_off;
 use crate::support::random::uniform;
-use crate::support::settings::{Controls, by, converged, plan, steel};
+use crate::support::settings::{by, converged, plan, steel};
 
 /// Relative error of forces that three equations of equilibrium determine.
 const STATICS: f64 = 1e-9;
@@ -35,7 +35,7 @@ fn solve(
     motion: &Motion,
     algorithm: Algorithm,
 ) -> Result<Option<Solution>> {
-    let options = Options { algorithm, max_iterations: Some(ITERATIONS), ..Options::default() };
+    let options = Options::default().with_algorithm(algorithm).with_max_iterations(ITERATIONS);
     let solution = contact.solve(shape, motion, &options)?;
     let report = &solution.report;
     if !report.converged() {

@@ -13,23 +13,21 @@ use crate::support::claims::claim;
 use crate::support::contacts::{Random, RandomContact};
 use crate::support::random::uniform;
 use crate::support::rings::Rings;
-use crate::support::settings::plan;
+use crate::support::settings::{against, plan};
 
 /// Largest residual, overlap and gap of a converged solution, relative to displacements.
 const TOLERANCE: f64 = 1e-8;
 
 /// Options with a hardness of all cells.
 fn limited(hardness: f64) -> Options {
-    Options { hardness: Some(Hardness::Uniform(hardness)), ..Options::default() }
+    Options::default().with_hardness(Hardness::Uniform(hardness))
 }
 
 /// Options of the step after `before`.
 fn next(before: &Solution, hardness: f64) -> Options {
-    Options {
-        initial: Some(before.pressure.clone()),
-        indentation: before.indentation.clone(),
-        ..limited(hardness)
-    }
+    limited(hardness)
+        .with_initial(before.pressure.clone())
+        .with_indentation(before.indentation.clone())
 }
 
 /// A body of modulus 1 on a square of so many cells.
@@ -88,7 +86,7 @@ fn surfaces_that_do_not_yield_are_elastic_to_the_bit() -> Result<()> {
     let steel = Elastic::new(1.0, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(Elastic::new(4.0, 0.2)?, 0.3)?])?;
     let contact = plan(&body, Grid::new([96, 80], [4.0, 4.0])?)?;
-    let motion = Motion { eccentricity: [Some(0.1), None], ..Motion::load(1e-3) };
+    let motion = Motion::load(1e-3).with_eccentricity([Some(0.1), None]);
     let elastic = contact.solve(&sphere()?, &motion, &Options::default())?;
     for hardness in [f64::INFINITY, 1.0001 * elastic.peak_pressure()] {
         let found = contact.solve(&sphere()?, &motion, &limited(hardness))?;
@@ -117,8 +115,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
         [grid, Grid::line(200, 4.0)?, grid.periodic([true; 2])?, grid.periodic([true, false])?];
     for (number, body) in bodies.iter().enumerate() {
         for grid in grids {
-            let setup =
-                Setup { counterbody: (number == 1).then(|| soft.into()), ..Setup::default() };
+            let setup = if number == 1 { against(soft) } else { Setup::default() };
             let contact = Contact::plan(body, grid, setup)?;
             let [px, py] = grid.is_periodic();
             let wave = |x: f64, y: f64| {
@@ -139,7 +136,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
             let mut motions = vec![Motion::load(load)];
             if !py {
                 let eccentricity = [None, Some(0.05)];
-                motions.push(Motion { eccentricity, ..Motion::load(load) });
+                motions.push(Motion::load(load).with_eccentricity(eccentricity));
             }
             let elastic = contact.solve(shape, &motions[0], &Options::default())?;
             motions.push(Motion::approach(elastic.approach));
@@ -148,7 +145,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
                     let name = format!("body {number}, {grid:?}, {motion:?}, {algorithm:?}");
                     let elastic = contact.solve(shape, &motion, &Options::default())?;
                     let hardness = 0.6 * elastic.peak_pressure();
-                    let options = Options { algorithm, ..limited(hardness) };
+                    let options = limited(hardness).with_algorithm(algorithm);
                     let found = contact.solve(shape, &motion, &options);
                     let found = found.unwrap_or_else(|error| panic!("{name}: {error}"));
                     check_bounds(&name, &contact, shape, &found, &|_| hardness)?;
@@ -178,8 +175,7 @@ fn random_contacts_keep_both_bounds() -> Result<()> {
         let least = random.between(0.3, 1.0) * elastic.peak_pressure();
         let spread = if random.choice(2) == 0 { 0.0 } else { 1.0 };
         let cells = uniform(case.grid.shape(), number).mapv(|r| least * (1.0 + spread * r));
-        let options =
-            Options { hardness: Some(Hardness::Cells(cells.clone())), ..Options::default() };
+        let options = Options::default().with_hardness(Hardness::Cells(cells.clone()));
         let found = contact.solve(&*shape, &case.motion, &options);
         if matches!(found, Err(Error::Overload { .. })) {
             continue;
@@ -239,7 +235,7 @@ fn the_order_of_unloading_does_not_matter() -> Result<()> {
     let contact = soft(96, 4.0)?;
     let shape = sphere()?;
     let hardness = 3e-4;
-    let options = |options: Options| Options { tolerance: 1e-10, ..options };
+    let options = |options: Options| options.with_tolerance(1e-10);
     let loaded = contact.solve(&shape, &Motion::load(1e-3), &options(limited(hardness)))?;
     let dent = loaded.indentation.clone().expect("it yields");
     let mut ends = Vec::new();
@@ -360,7 +356,7 @@ fn wrong_input_is_refused() -> Result<()> {
     let punch = FlatPunch::new(0.9)?;
     let touching = punch.gaps(contact.grid())?.iter().filter(|h| h.is_finite()).count();
     let area = touching as f64 * contact.grid().cell_area();
-    let eccentric = Motion { eccentricity: [Some(0.1), None], ..Motion::load(0.99 * 1e-3 * area) };
+    let eccentric = Motion::load(0.99 * 1e-3 * area).with_eccentricity([Some(0.1), None]);
     let refused = contact.solve(&punch, &eccentric, &limited(1e-3));
     let refused = refused.expect_err("it must be refused").to_string();
     let expected = "moment, or load times eccentricity, along x must be between ";
@@ -368,15 +364,14 @@ fn wrong_input_is_refused() -> Result<()> {
     for wrong in [0.0, -1.0, f64::NAN] {
         assert_eq!(message(&limited(wrong)), format!("hardness must be above 0, got {wrong}"));
     }
-    let cells =
-        Options { hardness: Some(Hardness::Cells(Array2::ones((8, 7)))), ..Options::default() };
+    let cells = Options::default().with_hardness(Hardness::Cells(Array2::ones((8, 7))));
     assert_eq!(message(&cells), "hardness: expected shape [8, 8], got [8, 7]");
     for (field, expected) in [
         (Array2::zeros((2, 8)), "indentation: expected shape [8, 8], got [2, 8]"),
         (Array2::from_elem((8, 8), -1.0), "indentation must be at least 0 everywhere, got -1"),
         (Array2::from_elem((8, 8), f64::NAN), "indentation is not finite at [0, 0]"),
     ] {
-        let options = Options { indentation: Some(field), ..Options::default() };
+        let options = Options::default().with_indentation(field);
         assert_eq!(message(&options), expected);
     }
     Ok(())

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use crate::support::checks::{difference, pressure_off, seeded};
 use crate::support::claims::claim;
 use crate::support::random::uniform;
-use crate::support::settings::{self, Controls, by, converged, pressed, steel, tolerance};
+use crate::support::settings::{self, by, converged, pressed, steel, tolerance};
 
 /// Error of a layer of the material of the substrate: the tables of the remainder of its response, which is
 /// zero.
@@ -213,7 +213,7 @@ fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     ];
     for initial in starts {
         for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-            let options = Options { algorithm, initial: initial.clone(), ..tight() };
+            let options = tight().with_algorithm(algorithm).with_initial(initial.clone());
             let found = contact.solve(&paraboloid()?, &motion, &options)?;
             assert_same(&found, &known, &format!("{algorithm:?}"));
         }

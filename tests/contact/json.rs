@@ -34,7 +34,7 @@ fn values_come_back_from_json() -> nacre::Result<()> {
     kept(&Grid::new([4, 3], [0.1, 0.2])?.centered_at([0.3, -0.4])?);
     kept(&Grid::new([4, 3], [0.1, 0.2])?.periodic([true, false])?);
     kept(&Grid::line(5, 0.1)?.centered_at([0.0, 0.3])?);
-    kept(&Motion { tilt: [Some(1e-3), None], ..Motion::load(10.0) });
+    kept(&Motion::load(10.0).with_tilt([Some(1e-3), None]));
     kept(&[Algorithm::Cascade, Algorithm::PolonskyKeer]);
     kept(&[Method::Exact, Method::Image { refinement: 4 }]);
     Ok(())

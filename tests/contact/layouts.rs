@@ -54,7 +54,13 @@ fn options_of_a_solve() -> Result<()> {
         let of = |initial: &Array2<f64>, limits: Array2<f64>, indentation: &Array2<f64>| {
             let (initial, indentation) = (Some(initial.clone()), Some(indentation.clone()));
             let hardness = hardness(limits);
-            solved(&Options { algorithm, initial, hardness, indentation, ..Options::default() })
+            solved(
+                &Options::default()
+                    .with_algorithm(algorithm)
+                    .with_initial(initial)
+                    .with_hardness(hardness)
+                    .with_indentation(indentation),
+            )
         };
         let expected = of(&map, 7e8 * &map, &dent)?;
         // The hardness limits the pressure: the two calls differ.
@@ -79,11 +85,11 @@ fn wrong_values_are_refused() -> Result<()> {
         limits[[7, 3]] = wrong;
         for limits in layouts(&limits) {
             let hardness = Some(Hardness::Cells(limits.clone()));
-            let error = solved(&Options { hardness, ..Options::default() }).err();
+            let error = solved(&Options::default().with_hardness(hardness)).err();
             assert!(error.is_some_and(|error| error.to_string().starts_with(name)));
             for options in [
-                Options { initial: Some(limits.clone()), ..Options::default() },
-                Options { indentation: Some(limits.clone()), ..Options::default() },
+                Options::default().with_initial(limits.clone()),
+                Options::default().with_indentation(limits.clone()),
             ] {
                 assert!(solved(&options).is_err());
             }
@@ -106,7 +112,7 @@ fn convolutions() -> Result<()> {
             convolution.apply_into(pressure, &mut displacement, &mut convolution.workspace())?;
             assert_eq!(displacement, expected);
         }
-        let setup = Setup { coefficients: Some(coefficients.into_shared()), ..Setup::default() };
+        let setup = Setup::default().with_coefficients(coefficients.into_shared());
         let contact = Contact::plan(steel()?, grid, setup)?;
         let shape = Paraboloid::new(5e-3, 5e-3)?;
         let solution = contact.solve(&shape, &Motion::load(10.0), &Options::default())?;
@@ -121,8 +127,8 @@ fn surfaces_and_friction() -> Result<()> {
     let gaps = |heights: &Array2<f64>| HeightMap::new(heights.clone(), [2.5e-5, 3e-5])?.gaps(&grid);
     let slid = |friction: &Array2<f64>| -> Result<Array2<f64>> {
         let step = Step::press(Motion::load(10.0), friction.clone());
-        let step = Step { force: [Some(1.0), None], ..step };
-        let options = FrictionOptions { tolerance: 1e-4, ..FrictionOptions::default() };
+        let step = step.with_force([Some(1.0), None]);
+        let options = FrictionOptions::default().with_tolerance(1e-4);
         let steps = contact()?.slide(&Paraboloid::new(5e-3, 5e-3)?, &[step], &options, None)?;
         Ok(steps[0].traction[0].clone())
     };

@@ -8,7 +8,7 @@ use nacre::{
 use ndarray::{Array2, Axis};
 
 use crate::support::checks::difference;
-use crate::support::settings::{Controls, against, tolerance};
+use crate::support::settings::{against, tolerance};
 
 /// Tolerance of the iterations.
 const SOLVED: f64 = 1e-11;
@@ -141,7 +141,7 @@ fn periodic(scene: &Scene, options: &Options) -> Result<Solution> {
 
 fn yielding(scene: &Scene, options: &Options) -> Result<Solution> {
     let limit = 1.2e9 * scene.newton / scene.metre.powi(2);
-    let options = Options { hardness: Some(Hardness::Uniform(limit)), ..options.clone() };
+    let options = options.clone().with_hardness(Hardness::Uniform(limit));
     scene.press(scene.bonded()?, Setup::default(), &options)
 }
 
@@ -267,7 +267,7 @@ fn finer_grids_are_within_the_stated_error() -> Result<()> {
 fn the_pressure_of_a_solution_is_a_start_that_changes_nothing() -> Result<()> {
     for (name, kind, ..) in KINDS {
         let first = solve(kind, &FIRST)?;
-        let options = Options { initial: Some(first.pressure.clone()), ..tolerance(SOLVED) };
+        let options = tolerance(SOLVED).with_initial(first.pressure.clone());
         let again = kind(&FIRST, &options)?;
         below!(difference(&again.pressure, &first.pressure), SAME, name);
     }

@@ -13,7 +13,7 @@ use ndarray::Array2;
 use crate::support::checks::largest;
 use crate::support::claims::claim;
 use crate::support::random::uniform;
-use crate::support::settings::{self, Controls, converged, converted, plan, stack, tolerance};
+use crate::support::settings::{self, converged, converted, plan, stack, tolerance};
 
 /// Bare, under thin and thick coats, and a layer on a rigid base; thicknesses in units of `dx`.
 fn bodies(dx: f64) -> Result<Vec<HalfSpace>> {
@@ -334,7 +334,7 @@ fn threads_change_no_bit() -> Result<()> {
     let body = &bodies(0.01)?[1];
     let solve = |threads: usize, hardness: Option<f64>| -> Result<Solution> {
         let setup = settings::threads(threads);
-        let options = Options { hardness: hardness.map(Hardness::Uniform), ..Options::default() };
+        let options = Options::default().with_hardness(hardness.map(Hardness::Uniform));
         Contact::plan(body, grid, setup)?.solve(&shape, &Motion::load(2e-3), &options)
     };
     let elastic = solve(1, None)?;
@@ -364,7 +364,7 @@ fn beyond_full_contact_cells_yield() -> Result<()> {
         let motion = Motion::approach(approach);
         let refused = contact.solve(&shape, &motion, &Options::default());
         assert!(matches!(refused, Err(Error::FullContact { .. })), "{refused:?}");
-        let options = Options { hardness: Some(Hardness::Uniform(hardness)), ..Options::default() };
+        let options = Options::default().with_hardness(Hardness::Uniform(hardness));
         let solution = contact.solve(&shape, &motion, &options)?;
         assert!(solution.report.converged(), "{:?}", solution.report);
         below!(solution.report.convolutions, 300.0, part, hardness);

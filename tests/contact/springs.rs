@@ -41,7 +41,7 @@ impl Response for OnSprings {
 
 /// Options with springs of these compliances.
 fn on(compliance: Compliance, limit: f64) -> Options {
-    Options { compliance: Some(compliance), ..tolerance(limit) }
+    tolerance(limit).with_compliance(compliance)
 }
 
 fn grid() -> Result<Grid> {
@@ -62,7 +62,7 @@ fn uniform_springs_are_a_local_compliance() -> Result<()> {
     const TOLERANCE: f64 = 1e-11;
     let sphere = Sphere::new(50.0)?;
     for (grid, motion) in [
-        (grid()?, Motion { eccentricity: [Some(0.05), None], ..Motion::load(0.02) }),
+        (grid()?, Motion::load(0.02).with_eccentricity([Some(0.05), None])),
         (grid()?.periodic([true; 2])?, Motion::load(0.02)),
         (Grid::line(96, 2.0)?, Motion::load(0.01)),
     ] {
@@ -106,7 +106,7 @@ fn springs_of_each_cell_satisfy_the_contact() -> Result<()> {
     for (g, p) in gap.iter().zip(&solution.pressure) {
         assert!(*g > -1e-9 * deep && (*p <= 0.0 || *g < 1e-6 * deep), "{g:e} {p:e}");
     }
-    let reference = Options { algorithm: Algorithm::PolonskyKeer, ..options };
+    let reference = options.with_algorithm(Algorithm::PolonskyKeer);
     let other = converged(&contact, &sphere, &motion, &reference)?;
     below!(apart(&solution.pressure, &other.pressure), 1e-5 * largest(&other.pressure));
     assert_eq!(solution.report.solver, Some(Solver::Preconditioned));
@@ -130,7 +130,7 @@ fn derivatives_with_springs_pass_the_dot_test() -> Result<()> {
     let (sphere, motion) = (Sphere::new(50.0)?, Motion::load(0.02));
     let options = on(Compliance::Cells(uneven(&grid)), 1e-10);
     let solution = converged(&contact, &sphere, &motion, &options)?;
-    let linear = LinearOptions { tolerance: 1e-12, watch: None };
+    let linear = LinearOptions::default().with_tolerance(1e-12);
     let linearised = Linearisation::plan(&solution, Some(&sphere), &linear)?;
     let numbers = &mut Random::new(5);
     let mut random = || Array2::from_shape_simple_fn(grid.shape(), || numbers.between(-1.0, 1.0));
@@ -164,8 +164,7 @@ fn springs_go_with_hardness_and_none_change_nothing() -> Result<()> {
     let same: Solution = converged(&contact, &sphere, &motion, &none)?;
     assert_eq!(plain.pressure, same.pressure);
     let limit = 0.7 * plain.peak_pressure();
-    let options =
-        Options { hardness: Some(Hardness::Uniform(limit)), ..on(Compliance::Uniform(0.01), 1e-9) };
+    let options = on(Compliance::Uniform(0.01), 1e-9).with_hardness(Hardness::Uniform(limit));
     let dented = converged(&contact, &sphere, &motion, &options)?;
     let dent = dented.indentation.as_ref().expect("cells yield");
     let (x, y) = (grid.x(), grid.y());

@@ -5,7 +5,7 @@ use nacre::{
     Solution, Sphere, Surface,
 };
 
-use crate::support::settings::{Controls, converged, plan, stack, tolerance};
+use crate::support::settings::{converged, plan, stack, tolerance};
 
 /// Step of the differences: so small that no cell joins or leaves the contact, and large compared with
 /// the error of the solutions, 1e-13/2e-6.

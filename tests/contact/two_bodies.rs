@@ -2,13 +2,12 @@
 
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
-    Body, Contact, Convolution, Elastic, Grid, HalfSpace, Motion, Paraboloid, Result, Setup,
-    Solution,
+    Contact, Convolution, Elastic, Grid, HalfSpace, Motion, Paraboloid, Result, Setup, Solution,
 };
 
 use crate::support::checks::pressure_off;
 use crate::support::random::uniform;
-use crate::support::settings::{Controls, converged, stack, steel, tolerance};
+use crate::support::settings::{against, converged, stack, steel, tolerance};
 
 /// Rounding of sums in different order.
 const ROUNDING: f64 = 1e-12;
@@ -28,7 +27,7 @@ fn bodies() -> Result<[HalfSpace; 2]> {
 }
 
 fn plan(body: &HalfSpace, counterbody: Option<HalfSpace>) -> Result<Contact> {
-    let setup = Setup { counterbody: counterbody.map(Body::from), ..Setup::default() };
+    let setup = counterbody.map_or_else(Setup::default, against);
     Contact::plan(body, grid()?, setup)
 }
 

@@ -2,12 +2,12 @@
 
 use nacre::contact::solve_with;
 use nacre::{
-    Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Setup,
+    Axis, Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Setup,
     Sphere, Surface, Warning,
 };
 use ndarray::Array2;
 
-use crate::support::settings::{Controls, plan, pressed};
+use crate::support::settings::{plan, pressed};
 
 /// Cells along a side of the grid, of unit length.
 const CELLS: usize = 96;
@@ -42,7 +42,7 @@ const LOAD: f64 = 4.0 / 3.0 * 8e3 / RADIUS;
 #[ignore = "slow"]
 fn a_roller_on_an_endless_crown_is_warned_of() -> Result<()> {
     let steel = Elastic::new(210e9, 0.3)?;
-    let options = Options { tolerance: 1e-5, cells: Some(1 << 16), ..Options::default() };
+    let options = Options::default().with_tolerance(1e-5).with_cells(1 << 16);
     let kinds = |shape: &dyn Surface, at: f64| -> Result<Vec<&'static str>> {
         let motion = Motion::load(1e3).with_eccentricity([Some(at), None]);
         let solution = solve_with(shape, &steel.into(), &Setup::default(), &motion, &options)?;
@@ -154,7 +154,7 @@ fn the_rim_of_a_measured_map_is_named() -> Result<()> {
     let hill = |at: f64| map(move |x, y| -((x - at).powi(2) + y * y) / (2.0 * RADIUS));
     assert_eq!(kinds(&hill(0.0)?, &Motion::load(LOAD))?, [""; 0]);
     let found = warnings(&hill(40.0)?, &Motion::load(LOAD))?;
-    assert_eq!(found, [Warning::MapRim { axis: 0 }]);
+    assert_eq!(found, [Warning::MapRim { axis: Axis::X }]);
     let text = found[0].to_string();
     assert!(text.contains("rim of the measured map along x"), "{text}");
     let flat = Paraboloid::new(1e6, 1e6)?;

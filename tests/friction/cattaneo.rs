@@ -7,7 +7,7 @@ use nacre::{Contact, Elastic, FlatPunch, Grid, HalfSpace, Motion, Result};
 
 use crate::support::bodies::body_by;
 use crate::support::pairs::{
-    Pulled, RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide, slide_once,
+    RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide, slide_once,
     stick_radius,
 };
 use crate::support::reference::{cases, number};

@@ -9,10 +9,10 @@ use ndarray::{Array2, Axis};
 
 use crate::support::checks::apart;
 use crate::support::pairs::{
-    Pulled, RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide, slide_once,
+    RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide, slide_once,
     tractions_apart, unlike,
 };
-use crate::support::settings::{Controls, against, one_thread, plan};
+use crate::support::settings::{against, one_thread, plan};
 
 const FRICTION: f64 = 0.3;
 
@@ -62,14 +62,12 @@ fn a_resumed_history_is_the_same() -> Result<()> {
     let steps = [
         press(load(0.3)),
         Step::default().with_force([Some(0.7 * unit), None]),
-        Step {
-            motion: Some(Motion::load(1.2 * load(0.3))),
-            torque: Some(0.1 * unit),
-            shift: [None, Some(1e-3)],
-            force: [Some(-0.2 * unit), None],
-            ..Step::default()
-        },
-        Step { friction: Some(0.5.into()), ..Step::default() },
+        Step::default()
+            .with_motion(Motion::load(1.2 * load(0.3)))
+            .with_torque(0.1 * unit)
+            .with_shift([None, Some(1e-3)])
+            .with_force([Some(-0.2 * unit), None]),
+        Step::default().with_friction(0.5),
     ];
     let options = FrictionOptions::default();
     let whole = contact.slide(&ball()?, &steps, &options, None)?;
@@ -231,7 +229,7 @@ fn coupling_is_there_where_bodies_differ() -> Result<()> {
     assert_eq!(normal.pressure, solution.normal.pressure);
     let alone = plan(coated(3.0, 0.2)?, grid()?)?;
     for coupling in [true, false] {
-        let options = FrictionOptions { coupling, ..FrictionOptions::default() };
+        let options = FrictionOptions::default().with_coupling(coupling);
         let solution = slide(&alone, step(), &options)?;
         assert_eq!(solution.report.coupled, coupling);
         // Without coupling, pressure alone does not rub.
@@ -381,11 +379,7 @@ fn gross_slip_is_friction_of_the_stress_call() -> Result<()> {
     assert!(solution.report.full_slip);
     let (body, depths) = (material(0.0)?.into(), [0.0, 0.2, 1.0]);
     let without = StressOptions::default();
-    let with = StressOptions {
-        friction: FRICTION,
-        direction: Some([1.0, 0.0]),
-        ..StressOptions::default()
-    };
+    let with = StressOptions::default().with_friction(FRICTION).with_direction([1.0, 0.0]);
     let pressure = &solution.normal.pressure;
     let called = stress(&body, contact.grid(), pressure, &depths, &with)?;
     let pressed = stress(&body, contact.grid(), pressure, &depths, &without)?;

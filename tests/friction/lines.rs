@@ -6,7 +6,7 @@ use nacre::{Contact, Cylinder, Grid, HalfSpace, Motion, Options, Result};
 use serde_json::Value;
 
 use crate::support::pairs::{
-    Pulled, RADIUS, coated, creepage, equal, precise, rolled, rolling, slid, slide_once,
+    RADIUS, coated, creepage, equal, precise, rolled, rolling, slid, slide_once,
 };
 use crate::support::reference::{list, number, read};
 

@@ -6,8 +6,8 @@ use ndarray::Array2;
 use proptest::prelude::*;
 
 use crate::support::checks::seeded;
-use crate::support::pairs::{Pulled, RADIUS, ball, precise};
-use crate::support::settings::stack;
+use crate::support::pairs::{RADIUS, ball, precise};
+use crate::support::settings::{against, stack};
 
 /// Numbers from which a history is made.
 #[derive(Debug, Clone)]
@@ -75,12 +75,12 @@ impl Case {
     pub(super) fn contact_on(&self, cells: usize) -> Result<Contact> {
         let layers = self.layers.iter().map(|(ratio, nu, h)| [2.6 * ratio, *nu, *h]);
         let body = stack(Elastic::new(2.6, 0.3)?, layers)?;
-        let counterbody = match self.counterbody {
-            None => None,
-            Some(None) => Some(body.clone().into()),
-            Some(Some(ratio)) => Some(Elastic::new(2.6 * ratio, 0.2)?.into()),
+        let setup = match self.counterbody {
+            None => Setup::default(),
+            Some(None) => against(body.clone()),
+            Some(Some(ratio)) => against(Elastic::new(2.6 * ratio, 0.2)?),
         };
-        let setup = Setup { counterbody, threads: Some(1), ..Setup::default() };
+        let setup = setup.with_threads(1);
         Contact::plan(body, Grid::new([cells, cells], [3.2, 3.2])?, setup)
     }
 
@@ -111,11 +111,9 @@ impl Case {
     fn rolling(&self, load: f64) -> Rolling {
         let friction = self.friction[0];
         let unit = friction * load;
-        Rolling {
-            creepage: self.creepage.map(|creepage| Some(creepage * unit)),
-            spin: self.spin * unit,
-            ..Rolling::new(Motion::load(load), friction, self.direction)
-        }
+        Rolling::new(Motion::load(load), friction, self.direction)
+            .with_creepage(self.creepage.map(|creepage| Some(creepage * unit)))
+            .with_spin(self.spin * unit)
     }
 }
 

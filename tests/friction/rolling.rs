@@ -12,7 +12,7 @@ use nacre::{
 use crate::support::checks::apart;
 use crate::support::claims::claim;
 use crate::support::pairs::{
-    Pulled, RADIUS, ball, coated, creepage, equal, load, material, pair, precise, rolled, rolling,
+    RADIUS, ball, coated, creepage, equal, load, material, pair, precise, rolled, rolling,
     slide_once, tractions_apart, unlike,
 };
 use crate::support::reference::{cases, list, number, read};
@@ -58,7 +58,7 @@ fn tension_at_the_edge_of_partial_slip() -> Result<()> {
         assert!((y.abs() - 1.0).abs() < 2e-3 && z == 0.0, "{tension:?}");
         // Within the contact the surface bears μ times the pressure within the contact.
         let plan = solution.stress_plan(Member::Body, &options)?;
-        let inside = StressOptions { section: Section::Axis([0.0, 0.98 * y]), ..options };
+        let inside = options.with_section(Section::Axis([0.0, 0.98 * y]));
         let field = plan.stress(&[0.0], &inside)?;
         let [normal, shear] = [field.zz(), field.yz()].map(|part| part[[0, 0, 0]]);
         near!(shear.abs(), -friction * normal, 1e-6);
@@ -71,7 +71,7 @@ fn tension_at_the_edge_of_partial_slip() -> Result<()> {
 #[test]
 fn carters_force() -> Result<()> {
     let (friction, direction) = (0.3, RollingDirection::PlusY);
-    let options = FrictionOptions { order: 1, ..FrictionOptions::default() };
+    let options = FrictionOptions::default().with_order(1);
     let force = |cells: usize| -> Result<f64> {
         let (contact, shape, load) = carter(cells)?;
         let creeping = rolling(load, friction, direction, [Some(0.00024), None]);
@@ -124,7 +124,7 @@ fn bentall_and_johnson() -> Result<()> {
         let force = Some(share * friction * load);
         let pulled = rolling(load, friction, RollingDirection::PlusY, [None, force]);
         let shape = Cylinder::new(radius)?;
-        let options = FrictionOptions { order: 1, ..FrictionOptions::default() };
+        let options = FrictionOptions::default().with_order(1);
         let solution = rolled(&contact, &shape, &pulled, &options)?;
         near!(creepage(&solution)[0], creep, bar, friction, share);
         near!(solution.normal.peak_pressure(), peak, 1e-3);
@@ -141,11 +141,9 @@ fn directions_are_equal() -> Result<()> {
     let options = precise(1e-12);
     let unit = 0.3 * load(0.3);
     let roll = |direction| {
-        let rolling = Rolling {
-            creepage: [Some(0.2 * unit), Some(-0.1 * unit)],
-            spin: 0.1 * unit,
-            ..Rolling::new(Motion::load(load(0.3)), 0.3, direction)
-        };
+        let rolling = Rolling::new(Motion::load(load(0.3)), 0.3, direction)
+            .with_creepage([Some(0.2 * unit), Some(-0.1 * unit)])
+            .with_spin(0.1 * unit);
         contact.roll(&ball()?, &rolling, &options)
     };
     let ahead = roll(RollingDirection::PlusX)?;
@@ -189,10 +187,8 @@ fn transient_rolling_tends_to_the_steady_state() -> Result<()> {
     let pulled = rolling(line_load, 0.3, RollingDirection::PlusY, force);
     check(&contact, &shape, &pulled, 450)?;
     let force = [None, Some(0.6 * 0.3 * load(0.3))];
-    let spinning = Rolling {
-        spin: 0.1 * 0.3 * load(0.3),
-        ..rolling(load(0.3), 0.3, RollingDirection::PlusX, force)
-    };
+    let spinning =
+        rolling(load(0.3), 0.3, RollingDirection::PlusX, force).with_spin(0.1 * 0.3 * load(0.3));
     check(&pair(0.3, 24)?, &ball()?, &spinning, 160)
 }
 
@@ -202,7 +198,7 @@ fn transient_rolling_tends_to_the_steady_state() -> Result<()> {
 fn power_is_dissipated() -> Result<()> {
     let (contact, shape, load) = carter(200)?;
     let creeping = rolling(load, 0.3, RollingDirection::PlusY, [Some(0.00024), None]);
-    let options = FrictionOptions { order: 1, ..FrictionOptions::default() };
+    let options = FrictionOptions::default().with_order(1);
     let solution = rolled(&contact, &shape, &creeping, &options)?;
     let power = solution.force()[1] * 0.00024;
     near!(solution.dissipated(), power, 0.02);

@@ -8,7 +8,7 @@ use nacre::friction::{
 };
 use nacre::influence::influence_coefficients;
 use nacre::{
-    Contact, Cylinder, Elastic, FlatPunch, Grid, Method, Motion, Paraboloid, Result, Setup, Warning,
+    Contact, Cylinder, Elastic, FlatPunch, Grid, Method, Motion, Paraboloid, Result, Warning,
 };
 use serde_json::Value;
 
@@ -42,11 +42,9 @@ impl Ellipse {
         Ok(Self {
             contact,
             shape: Paraboloid::new(along, across)?,
-            rolling: Rolling {
-                creepage: pair("creepage").map(Some),
-                spin: number(&case, "spin"),
-                ..Rolling::new(motion, friction, RollingDirection::PlusX)
-            },
+            rolling: Rolling::new(motion, friction, RollingDirection::PlusX)
+                .with_creepage(pair("creepage").map(Some))
+                .with_spin(number(&case, "spin")),
             bears: friction * load,
             length: (a * b).sqrt(),
             case,
@@ -179,11 +177,9 @@ fn power_of_the_cells() -> Result<()> {
     let unit = 0.3 * load(0.3);
     for (contact, equal) in [(pair(0.3, 48)?, true), (unlike(48, 2.8)?, false)] {
         for direction in [RollingDirection::PlusX, RollingDirection::MinusY] {
-            let rolling = Rolling {
-                creepage: [Some(0.2 * unit), Some(-0.1 * unit)],
-                spin: 0.1 * unit,
-                ..Rolling::new(Motion::load(load(0.3)), 0.3, direction)
-            };
+            let rolling = Rolling::new(Motion::load(load(0.3)), 0.3, direction)
+                .with_creepage([Some(0.2 * unit), Some(-0.1 * unit)])
+                .with_spin(0.1 * unit);
             let solution = rolled(&contact, &ball()?, &rolling, &precise(1e-9))?;
             let (grid, axis) = (contact.grid(), usize::from(direction == RollingDirection::MinusY));
             let sign = direction.vector()[axis];
@@ -248,7 +244,7 @@ fn where_no_error_is_stated() -> Result<()> {
     };
     let solution = rolled(&pair(0.3, 40)?, &ball()?, &creeping, &options)?;
     assert!(solution.report.discretisation.is_some() && unestimated(&solution) == 0);
-    let first = FrictionOptions { order: 1, ..options };
+    let first = options.with_order(1);
     let solution = rolled(&pair(0.3, 40)?, &ball()?, &creeping, &first)?;
     assert!(solution.report.discretisation.is_none() && unestimated(&solution) == 0);
     for cells in [12, 16] {
@@ -257,7 +253,7 @@ fn where_no_error_is_stated() -> Result<()> {
     }
     let grid = *pair(0.3, 40)?.grid();
     let known = influence_coefficients(material(0.3)?, &grid, Method::Exact)? * 2.0;
-    let setup = Setup { coefficients: Some(known.into_shared()), ..one_thread(material(0.3)?) };
+    let setup = one_thread(material(0.3)?).with_coefficients(known.into_shared());
     let contact = Contact::plan(material(0.3)?, grid, setup)?;
     let solution = rolled(&contact, &ball()?, &creeping, &options)?;
     assert!(solution.report.discretisation.is_none() && unestimated(&solution) == 1);
@@ -269,7 +265,7 @@ fn where_no_error_is_stated() -> Result<()> {
 fn other_orders_are_refused() -> Result<()> {
     let creeping = rolling(load(0.3), 0.3, RollingDirection::PlusX, [Some(1e-3), None]);
     for order in [0, 3] {
-        let options = FrictionOptions { order, ..FrictionOptions::default() };
+        let options = FrictionOptions::default().with_order(order);
         let error = pair(0.3, 16)?.roll(&ball()?, &creeping, &options).expect_err("refused");
         assert_eq!(error.to_string(), format!("order must be 1 or 2, got {order}"));
     }

@@ -2,12 +2,12 @@
 
 use nacre::gradient::{LinearOptions, Linearisation};
 use nacre::{
-    Contact, Elastic, Grid, HalfSpace, Interface, Layer, LogarithmicProfile, Motion, Options,
-    Paraboloid, Result, Roller, Setup, Solution, Sphere, Substrate, Surface,
+    Contact, Elastic, Grid, HalfSpace, Interface, Layer, LogarithmicProfile, Motion, Paraboloid,
+    Result, Roller, Setup, Solution, Sphere, Substrate, Surface,
 };
 
 use crate::support::contacts::Random;
-use crate::support::settings;
+use crate::support::settings::{self, against};
 
 /// A contact to be solved.
 #[derive(Debug)]
@@ -99,9 +99,8 @@ impl Case {
 
     /// The solved contact; `tolerance` is that of the solve.
     pub(crate) fn solve(&self, tolerance: f64) -> Result<Solution> {
-        let setup =
-            Setup { counterbody: self.counterbody.as_ref().map(Into::into), ..Setup::default() };
-        let options = Options { max_iterations: Some(20_000), ..settings::tolerance(tolerance) };
+        let setup = self.counterbody.as_ref().map_or_else(Setup::default, against);
+        let options = settings::tolerance(tolerance).with_max_iterations(20_000);
         Contact::plan(&self.body, self.grid, setup)?.solve(&*self.shape, &self.motion, &options)
     }
 }
@@ -111,5 +110,5 @@ pub(crate) fn linearised<'a>(
     solution: &'a Solution,
     shape: Option<&'a dyn Surface>,
 ) -> Result<Linearisation<'a>> {
-    Linearisation::plan(solution, shape, &LinearOptions { tolerance: 1e-12, watch: None })
+    Linearisation::plan(solution, shape, &LinearOptions::default().with_tolerance(1e-12))
 }

@@ -1,7 +1,7 @@
 //! Derivatives equal central differences of whole solves, for steps within which the contact stays.
 
 use nacre::gradient::{Output, Parameter};
-use nacre::{Elastic, Grid, Member, Motion, Result, Solution, Surface};
+use nacre::{Axis, Elastic, Grid, Member, Motion, Result, Solution, Surface};
 use ndarray::Array2;
 
 use super::cases::{Case, linearised};
@@ -25,8 +25,8 @@ fn outputs(case: &Case) -> Vec<Output> {
         Output::Gap([0.9, -0.8]),
     ];
     if !case.grid.is_line() {
-        outputs.push(Output::Tilt(0));
-        outputs.push(Output::Moment(1));
+        outputs.push(Output::Tilt(Axis::X));
+        outputs.push(Output::Moment(Axis::Y));
     }
     outputs
 }
@@ -52,9 +52,9 @@ fn moved(case: &Case, parameter: &Parameter, step: f64) -> Option<Case> {
         }
         Parameter::Load => add(&mut next.motion.load),
         Parameter::Approach => add(&mut next.motion.approach),
-        Parameter::Eccentricity(axis) => add(&mut next.motion.eccentricity[*axis]),
-        Parameter::Moment(axis) => add(&mut next.motion.moment[*axis]),
-        Parameter::Tilt(axis) => add(&mut next.motion.tilt[*axis]),
+        Parameter::Eccentricity(axis) => add(&mut next.motion.eccentricity[axis.index()]),
+        Parameter::Moment(axis) => add(&mut next.motion.moment[axis.index()]),
+        Parameter::Tilt(axis) => add(&mut next.motion.tilt[axis.index()]),
         _ => return None,
     }
     Some(next)
@@ -151,9 +151,9 @@ fn value_of(case: &Case, parameter: &Parameter) -> f64 {
         }
         Parameter::Load => motion.load,
         Parameter::Approach => motion.approach,
-        Parameter::Eccentricity(axis) => motion.eccentricity[*axis],
-        Parameter::Moment(axis) => motion.moment[*axis],
-        Parameter::Tilt(axis) => motion.tilt[*axis],
+        Parameter::Eccentricity(axis) => motion.eccentricity[axis.index()],
+        Parameter::Moment(axis) => motion.moment[axis.index()],
+        Parameter::Tilt(axis) => motion.tilt[axis.index()],
         _ => None,
     };
     found.unwrap_or(0.0)

@@ -1,14 +1,13 @@
 //! Adjoint and tangent solves agree, and derivatives satisfy the sum rules of the discrete contact.
 
 use nacre::gradient::Output;
-use nacre::{Elastic, Grid, Motion, Result, Roller, Surface};
+use nacre::{Axis, Elastic, Grid, Motion, Result, Roller, Surface};
 use ndarray::Array2;
 
 use super::cases::{Case, linearised};
 
 use crate::support::checks::largest;
 use crate::support::contacts::Random;
-use crate::support::settings::Controls;
 
 /// Linear solves to 1e-12, and sums of some hundred terms.
 const EXACT: f64 = 1e-9;
@@ -68,7 +67,7 @@ fn fields_satisfy_the_sum_rules() -> Result<()> {
             continue;
         };
         let plan = linearised(&solution, Some(&*case.shape))?;
-        let outputs = [Output::Approach, Output::Tilt(0), Output::PressureNorm(8.0)];
+        let outputs = [Output::Approach, Output::Tilt(Axis::X), Output::PressureNorm(8.0)];
         let gradients = plan.gradients(&outputs, Some(&[]))?;
         let size = |k: usize| gradients[k].gap.iter().map(|g| g.abs()).sum::<f64>();
         seen[0] += 1;
@@ -132,7 +131,7 @@ fn the_moment_of_a_load_off_the_middle_grows_with_it() -> Result<()> {
     };
     let solution = case.solve(1e-10)?;
     let plan = linearised(&solution, Some(&*case.shape))?;
-    let gradient = plan.gradient(&Output::Tilt(0), None)?;
+    let gradient = plan.gradient(&Output::Tilt(Axis::X), None)?;
     let paths = [("load", load), ("body.substrate.young", 1.0)];
     let terms = paths.map(|(path, number)| gradient.get(path).unwrap_or(f64::NAN) * number);
     below!((terms[0] + terms[1]).abs(), 1e-8 * terms[0].abs());

@@ -9,10 +9,8 @@ use super::cases::Case;
 use crate::support::contacts::Random;
 use crate::support::settings::{converted, plan, tolerance};
 
-const OPTIONS: LinearOptions = LinearOptions { tolerance: 1e-9, watch: None };
-
 fn cells(solution: &Solution) -> Result<usize> {
-    let plan = Linearisation::plan(solution, None, &OPTIONS)?;
+    let plan = Linearisation::plan(solution, None, &LinearOptions::default())?;
     Ok(plan.pressure().iter().filter(|p| **p > 0.0).count())
 }
 
@@ -83,10 +81,10 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     ] {
         refused(solution.gradient(&output, Some(&ball)), words);
     }
-    let round = Linearisation::plan(&solution, Some(&ball), &OPTIONS)?;
+    let round = Linearisation::plan(&solution, Some(&ball), &LinearOptions::default())?;
     let punch = FlatPunch::new(0.5)?;
     let flat = contact.solve(&punch, &load, &Options::default())?;
-    let flat = Linearisation::plan(&flat, Some(&punch), &OPTIONS)?;
+    let flat = Linearisation::plan(&flat, Some(&punch), &LinearOptions::default())?;
     for (plan, path, words) in [
         (&round, "shape.length", "cells join and leave"),
         (&round, "body.layers[0].thickness", "not a number of a stack"),
@@ -99,7 +97,7 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     let (body, grid) = (Elastic::new(1.0, 0.3)?, *solution.grid());
     let given = converted(body, grid, Method::Exact)?;
     let given = given.solve(&ball, &load, &Options::default())?;
-    let given = Linearisation::plan(&given, Some(&ball), &OPTIONS)?;
+    let given = Linearisation::plan(&given, Some(&ball), &LinearOptions::default())?;
     let of_body = Some(&["body.substrate.young"][..]);
     refused(
         given.gradients(&[Output::Approach], of_body),
@@ -116,8 +114,8 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     let slope = gradient.get("load").unwrap_or(f64::NAN);
     near!(slope * 0.02, gradient.value, 1e-9);
 
-    let few = Options { max_iterations: Some(2), ..Options::default() };
-    let hard = Options { hardness: Some(Hardness::Uniform(0.03)), ..Options::default() };
+    let few = Options::default().with_max_iterations(2);
+    let hard = Options::default().with_hardness(Hardness::Uniform(0.03));
     let apart = Motion::approach(-0.1);
     for (motion, options, output, words) in [
         (load, few, Output::Approach, "did not converge"),
@@ -140,7 +138,7 @@ fn areas_are_those_of_hertz() -> Result<()> {
     let contact = plan(Elastic::new(1.0, 0.3)?, grid)?;
     let ball = Paraboloid::new(radius, radius)?;
     let solution = contact.solve(&ball, &Motion::load(load), &Options::default())?;
-    let plan = Linearisation::plan(&solution, Some(&ball), &OPTIONS)?;
+    let plan = Linearisation::plan(&solution, Some(&ball), &LinearOptions::default())?;
     let outputs = [Output::AreaEstimate, Output::ParticipationArea];
     let found = plan.gradients(&outputs, Some(&["load"]))?;
     let area = std::f64::consts::PI * a * a;

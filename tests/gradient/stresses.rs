@@ -10,7 +10,7 @@ use ndarray::Array3;
 use super::cases::linearised;
 use super::kinks::refused;
 
-use crate::support::settings::{Controls, plan, stack, tolerance};
+use crate::support::settings::{plan, stack, tolerance};
 
 const LOAD: f64 = 0.03;
 
@@ -31,13 +31,11 @@ fn solve(body: &HalfSpace, load: f64) -> Result<Solution> {
 }
 
 fn options(side: Side, section: Section, friction: f64) -> StressOptions {
-    StressOptions {
-        side,
-        section,
-        friction,
-        direction: Some([1.0, 0.4]),
-        ..StressOptions::default()
-    }
+    StressOptions::default()
+        .with_side(side)
+        .with_section(section)
+        .with_friction(friction)
+        .with_direction([1.0, 0.4])
 }
 
 fn field(body: &HalfSpace, load: f64, depth: f64, options: &StressOptions) -> Result<Stress> {
@@ -75,11 +73,9 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
         (Measure::MaxShear, |s| s.max_shear()[[0, 0, 0]]),
     ];
     for (measure, value) in measures {
-        let output = StressOutput {
-            friction: 0.2,
-            direction: Some([1.0, 0.4]),
-            ..StressOutput::new(measure, StressPlace::Point(at, Side::Below))
-        };
+        let output = StressOutput::new(measure, StressPlace::Point(at, Side::Below))
+            .with_friction(0.2)
+            .with_direction([1.0, 0.4]);
         let found = gradient(output)?;
         let exact = value(&field(&body, LOAD, at[2], &options)?);
         near!(found.value, exact, 1e-9, measure);
@@ -103,7 +99,7 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
             compare(path, theta, richardson(2e-3 * theta, moved)?);
         }
         let friction = |step: f64| {
-            let options = StressOptions { friction: 0.2 + step, ..options.clone() };
+            let options = options.clone().with_friction(0.2 + step);
             Ok(value(&field(&body, LOAD, at[2], &options)?))
         };
         compare("friction", 0.2, richardson(1e-3, friction)?);

@@ -346,8 +346,7 @@ fn largest_shear_is_that_of_the_summed_pressure() -> Result<()> {
         pressure *= 1e3 / (pressure.sum() * grid.cell_area());
         let depths: Vec<f64> =
             (-20..=20).map(|k| found.depth * (1.0 + 0.005 * f64::from(k))).collect();
-        let options =
-            StressOptions { section: Section::Axis([0.0; 2]), ..StressOptions::default() };
+        let options = StressOptions::default().with_section(Section::Axis([0.0; 2]));
         let field = stress(&body.into(), &grid, &pressure, &depths, &options)?;
         let shear: Vec<f64> = field.max_shear().into_iter().collect();
         let largest = shear.iter().fold(0.0_f64, |a, b| a.max(*b));

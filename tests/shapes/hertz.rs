@@ -7,7 +7,7 @@ use nacre::{Contact, FlatPunch, Grid, Motion, Options, Paraboloid, Result, Solut
 
 use crate::support::claims::claim;
 use crate::support::numerics::elliptic;
-use crate::support::settings::{self, Controls, converged, pressed, steel, tolerance};
+use crate::support::settings::{self, converged, pressed, steel, tolerance};
 
 /// Error of a flat punch, whose singular rim is a staircase of cells with dx/a = 1/64.
 const FLAT_PUNCH: f64 = 5e-3;

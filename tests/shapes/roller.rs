@@ -5,7 +5,7 @@ use ndarray::{Array2, Axis};
 
 use crate::support::checks::difference;
 use crate::support::claims::claim;
-use crate::support::settings::{Controls, plan, pressed, steel};
+use crate::support::settings::{plan, pressed, steel};
 
 /// Relative tolerance of the known values, which have three digits.
 const KNOWN: f64 = 5e-3;

@@ -6,11 +6,11 @@ use std::f64::consts::PI;
 use approx::assert_relative_eq;
 use nacre::surface::Profile;
 use nacre::{
-    Error, Grid, HalfSpace, LogarithmicProfile, Motion, Result, Roller, SampledProfile, Solution,
-    Surface, Warning, hertz,
+    Axis, Error, Grid, HalfSpace, LogarithmicProfile, Motion, Result, Roller, SampledProfile,
+    Solution, Surface, Warning, hertz,
 };
 
-use crate::support::settings::{Controls, coated, converged, plan, pressed, steel, tolerance};
+use crate::support::settings::{coated, converged, plan, pressed, steel, tolerance};
 
 /// Rounding between two forms of one formula.
 const ROUNDING: f64 = 1e-12;
@@ -112,7 +112,7 @@ fn johns_gohar_ends_with_a_finite_drop_and_a_sharp_end_under_load() -> Result<()
     near!(drop(profile, x), drop(lundberg, x), cut);
     let grid = Grid::new([128, 32], [1.02 * LENGTH, 0.25e-3])?;
     let warnings = press(&steel()?.into(), grid, profile, load)?.report.warnings;
-    assert!(warnings.contains(&Warning::SharpEnd { axis: 0 }));
+    assert!(warnings.contains(&Warning::SharpEnd { axis: Axis::X }));
     Ok(())
 }
 

@@ -121,7 +121,7 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
     });
     let depths = [0.075, 0.1, 0.3, 1.0, 2.5, 8.0];
     let pressed = displaced(StressOptions::default());
-    let sliding = StressOptions { friction: 1.0, direction: Some([1.0, 0.0]), ..pressed.clone() };
+    let sliding = pressed.clone().with_friction(1.0).with_direction([1.0, 0.0]);
     let pressed = stress(&steel()?, &grid, &pressure, &depths, &pressed)?;
     let sliding = stress(&steel()?, &grid, &pressure, &depths, &sliding)?;
     let value = |field: &nacre::Stress, k: usize, at: [usize; 3]| match &field.displacement {

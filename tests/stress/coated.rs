@@ -26,11 +26,9 @@ fn modulus() -> f64 {
 }
 
 fn on_axis(solution: &Solution, point: &Value, thickness: f64) -> Result<Stress> {
-    let options = StressOptions {
-        section: Section::Axis([0.0, 0.0]),
-        side: if number(point, "layer") > 0.0 { Side::Below } else { Side::Above },
-        ..StressOptions::default()
-    };
+    let options = StressOptions::default()
+        .with_section(Section::Axis([0.0, 0.0]))
+        .with_side(if number(point, "layer") > 0.0 { Side::Below } else { Side::Above });
     solution.stress(&[number(point, "z_over_h") * thickness], Member::Body, &options)
 }
 
@@ -213,12 +211,10 @@ fn disc_on_layers() -> Result<()> {
         let deepest = rows.iter().map(|row| number(row, "uz")).fold(0.0_f64, f64::max);
         let mut worst = 0.0_f64;
         for row in rows {
-            let options = StressOptions {
-                section: Section::Y(0.0),
-                side: if number(row, "side") < 0.0 { Side::Above } else { Side::Below },
-                displacement: true,
-                ..StressOptions::default()
-            };
+            let options = StressOptions::default()
+                .with_section(Section::Y(0.0))
+                .with_side(if number(row, "side") < 0.0 { Side::Above } else { Side::Below })
+                .with_displacement(true);
             let field = stress(&body, &grid, &pressure, &[number(row, "z")], &options)?;
             let Some(displacement) = &field.displacement else { panic!("asked for") };
             for (values, name, scale) in [

@@ -64,7 +64,7 @@ fn stresses_do_not_depend_on_the_size_of_a_cell() -> Result<()> {
             false => (Paraboloid::new(1e9 * unit, radius)?, PI * modulus * unit / (4.0 * RADIUS)),
         };
         let contact = Contact::plan(steel()?, grid, Setup::default())?;
-        let options = Options { tolerance: TOLERANCE, ..Options::default() };
+        let options = Options::default().with_tolerance(TOLERANCE);
         contact.solve(&shape, &Motion::load(load), &options)
     };
     let options = sliding(0.3, [0.0, 1.0]);
@@ -253,7 +253,7 @@ fn tension_at_the_edge_of_a_sliding_cylinder() -> Result<()> {
             assert!(edge.len() == 2 && (edge[0][1] - tension.position[1]).abs() < f64::EPSILON);
             // The point itself has the value, and so has the leading edge, as compression. Pressure that is left there,
             // up to 6e-4, adds itself or the square of its shear.
-            let at = |point| StressOptions { section: Section::Axis(point), ..options.clone() };
+            let at = |point| options.clone().with_section(Section::Axis(point));
             let trailing = plan.stress(&[0.0], &at(edge[0]))?.yy()[[0, 0, 0]];
             assert!((trailing - tension.value).abs() < 1e-6 * peak);
             let leading = plan.stress(&[0.0], &at(edge[1]))?.yy()[[0, 0, 0]];
@@ -271,14 +271,14 @@ fn points_between_strips() -> Result<()> {
     let (solution, peak) = cylinder(32)?;
     let options = sliding(FRICTION, [0.0, 1.0]);
     for y in [-1.2, -1.05, -1.01, -0.99, -0.931, -0.5, 0.017, 0.33, 0.97, 1.004, 1.21] {
-        let at = StressOptions { section: Section::Axis([0.0, y]), ..options.clone() };
+        let at = options.clone().with_section(Section::Axis([0.0, y]));
         let field = solution.stress(&[0.0, 0.01], Member::Body, &at)?;
         let pressure = (1.0_f64 - y * y).max(0.0).sqrt();
         let beyond = (y * y - 1.0).max(0.0).sqrt().copysign(y);
         let exact = -pressure - 2.0 * FRICTION * (y - beyond);
         let error = field.yy()[[0, 0, 0]] / peak - exact;
         assert!(error.abs() < 0.012, "{y}: {error:.1e}");
-        let alone = StressOptions { friction: 0.0, ..at };
+        let alone = at.with_friction(0.0);
         let field = solution.stress(&[0.01], Member::Body, &alone)?;
         for (component, exact) in field.components.iter().zip(mcewen(y, 0.01)) {
             assert!((component[[0, 0, 0]] / peak - exact).abs() < 3e-3, "{y}");
@@ -362,7 +362,7 @@ fn surface_keeps_the_pressure_and_displacement_of_the_solution() -> Result<()> {
     let (solution, _) = sphere(32)?;
     let options = displaced(sliding(0.25, [3.0, 4.0]));
     let field = solution.stress(&[0.0], Member::Body, &options)?;
-    let alone = StressOptions { friction: 0.0, ..options };
+    let alone = options.with_friction(0.0);
     let alone = solution.stress(&[0.0], Member::Body, &alone)?;
     let Some(displacement) = &alone.displacement else { panic!("asked for") };
     let largest = solution.displacement.fold(0.0_f64, |m, u| m.max(*u));

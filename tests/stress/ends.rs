@@ -191,9 +191,9 @@ fn sections_and_mirrors_agree() -> Result<()> {
     let (depth, [i, j]) = (0.3, [5, 13]);
     let plane = solution.stress(&[depth], Member::Body, &planes)?;
     let at = [grid.x()[i], grid.y()[j]];
-    let point = StressOptions { section: Section::Axis(at), ..planes.clone() };
+    let point = planes.clone().with_section(Section::Axis(at));
     let point = solution.stress(&[depth], Member::Body, &point)?;
-    let line = StressOptions { section: Section::Y(at[1]), ..planes.clone() };
+    let line = planes.clone().with_section(Section::Y(at[1]));
     let line = solution.stress(&[depth], Member::Body, &line)?;
     let both = |stress: &Stress, at: [usize; 3]| -> Vec<f64> {
         let displacements = stress.displacement.iter().flatten();

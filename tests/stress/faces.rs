@@ -110,8 +110,7 @@ fn the_load_is_seen_from_the_face_itself() -> Result<()> {
     let whole = StressPlan::plan(&body, &shifted, &block(&shifted), None)?;
     let ended = body.with_ends([Some(0.0), None])?;
     let ended = StressPlan::plan(&ended, &grid, &block(&grid), None)?;
-    let sliding =
-        StressOptions { friction: 0.3, direction: Some([1.0, 2.0]), ..at(Section::X(0.0)) };
+    let sliding = at(Section::X(0.0)).with_friction(0.3).with_direction([1.0, 2.0]);
     let (expected, found) =
         (whole.stress(&[0.5, 3.0], &sliding)?, ended.stress(&[0.5, 3.0], &sliding)?);
     for (found, expected) in fields(&found).into_iter().zip(fields(&expected)) {

@@ -15,7 +15,7 @@ fn press(grid: Grid, shape: &dyn Surface) -> Result<Solution> {
 
 /// Shear stresses σ_xz and σ_yz at the surface, where they are minus the traction.
 fn tractions(solution: &Solution, direction: Option<[f64; 2]>) -> Result<[f64; 2]> {
-    let options = StressOptions { friction: 0.25, direction, ..StressOptions::default() };
+    let options = StressOptions::default().with_friction(0.25).with_direction(direction);
     let field = solution.stress(&[0.0], Member::Body, &options)?;
     Ok([field.xz(), field.yz()].map(|shear| -shear.sum()))
 }
@@ -57,7 +57,7 @@ fn line_contacts_slide_across_the_strips() -> Result<()> {
     let solution = press(grid, &Sphere::new(1.0)?)?;
     let [x, y] = tractions(&solution, None)?;
     assert!(x.abs() < f64::EPSILON && y > 0.0);
-    let options = StressOptions { friction: 0.5, ..StressOptions::default() };
+    let options = StressOptions::default().with_friction(0.5);
     let body = Elastic::new(1.0, 0.3)?.into();
     let field: Stress = stress(&body, &grid, &solution.pressure, &[0.0], &options)?;
     assert!((field.friction[1] - 0.5).abs() < f64::EPSILON);

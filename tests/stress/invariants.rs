@@ -56,12 +56,10 @@ fn slipping() -> Result<Vec<(&'static str, HalfSpace)>> {
 }
 
 fn options(friction: f64) -> StressOptions {
-    StressOptions {
-        friction,
-        direction: Some([0.8, 0.6]),
-        displacement: true,
-        ..StressOptions::default()
-    }
+    StressOptions::default()
+        .with_friction(friction)
+        .with_direction([0.8, 0.6])
+        .with_displacement(true)
 }
 
 /// Depths in cells; a body uses those that lie in its interior.
@@ -179,7 +177,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
         for (layer, depth) in body.layers().iter().zip(body.interfaces()) {
             let slips = layer.interface() == Interface::Frictionless;
             let side = |side| {
-                let options = StressOptions { side, ..options(friction) };
+                let options = options(friction).with_side(side);
                 stress(&body, &grid, &pressure, &[depth], &options)
             };
             let above = side(Side::Above)?;
@@ -301,7 +299,7 @@ fn axes_can_be_exchanged() -> Result<()> {
     let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer(4.0, 0.2, 0.8)?])?;
     let depths = depths(&body);
     let one = stress(&body, &grid, &pressure, &depths, &options(0.5))?;
-    let turned_options = StressOptions { direction: Some([0.6, 0.8]), ..options(0.5) };
+    let turned_options = options(0.5).with_direction([0.6, 0.8]);
     let transposed = pressure.t().to_owned();
     let other = stress(&body, &turned, &transposed, &depths, &turned_options)?;
     for (k, from) in EXCHANGED.into_iter().enumerate() {

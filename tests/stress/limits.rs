@@ -25,13 +25,11 @@ fn deep_planes_are_those_of_a_point_force() -> Result<()> {
         for grid in [Grid::new([16, 16], [0.5, 0.5])?, Grid::line(16, 0.5)?] {
             let solution = press(&body, grid)?;
             for section in [Section::Plane, Section::Axis([0.0, 0.0])] {
-                let options = StressOptions {
-                    section,
-                    friction: 0.1,
-                    direction: Some([1.0, 1.0]),
-                    displacement: true,
-                    ..StressOptions::default()
-                };
+                let options = StressOptions::default()
+                    .with_section(section)
+                    .with_friction(0.1)
+                    .with_direction([1.0, 1.0])
+                    .with_displacement(true);
                 let depths = [1e4, 1e20, 1e40, 1e60];
                 let field = solution.stress(&depths, Member::Body, &options)?;
                 let displacement = field.displacement.iter().flatten();

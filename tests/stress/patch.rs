@@ -27,13 +27,11 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
     let inside = |v: f64| v.abs() < 0.5;
     let pressure =
         Array2::from_shape_fn((n, n), |(i, j)| f64::from(u8::from(inside(x[i]) && inside(y[j]))));
-    let options = StressOptions {
-        side: if number(case, "side") < 0.0 { Side::Above } else { Side::Below },
-        friction,
-        direction: Some(if case["load"] == "qy" { [0.0, 1.0] } else { [1.0, 0.0] }),
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let options = StressOptions::default()
+        .with_side(if number(case, "side") < 0.0 { Side::Above } else { Side::Below })
+        .with_friction(friction)
+        .with_direction(if case["load"] == "qy" { [0.0, 1.0] } else { [1.0, 0.0] })
+        .with_displacement(true);
     stress(&body, &grid, &pressure, &[number(case, "z")], &options)
 }
 

@@ -156,13 +156,11 @@ fn map(grid: &Grid, by: [usize; 2]) -> Result<HeightMap> {
 
 fn solved(by: [usize; 2], threads: usize) -> Result<Solution> {
     let grid = Grid::new([48, 40], [6.0, 5.0])?.periodic([true; 2])?;
-    let setup = Setup {
-        counterbody: Some(HalfSpace::from(Elastic::new(2.0, 0.2)?).into()),
-        threads: Some(threads),
-        ..Setup::default()
-    };
+    let setup = Setup::default()
+        .with_counterbody(HalfSpace::from(Elastic::new(2.0, 0.2)?))
+        .with_threads(threads);
     let contact = Contact::plan(&coated()?, grid, setup)?;
-    let options = Options { tolerance: 1e-11, ..Options::default() };
+    let options = Options::default().with_tolerance(1e-11);
     contact.solve(&map(&grid, by)?, &Motion::load(0.2), &options)
 }
 
@@ -194,10 +192,8 @@ fn the_seam_is_like_any_other_place() -> Result<()> {
             }
         }
         assert!(a.uncertainty.is_some());
-        let axis = StressOptions {
-            section: Section::Axis([here.grid().x()[3], here.grid().y()[38]]),
-            ..options.clone()
-        };
+        let axis =
+            options.clone().with_section(Section::Axis([here.grid().x()[3], here.grid().y()[38]]));
         let points = here.stress(&depths, member, &axis)?;
         for (point, plane) in points.components.iter().zip(&a.components) {
             for k in 0..depths.len() {
@@ -221,7 +217,7 @@ fn threads_change_no_bit() -> Result<()> {
     let fields: Vec<Stress> = [1, 2, 4]
         .into_iter()
         .map(|threads| {
-            let options = StressOptions { threads: Some(threads), ..sliding([0.0, 1.0]) };
+            let options = sliding([0.0, 1.0]).with_threads(threads);
             solved([0, 0], threads)?.stress(&[0.1, 1.0], Member::Body, &options)
         })
         .collect::<Result<_>>()?;

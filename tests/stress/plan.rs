@@ -27,10 +27,7 @@ fn grid() -> Result<Grid> {
 
 /// A coated body under a homogeneous one.
 fn solution() -> Result<Solution> {
-    let setup = Setup {
-        counterbody: Some(HalfSpace::from(Elastic::new(2.0, 0.3)?).into()),
-        ..Setup::default()
-    };
+    let setup = Setup::default().with_counterbody(HalfSpace::from(Elastic::new(2.0, 0.3)?));
     let contact = Contact::plan(coated()?, grid()?, setup)?;
     contact.solve(&Paraboloid::new(1.2e3, 1e3)?, &Motion::load(1e-3), &Options::default())
 }
@@ -39,23 +36,19 @@ fn solution() -> Result<Solution> {
 fn options() -> [StressOptions; 4] {
     let frictionless = StressOptions::default();
     let sliding = displaced(sliding(0.3, [1.0, -2.0]));
-    let along = StressOptions {
-        friction: 0.1,
-        direction: Some([1.0, 0.0]),
-        section: Section::X(0.1),
-        ..StressOptions::default()
-    };
-    let residual = StressOptions {
-        residual: vec![-0.2, 0.1],
-        section: Section::Axis([0.02, 0.0]),
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let along = StressOptions::default()
+        .with_friction(0.1)
+        .with_direction([1.0, 0.0])
+        .with_section(Section::X(0.1));
+    let residual = StressOptions::default()
+        .with_residual(vec![-0.2, 0.1])
+        .with_section(Section::Axis([0.02, 0.0]))
+        .with_displacement(true);
     [frictionless, sliding, along, residual]
 }
 
 fn on_threads(count: usize) -> StressOptions {
-    StressOptions::with_threads(Some(count))
+    StressOptions::default().with_threads(count)
 }
 
 fn assert_same(field: &Stress, expected: &Stress, options: &StressOptions) {
@@ -100,15 +93,12 @@ fn a_point_has_the_stress_of_its_plane() -> Result<()> {
     let [x, y] = [solution.grid().x(), solution.grid().y()];
     let [dx, dy] = solution.grid().spacing();
     for options in options() {
-        let plane = StressOptions { section: Section::Plane, ..options.clone() };
+        let plane = options.clone().with_section(Section::Plane);
         let plane = solution.stress(&DEPTHS, Member::Body, &plane)?;
         for [i, j, along, across] in [[31, 29, 0, 0], [12, 28, 1, 1], [0, 57, 0, 0], [50, 20, 1, 0]]
         {
             let [u, v] = [along, across].map(|part| 0.25 * part as f64);
-            let point = StressOptions {
-                section: Section::Axis([x[i] + u * dx, y[j] + v * dy]),
-                ..options.clone()
-            };
+            let point = options.clone().with_section(Section::Axis([x[i] + u * dx, y[j] + v * dy]));
             let point = solution.stress(&DEPTHS, Member::Body, &point)?;
             let stresses = if along + across == 0 { 6 } else { 0 };
             let pairs = point.components.iter().zip(&plane.components).take(stresses);
@@ -224,7 +214,7 @@ fn bad_input_is_refused() -> Result<()> {
     let layer = Layer::new(Elastic::new(4.0, 0.25)?, 0.2)?.with_interface(Interface::Frictionless);
     let slipping = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer])?;
     let plan = StressPlan::plan(&slipping, &grid, &Array2::zeros((4, 4)), None)?;
-    let sliding = StressOptions { friction: 0.1, ..StressOptions::default() };
+    let sliding = StressOptions::default().with_friction(0.1);
     assert!(plan.stress(&[0.0], &sliding).is_err());
     assert!(summary(&plan, &sliding).is_err());
     assert!(plan.stress(&[-1.0], &StressOptions::default()).is_err());

@@ -21,13 +21,11 @@ fn solution() -> Result<Solution> {
 }
 
 fn options(threads: usize) -> StressOptions {
-    StressOptions {
-        friction: 0.3,
-        direction: Some([1.0, 2.0]),
-        displacement: true,
-        threads: Some(threads),
-        ..StressOptions::default()
-    }
+    StressOptions::default()
+        .with_friction(0.3)
+        .with_direction([1.0, 2.0])
+        .with_displacement(true)
+        .with_threads(threads)
 }
 
 /// Pressure within cells is felt at the surface and at a tenth of a cell, not at the interface and

@@ -12,7 +12,7 @@ use nacre::{
 use ndarray::Array2;
 
 use crate::support::random::uniform;
-use crate::support::settings::{Controls, stack};
+use crate::support::settings::stack;
 
 /// Random numbers, one after the other.
 #[derive(Debug)]

@@ -52,7 +52,7 @@ pub(crate) fn unlike(cells: usize, width: f64) -> Result<Contact> {
 
 /// Options with this tolerance.
 pub(crate) fn precise(tolerance: f64) -> FrictionOptions {
-    FrictionOptions { tolerance, ..FrictionOptions::default() }
+    FrictionOptions::default().with_tolerance(tolerance)
 }
 
 /// The ball after a single step, which converges.
@@ -82,32 +82,6 @@ pub(crate) fn tractions_apart(a: &FrictionSolution, b: &FrictionSolution) -> f64
     x.max(y)
 }
 
-/// What a step prescribes and what acts in it.
-pub(crate) trait Pulled {
-    fn with_force(self, force: [Option<f64>; 2]) -> Self;
-    fn with_torque(self, torque: Option<f64>) -> Self;
-    fn with_shift(self, shift: [Option<f64>; 2]) -> Self;
-    fn with_twist(self, twist: Option<f64>) -> Self;
-}
-
-impl Pulled for Step {
-    fn with_force(self, force: [Option<f64>; 2]) -> Self {
-        Self { force, ..self }
-    }
-
-    fn with_torque(self, torque: Option<f64>) -> Self {
-        Self { torque, ..self }
-    }
-
-    fn with_shift(self, shift: [Option<f64>; 2]) -> Self {
-        Self { shift, ..self }
-    }
-
-    fn with_twist(self, twist: Option<f64>) -> Self {
-        Self { twist, ..self }
-    }
-}
-
 /// Rolling with a creepage or under a force along x, or along y on a line.
 pub(crate) fn rolling(
     load: f64,
@@ -115,11 +89,9 @@ pub(crate) fn rolling(
     direction: RollingDirection,
     [creepage, force]: [Option<f64>; 2],
 ) -> Rolling {
-    Rolling {
-        creepage: [creepage, None],
-        force: [force, None],
-        ..Rolling::new(Motion::load(load), friction, direction)
-    }
+    Rolling::new(Motion::load(load), friction, direction)
+        .with_creepage([creepage, None])
+        .with_force([force, None])
 }
 
 /// The steady state of rolling, which converges.

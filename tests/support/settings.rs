@@ -28,17 +28,17 @@ pub(crate) fn stack(
 
 /// Options with this tolerance.
 pub(crate) fn tolerance(tolerance: f64) -> Options {
-    Options { tolerance, ..Options::default() }
+    Options::default().with_tolerance(tolerance)
 }
 
 /// Options with this algorithm and tolerance.
 pub(crate) fn by(algorithm: Algorithm, tolerance: f64) -> Options {
-    Options { algorithm, tolerance, ..Options::default() }
+    Options::default().with_algorithm(algorithm).with_tolerance(tolerance)
 }
 
 /// A plan on so many threads.
 pub(crate) fn threads(threads: usize) -> Setup {
-    Setup { threads: Some(threads), ..Setup::default() }
+    Setup::default().with_threads(threads)
 }
 
 /// A contact of one body whose coefficients are made by this method.
@@ -48,17 +48,17 @@ pub(crate) fn converted(
     method: Method,
 ) -> Result<Contact> {
     let coefficients = influence_coefficients(body.clone(), &grid, method)?.into_shared();
-    Contact::plan(body, grid, Setup { coefficients: Some(coefficients), ..Setup::default() })
+    Contact::plan(body, grid, Setup::default().with_coefficients(coefficients))
 }
 
 /// A plan against another body.
 pub(crate) fn against(counterbody: impl Into<Body>) -> Setup {
-    Setup { counterbody: Some(counterbody.into()), ..Setup::default() }
+    Setup::default().with_counterbody(counterbody)
 }
 
 /// A plan against another body, on one thread.
 pub(crate) fn one_thread(counterbody: impl Into<Body>) -> Setup {
-    Setup { threads: Some(1), ..against(counterbody) }
+    against(counterbody).with_threads(1)
 }
 
 /// A contact of one body with all defaults.
@@ -80,25 +80,4 @@ pub(crate) fn converged(
 /// A solution that is converged to the default tolerance.
 pub(crate) fn pressed(contact: &Contact, shape: &dyn Surface, motion: &Motion) -> Result<Solution> {
     converged(contact, shape, motion, &Options::default())
-}
-
-/// Controls beside the load or the approach.
-pub(crate) trait Controls {
-    fn with_eccentricity(self, eccentricity: [Option<f64>; 2]) -> Self;
-    fn with_moment(self, moment: [Option<f64>; 2]) -> Self;
-    fn with_tilt(self, tilt: [Option<f64>; 2]) -> Self;
-}
-
-impl Controls for Motion {
-    fn with_eccentricity(self, eccentricity: [Option<f64>; 2]) -> Self {
-        Self { eccentricity, ..self }
-    }
-
-    fn with_moment(self, moment: [Option<f64>; 2]) -> Self {
-        Self { moment, ..self }
-    }
-
-    fn with_tilt(self, tilt: [Option<f64>; 2]) -> Self {
-        Self { tilt, ..self }
-    }
 }

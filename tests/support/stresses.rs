@@ -5,17 +5,17 @@ use ndarray::Array3;
 
 /// Friction along a direction.
 pub(crate) fn sliding(friction: f64, direction: [f64; 2]) -> StressOptions {
-    StressOptions { friction, direction: Some(direction), ..StressOptions::default() }
+    StressOptions::default().with_friction(friction).with_direction(direction)
 }
 
 /// A section.
 pub(crate) fn on(section: Section) -> StressOptions {
-    StressOptions { section, ..StressOptions::default() }
+    StressOptions::default().with_section(section)
 }
 
 /// These options, and the displacements.
 pub(crate) fn displaced(options: StressOptions) -> StressOptions {
-    StressOptions { displacement: true, ..options }
+    options.with_displacement(true)
 }
 
 /// The six components, and the displacements where they are known.

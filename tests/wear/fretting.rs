@@ -34,12 +34,10 @@ fn worn(grid: Grid, stick: f64, motion: Motion) -> Result<WearState> {
     let plan = Arc::new(Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?);
     // What is left of the pressure outside is a part 1/κΔs each time.
     let ends = [1.0, 1e2, 1e4, 1e9];
-    let wear = Wear {
-        slip: Slip::Cells(slip),
-        steps: WearSteps::Ends(ends.to_vec()),
-        scheme: WearScheme::Euler,
-        ..Wear::sliding([vec![1.0], vec![0.0]], 1e9)
-    };
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 1e9)
+        .with_slip(Slip::Cells(slip))
+        .with_steps(WearSteps::Ends(ends.to_vec()))
+        .with_scheme(WearScheme::Euler);
     let shape = Paraboloid::new(RADIUS, RADIUS)?;
     let mut states = states(WearSession::new(plan, shape, motion, wear, false)?)?;
     Ok(states.pop().expect("a state"))
@@ -111,25 +109,20 @@ fn friction_stops_where_it_is_told_to() -> Result<()> {
     let ball = Paraboloid::new(RADIUS, RADIUS)?;
     let motion = Motion::load(4.0 / (3.0 * RADIUS));
     let steel = Elastic::new(1.0, 0.0)?;
-    let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    let setup = Setup::default().with_counterbody(steel);
     let plan = Arc::new(Contact::plan(steel, Grid::new([32, 32], [4.0, 4.0])?, setup)?);
     let options = FrictionOptions::default();
-    let pull = |part: f64| Step {
-        force: [Some(0.15 * part * motion.load.unwrap_or(0.0)), None],
-        ..Step::press(motion, 0.3)
+    let pull = |part: f64| {
+        Step::press(motion, 0.3).with_force([Some(0.15 * part * motion.load.unwrap_or(0.0)), None])
     };
-    let rolling = Rolling {
-        creepage: [Some(1e-4), None],
-        ..Rolling::new(motion, 0.3, RollingDirection::PlusX)
-    };
+    let rolling =
+        Rolling::new(motion, 0.3, RollingDirection::PlusX).with_creepage([Some(1e-4), None]);
     for slip in
         [Slip::Cycle(vec![pull(1.0), pull(-1.0)], options), Slip::Pass(Box::new(rolling), options)]
     {
-        let wear = Wear {
-            slip,
-            steps: WearSteps::Ends(vec![1.0]),
-            ..Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
-        };
+        let wear = Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
+            .with_slip(slip)
+            .with_steps(WearSteps::Ends(vec![1.0]));
         let mut session = WearSession::new(Arc::clone(&plan), ball, motion, wear, false)?;
         let first = session.advance(&mut |_| ControlFlow::Continue(()))?.expect("a state");
         let mut calls = 0;
@@ -147,7 +140,7 @@ fn friction_stops_where_it_is_told_to() -> Result<()> {
 /// A cylinder between equal bodies, of half-width 1, and its load.
 fn pair() -> Result<(Arc<Contact>, Motion)> {
     let steel = Elastic::new(1.0, 0.0)?;
-    let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    let setup = Setup::default().with_counterbody(steel);
     let plan = Arc::new(Contact::plan(steel, Grid::line(64, 3.0)?, setup)?);
     Ok((plan, Motion::load(PI / (8.0 * RADIUS))))
 }
@@ -159,16 +152,13 @@ fn chosen_steps_begin_with_the_slip_that_there_is() -> Result<()> {
     let (plan, motion) = pair()?;
     let load = motion.load.unwrap_or(0.0);
     let options = FrictionOptions::default();
-    let pull =
-        |part: f64| Step { force: [None, Some(0.3 * part * load)], ..Step::press(motion, 0.6) };
-    let rolling = Rolling {
-        creepage: [Some(1e-4), None],
-        ..Rolling::new(motion, 0.3, RollingDirection::PlusY)
-    };
+    let pull = |part: f64| Step::press(motion, 0.6).with_force([None, Some(0.3 * part * load)]);
+    let rolling =
+        Rolling::new(motion, 0.3, RollingDirection::PlusY).with_creepage([Some(1e-4), None]);
     for slip in
         [Slip::Cycle(vec![pull(1.0), pull(-1.0)], options), Slip::Pass(Box::new(rolling), options)]
     {
-        let wear = Wear { slip, ..Wear::sliding([vec![1e-6], vec![0.0]], 1e30) };
+        let wear = Wear::sliding([vec![1e-6], vec![0.0]], 1e30).with_slip(slip);
         let shape = Paraboloid::new(RADIUS, RADIUS)?;
         let mut session = WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?;
         let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
@@ -187,8 +177,8 @@ fn cycles_say_why_they_wear_nothing() -> Result<()> {
     let (plan, motion) = pair()?;
     let load = motion.load.unwrap_or(0.0);
     let press = Step::press(motion, 0.6);
-    let pull = |part: f64| Step { force: [None, Some(part * load)], ..press.clone() };
-    let push = |shift: f64| Step { shift: [None, Some(shift)], ..press.clone() };
+    let pull = |part: f64| press.clone().with_force([None, Some(part * load)]);
+    let push = |shift: f64| press.clone().with_shift([None, Some(shift)]);
     for (steps, due) in [
         (vec![pull(0.3), pull(-0.3)], None),
         (vec![pull(0.3)], Some(Idle::DoesNotReturn)),
@@ -196,11 +186,9 @@ fn cycles_say_why_they_wear_nothing() -> Result<()> {
         // The outermost cells carry a hundredth of the load and more.
         (vec![pull(1e-6), pull(-1e-6)], Some(Idle::Sticks)),
     ] {
-        let wear = Wear {
-            slip: Slip::Cycle(steps, FrictionOptions::default()),
-            steps: WearSteps::Ends(vec![1.0]),
-            ..Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
-        };
+        let wear = Wear::sliding([vec![1e-3], vec![0.0]], 1.0)
+            .with_slip(Slip::Cycle(steps, FrictionOptions::default()))
+            .with_steps(WearSteps::Ends(vec![1.0]));
         let shape = Paraboloid::new(RADIUS, RADIUS)?;
         let session = WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?;
         let states = states(session)?;

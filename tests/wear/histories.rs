@@ -51,7 +51,8 @@ fn worn_volumes_are_those_of_the_law() -> Result<()> {
         for (count, end) in [(1, 0.03), (7, 0.03), (1, 1e9), (3, 1e9)] {
             let steps = ends(count, end);
             let rates = [vec![1.0, 1.0], vec![0.25]];
-            let states = run(&plan, Wear { steps, scheme, ..Wear::sliding(rates, end) })?;
+            let states =
+                run(&plan, Wear::sliding(rates, end).with_steps(steps).with_scheme(scheme))?;
             for state in &states[1..] {
                 let due = force * state.distance;
                 near!(state.depth[0].sum() * plan.grid().cell_area(), due, 1e-12, count);
@@ -79,8 +80,7 @@ fn without_wear_it_is_the_solve() -> Result<()> {
 #[test]
 fn worn_contacts_are_contacts_of_the_worn_shape() -> Result<()> {
     let plan = line()?;
-    let states =
-        run(&plan, Wear { steps: ends(3, 0.03), ..Wear::sliding([vec![1.0], vec![0.5]], 0.03) })?;
+    let states = run(&plan, Wear::sliding([vec![1.0], vec![0.5]], 0.03).with_steps(ends(3, 0.03)))?;
     let state = &states[3];
     let solution = &state.solution;
     let worn = &state.depth[0] + &state.depth[1];
@@ -116,7 +116,7 @@ fn chosen_steps_keep_their_error() -> Result<()> {
             let shape = Paraboloid::new(RADIUS, RADIUS)?;
             let history =
                 |wear| states(WearSession::new(Arc::clone(plan), shape, motion, wear, false)?);
-            let wear = Wear { scheme, ..Wear::sliding([vec![1.0], vec![0.0]], end) };
+            let wear = Wear::sliding([vec![1.0], vec![0.0]], end).with_scheme(scheme);
             let chosen = history(wear.clone())?;
             let steps = WearSteps::Ends(
                 (chosen.windows(2))
@@ -126,7 +126,7 @@ fn chosen_steps_keep_their_error() -> Result<()> {
                     })
                     .collect(),
             );
-            let fine = history(Wear { steps, scheme: WearScheme::Trapezoidal, ..wear })?;
+            let fine = history(wear.with_steps(steps).with_scheme(WearScheme::Trapezoidal))?;
             let peak = chosen[0].solution.peak_pressure();
             for (k, state) in chosen.iter().enumerate() {
                 let other = &fine[10 * k].solution;
@@ -162,8 +162,7 @@ fn long_runs_end_on_their_closed_forms() -> Result<()> {
     let mut before = f64::INFINITY;
     // κs in units of what elasticity gives per pressure, 1/E*: 10 to 100 half-widths of Hertz.
     for distance in [10.0, 30.0, 100.0] {
-        let wear =
-            Wear { scheme: WearScheme::Euler, ..Wear::sliding([vec![1.0], vec![0.0]], distance) };
+        let wear = Wear::sliding([vec![1.0], vec![0.0]], distance).with_scheme(WearScheme::Euler);
         let states = run(&plan, wear)?;
         let solution = &states.last().expect("a state").solution;
         let half = 0.5 * solution.contact_area();
@@ -184,7 +183,7 @@ fn long_runs_end_on_their_closed_forms() -> Result<()> {
 fn coats_are_through_where_finer_steps_say() -> Result<()> {
     let plan = line()?;
     let rates = [vec![1.0, 30.0], vec![0.0]];
-    let wear = |steps| Wear { steps, until_through: true, ..Wear::sliding(rates.clone(), 1.0) };
+    let wear = |steps| Wear::sliding(rates.clone(), 1.0).with_steps(steps).with_until_through(true);
     let auto = run(&plan, wear(WearSteps::Auto { end: 1.0, tolerance: 1e-3 }))?;
     let through = auto.last().expect("a state").through[0];
     let fine = run(&plan, wear(ends((10.0 * auto.len() as f64 / through.distance) as usize, 1.0)))?;
@@ -198,11 +197,9 @@ fn coats_are_through_where_finer_steps_say() -> Result<()> {
     let state = auto.last().expect("a state");
     near!(largest(&state.depth[0]), 1e-4, 1e-5);
     // Given steps are divided at the same moment, and the history goes on with both rates.
-    let beyond = Wear {
-        steps: ends(6, 2.0 * due.distance),
-        until_through: false,
-        ..wear(WearSteps::Ends(Vec::new()))
-    };
+    let beyond = wear(WearSteps::Ends(Vec::new()))
+        .with_steps(ends(6, 2.0 * due.distance))
+        .with_until_through(false);
     let states = run(&plan, beyond)?;
     let event = states.iter().find(|state| !state.through.is_empty()).expect("it is through");
     near!(event.distance, due.distance, 0.02);
@@ -219,8 +216,8 @@ fn coats_are_through_where_finer_steps_say() -> Result<()> {
 #[test]
 fn moments_hold_while_it_wears() -> Result<()> {
     let plan = line()?;
-    let motion = Motion { eccentricity: [None, Some(0.1)], ..load() };
-    let wear = Wear { steps: ends(5, 0.1), ..Wear::sliding([vec![1.0], vec![0.0]], 0.1) };
+    let motion = load().with_eccentricity([None, Some(0.1)]);
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 0.1).with_steps(ends(5, 0.1));
     let shape = Cylinder::new(RADIUS)?;
     for state in states(WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?)? {
         near!(state.solution.eccentricity()[1], 0.1, 1e-9);
@@ -233,11 +230,11 @@ fn moments_hold_while_it_wears() -> Result<()> {
 fn grids_grow_with_the_contact() -> Result<()> {
     let (body, shape) = (Elastic::new(1.0, 0.3)?.into(), Paraboloid::new(RADIUS, RADIUS)?);
     let motion = Motion::load(4.0 / (3.0 * 0.91 * RADIUS));
-    let options = Options { cells: Some(4096), ..Options::default() };
+    let options = Options::default().with_cells(4096);
     let grid = choose_grid(&shape, &body, &Setup::default(), &motion, &options)?;
     let plan = Arc::new(Contact::plan(body, grid, Setup::default())?);
-    let wear = Wear { steps: ends(8, 16.0), ..Wear::sliding([vec![1.0], vec![0.0]], 16.0) };
-    let wear = Wear { scheme: WearScheme::Euler, ..wear };
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 16.0).with_steps(ends(8, 16.0));
+    let wear = wear.with_scheme(WearScheme::Euler);
     let states = states(WearSession::new(plan, shape, motion, wear, true)?)?;
     let last = states.last().expect("a state");
     assert!(last.regrids > 0 && last.solution.grid().size()[0] > 1.4 * grid.size()[0]);
@@ -264,13 +261,11 @@ fn frozen_thickness_has_its_estimate() -> Result<()> {
     let plan = line()?;
     let even = Array2::from_elem([1, 96], 2e-5);
     // Of the coat, the pressure feels 1e-5: solves must be finer.
-    let options = Options { tolerance: 1e-14, ..Options::default() };
-    let wear = Wear {
-        initial: Some([even, Array2::zeros([1, 96])]),
-        steps: WearSteps::Ends(Vec::new()),
-        options: options.clone(),
-        ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
-    };
+    let options = Options::default().with_tolerance(1e-14);
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 0.0)
+        .with_initial([even, Array2::zeros([1, 96])])
+        .with_steps(WearSteps::Ends(Vec::new()))
+        .with_options(options.clone());
     let mut session =
         WearSession::new(Arc::clone(&plan), Cylinder::new(RADIUS)?, load(), wear, false)?;
     let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
@@ -296,15 +291,13 @@ fn given_coefficients_have_the_estimate_of_the_thickness() -> Result<()> {
         for (error, coefficients) in
             errors.iter_mut().zip([None, Some(exact.clone().into_shared())])
         {
-            let setup = Setup { coefficients, ..Setup::default() };
+            let setup = Setup::default().with_coefficients(coefficients);
             let plan = Arc::new(Contact::plan(coated()?, grid, setup)?);
             let even = Array2::from_elem([1, 96], 3e-5);
-            let wear = Wear {
-                initial: Some([even, Array2::zeros([1, 96])]),
-                steps: WearSteps::Ends(Vec::new()),
-                thickness,
-                ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
-            };
+            let wear = Wear::sliding([vec![1.0], vec![0.0]], 0.0)
+                .with_initial([even, Array2::zeros([1, 96])])
+                .with_steps(WearSteps::Ends(Vec::new()))
+                .with_thickness(thickness);
             let mut session = WearSession::new(plan, Cylinder::new(RADIUS)?, load(), wear, false)?;
             let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
             session.advance(go_on)?.expect("the first state");
@@ -335,7 +328,7 @@ fn layers_are_through_where_even_pressure_says() -> Result<()> {
             let auto = WearSteps::Auto { end: 0.7, tolerance: 1e-3 };
             for steps in [ends(1, 0.7), ends(5, 0.7), auto] {
                 let rates = [rates.clone(), vec![0.0]];
-                let wear = Wear { steps, scheme, ..Wear::sliding(rates, 0.7) };
+                let wear = Wear::sliding(rates, 0.7).with_steps(steps).with_scheme(scheme);
                 let motion = Motion::load(pressure);
                 let session =
                     WearSession::new(Arc::clone(&plan), flat.clone(), motion, wear, false)?;
@@ -360,13 +353,11 @@ fn layers_below_which_a_history_begins_are_through_at_once() -> Result<()> {
     let plan = line()?;
     for (goes_on, count, through) in [(false, 1, 1), (true, 2, 0)] {
         let initial = Some([Array2::from_elem([1, 96], 1.5e-4), Array2::zeros([1, 96])]);
-        let wear = Wear {
-            initial,
-            goes_on,
-            until_through: true,
-            steps: ends(1, 1e-3),
-            ..Wear::sliding([vec![1.0], vec![0.0]], 1e-3)
-        };
+        let wear = Wear::sliding([vec![1.0], vec![0.0]], 1e-3)
+            .with_initial(initial)
+            .with_goes_on(goes_on)
+            .with_until_through(true)
+            .with_steps(ends(1, 1e-3));
         let states = run(&plan, wear)?;
         assert_eq!((states.len(), states[0].through.len()), (count, through));
         assert!(states[0].through.iter().all(|event| event.distance <= 0.0 && event.layer == 0));
@@ -381,7 +372,7 @@ fn histories_at_an_approach_end() -> Result<()> {
     let plan = Arc::new(Contact::plan(Elastic::new(1.0, 0.3)?, grid, Setup::default())?);
     let motion = Motion::approach(1.0 / RADIUS);
     for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
-        let wear = Wear { scheme, ..Wear::sliding([vec![1.0], vec![0.0]], 1e12) };
+        let wear = Wear::sliding([vec![1.0], vec![0.0]], 1e12).with_scheme(scheme);
         let shape = Paraboloid::new(RADIUS, RADIUS)?;
         let states = states(WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?)?;
         let last = states.last().expect("a state");
@@ -419,7 +410,7 @@ fn worn_balls_have_even_pressure() -> Result<()> {
 #[test]
 fn states_count_the_convolutions_of_their_step() -> Result<()> {
     let plan = line()?;
-    let wear = Wear { steps: ends(2, 0.01), ..Wear::sliding([vec![1.0], vec![0.0]], 0.01) };
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 0.01).with_steps(ends(2, 0.01));
     let mut session = WearSession::new(plan, Cylinder::new(RADIUS)?, load(), wear, false)?;
     session.advance(&mut |_| ControlFlow::Continue(()))?;
     let mut told: Vec<f64> = Vec::new();
@@ -465,26 +456,20 @@ fn wrong_input_is_refused() -> Result<()> {
             Wear::sliding([vec![1.0], vec![0.0]], -2.0),
             "sliding must be finite and at least 0, got -2",
         ),
-        (Wear { slip: Slip::Cells(one(0.0)), ..plain() }, "slip must be above 0 somewhere"),
-        (Wear { slip: Slip::Cells(one(-1.0)), ..plain() }, "slip must"),
+        (plain().with_slip(Slip::Cells(one(0.0))), "slip must be above 0 somewhere"),
+        (plain().with_slip(Slip::Cells(one(-1.0))), "slip must"),
         (
-            Wear { slip: Slip::Cells(Array2::zeros([2, 2])), ..plain() },
+            plain().with_slip(Slip::Cells(Array2::zeros([2, 2]))),
             "slip: expected shape [1, 96], got [2, 2]",
         ),
         (
-            Wear { steps: WearSteps::Ends(vec![1.0, 0.5]), ..plain() },
+            plain().with_steps(WearSteps::Ends(vec![1.0, 0.5])),
             "steps must be finite, above 0 and increasing, got 0.5",
         ),
+        (plain().with_steps(WearSteps::Auto { end: 1.0, tolerance: 2.0 }), "step_tolerance must"),
+        (plain().with_initial([one(-1.0), one(0.0)]), "initial must"),
         (
-            Wear { steps: WearSteps::Auto { end: 1.0, tolerance: 2.0 }, ..plain() },
-            "step_tolerance must",
-        ),
-        (Wear { initial: Some([one(-1.0), one(0.0)]), ..plain() }, "initial must"),
-        (
-            Wear {
-                options: Options { hardness: Some(Hardness::Uniform(1.0)), ..Options::default() },
-                ..plain()
-            },
+            plain().with_options(Options::default().with_hardness(Hardness::Uniform(1.0))),
             "wear has neither hardness nor compliance: leave them out",
         ),
     ] {

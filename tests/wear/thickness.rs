@@ -40,12 +40,10 @@ fn even(
 ) -> Result<(Solution, Option<f64>)> {
     let plan = Arc::new(Contact::plan(coated(THICKNESS)?, grid, Setup::default())?);
     let initial = [depth, 0.0].map(|depth| Array2::from_elem(grid.shape(), depth));
-    let wear = Wear {
-        initial: Some(initial),
-        steps: WearSteps::Ends(Vec::new()),
-        thickness,
-        ..Wear::sliding([vec![1.0], vec![0.0]], 0.0)
-    };
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], 0.0)
+        .with_initial(initial)
+        .with_steps(WearSteps::Ends(Vec::new()))
+        .with_thickness(thickness);
     let shape = Paraboloid::new(RADIUS, RADIUS)?;
     let mut session = WearSession::new(plan, shape, motion, wear, false)?;
     let go_on = &mut |_: &nacre::Report| ControlFlow::Continue(());
@@ -106,27 +104,24 @@ fn steps_end_on_contacts_of_their_own_thickness() -> Result<()> {
     for (grid, motion) in contacts()? {
         let plan = Arc::new(Contact::plan(coated(THICKNESS)?, grid, Setup::default())?);
         let shape = Paraboloid::new(RADIUS, RADIUS)?;
-        let options = Options { tolerance: 1e-10, ..Options::default() };
+        let options = Options::default().with_tolerance(1e-10);
         let run = |wear: Wear| -> Result<Vec<WearState>> {
-            let wear = Wear { thickness: Thickness::FirstOrder, options: options.clone(), ..wear };
+            let wear = wear.with_thickness(Thickness::FirstOrder).with_options(options.clone());
             states(WearSession::new(Arc::clone(&plan), shape, motion, wear, false)?)
         };
         // Pressures are some 0.3: the coat loses a third of its thickness.
         let distance = end / 0.3;
         let steps = (1..=4).map(|k| distance * f64::from(k) / 4.0).collect();
         let wear = Wear::sliding([vec![1.0], vec![0.0]], distance);
-        let history = run(Wear { steps: WearSteps::Ends(steps), ..wear.clone() })?;
+        let history = run(wear.clone().with_steps(WearSteps::Ends(steps)))?;
         let last = history.last().expect("a state");
         assert!((0.1..0.6).contains(&(largest(&last.depth[0]) / THICKNESS)));
-        let again = run(Wear {
-            initial: Some(last.depth.clone()),
-            steps: WearSteps::Ends(Vec::new()),
-            ..wear
-        })?;
+        let again =
+            run(wear.with_initial(last.depth.clone()).with_steps(WearSteps::Ends(Vec::new())))?;
         let peak = last.solution.peak_pressure();
         // The depth in the contact lags by up to 1e-4 of the thickness; a solve's error is the root of its tolerance.
         below!(apart(&last.solution.pressure, &again[0].solution.pressure), 2e-4 * peak);
-        let dented = Options { indentation: Some(last.depth[0].clone()), ..options.clone() };
+        let dented = options.clone().with_indentation(last.depth[0].clone());
         let frozen = plan.solve(&shape, &motion, &dented)?;
         assert!(apart(&last.solution.pressure, &frozen.pressure) > 2e-3 * peak);
     }
@@ -135,8 +130,7 @@ fn steps_end_on_contacts_of_their_own_thickness() -> Result<()> {
 
 #[test]
 fn what_has_no_thinner_layers_is_refused() -> Result<()> {
-    let wear =
-        || Wear { thickness: Thickness::FirstOrder, ..Wear::sliding([vec![1.0], vec![0.0]], 1.0) };
+    let wear = || Wear::sliding([vec![1.0], vec![0.0]], 1.0).with_thickness(Thickness::FirstOrder);
     let message = |body: HalfSpace, grid: Grid| -> Result<String> {
         let plan = Arc::new(Contact::plan(body, grid, Setup::default())?);
         let shape = Paraboloid::new(RADIUS, RADIUS)?;
@@ -165,11 +159,9 @@ fn steps_of_thinner_layers_are_solved_once() -> Result<()> {
     let plan = Arc::new(Contact::plan(coated(THICKNESS)?, grid, Setup::default())?);
     // A tenth of the coat where the pressure is largest, in twenty steps.
     let end = 0.1 * THICKNESS;
-    let wear = Wear {
-        steps: WearSteps::Ends((1..=20).map(|k| end * f64::from(k) / 20.0).collect()),
-        thickness: Thickness::FirstOrder,
-        ..Wear::sliding([vec![1.0], vec![0.0]], end)
-    };
+    let wear = Wear::sliding([vec![1.0], vec![0.0]], end)
+        .with_steps(WearSteps::Ends((1..=20).map(|k| end * f64::from(k) / 20.0).collect()))
+        .with_thickness(Thickness::FirstOrder);
     let shape = Paraboloid::new(RADIUS, RADIUS)?;
     let mut session = WearSession::new(plan, shape, motion, wear, false)?;
     let mut solves = Vec::new();

@@ -42,7 +42,7 @@ fn factors(body: &HalfSpace, wavenumber: f64, c11: f64, steps: usize) -> Result<
     let length = TAU / wavenumber;
     let grid = Grid::new([4, 16], [length / 4.0, length])?.periodic([true; 2])?;
     let coefficients = influence_coefficients(body, &grid, Method::Spectral)?.into_shared();
-    let setup = Setup { coefficients: Some(coefficients), ..Setup::default() };
+    let setup = Setup::default().with_coefficients(coefficients);
     let plan = Arc::new(Contact::plan(body, grid, setup)?);
     let wave = Array2::from_shape_fn([4, 16], |(_, j)| (TAU * (j as f64 + 0.5) / 16.0).cos());
     // The wave of pressure is a fifth of the mean, and all of it is so small that no layer is through.
@@ -50,12 +50,10 @@ fn factors(body: &HalfSpace, wavenumber: f64, c11: f64, steps: usize) -> Result<
     let motion = Motion::load(SMALL * grid.cell_area() * 64.0);
     let mut factors = [0.0; 2];
     for (factor, scheme) in factors.iter_mut().zip([WearScheme::Euler, WearScheme::Trapezoidal]) {
-        let wear = Wear {
-            steps: WearSteps::Ends((1..=steps).map(|k| k as f64 / steps as f64).collect()),
-            scheme,
-            options: Options { tolerance: 1e-13, ..Options::default() },
-            ..Wear::sliding([vec![1.0], vec![0.0]], 1.0)
-        };
+        let wear = Wear::sliding([vec![1.0], vec![0.0]], 1.0)
+            .with_steps(WearSteps::Ends((1..=steps).map(|k| k as f64 / steps as f64).collect()))
+            .with_scheme(scheme)
+            .with_options(Options::default().with_tolerance(1e-13));
         let states =
             states(WearSession::new(Arc::clone(&plan), shape.clone(), motion, wear, false)?)?;
         let amplitude = |state: &WearState| (&state.solution.pressure * &wave).sum() / 32.0;
@@ -106,7 +104,7 @@ fn stated_errors_are_those_of_waves() -> Result<()> {
     let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
     let grid = Grid::new([4, 16], [PI, TAU])?.periodic([true; 2])?;
     let coefficients = influence_coefficients(&body, &grid, Method::Spectral)?.into_shared();
-    let setup = Setup { coefficients: Some(coefficients), ..Setup::default() };
+    let setup = Setup::default().with_coefficients(coefficients);
     let plan = Arc::new(Contact::plan(&body, grid, setup)?);
     let wave = Array2::from_shape_fn([4, 16], |(_, j)| (TAU * (j as f64 + 0.5) / 16.0).cos());
     let c11 = 1.82;
@@ -146,26 +144,21 @@ fn no_step_is_too_long() -> Result<()> {
     let length = TAU / wavenumber;
     let grid = Grid::new([4, 16], [length / 4.0, length])?.periodic([true; 2])?;
     let coefficients = influence_coefficients(&body, &grid, Method::Spectral)?.into_shared();
-    let setup = Setup { coefficients: Some(coefficients), ..Setup::default() };
+    let setup = Setup::default().with_coefficients(coefficients);
     let plan = Arc::new(Contact::plan(&body, grid, setup)?);
     let wave = Array2::from_shape_fn([4, 16], |(_, j)| (TAU * (j as f64 + 0.5) / 16.0).cos());
     let shape = HeightMap::new(&wave * (0.2 * c11), grid.spacing())?;
     let motion = Motion::load(grid.cell_area() * 64.0);
     let step = 100.0 * 2.0 * c11;
     for scheme in [WearScheme::Euler, WearScheme::Trapezoidal] {
-        let wear = Wear {
-            steps: WearSteps::Ends((1..=4).map(|k| f64::from(k) * step).collect()),
-            scheme,
-            options: Options { tolerance: 1e-13, ..Options::default() },
-            ..Wear::sliding([vec![1.0], vec![0.0]], 4.0 * step)
-        };
+        let wear = Wear::sliding([vec![1.0], vec![0.0]], 4.0 * step)
+            .with_steps(WearSteps::Ends((1..=4).map(|k| f64::from(k) * step).collect()))
+            .with_scheme(scheme)
+            .with_options(Options::default().with_tolerance(1e-13));
         let states =
             states(WearSession::new(Arc::clone(&plan), shape.clone(), motion, wear, false)?)?;
         let amplitude = |k: usize| (&states[k].solution.pressure * &wave).sum() / 32.0;
-        let factor = match scheme {
-            WearScheme::Euler => 1.0 / 201.0,
-            WearScheme::Trapezoidal => -99.0 / 101.0,
-        };
+        let factor = if scheme == WearScheme::Euler { 1.0 / 201.0 } else { -99.0 / 101.0 };
         below!((amplitude(1) - 0.2 * factor).abs(), 1e-10);
         assert_eq!(states[3].rings, scheme == WearScheme::Trapezoidal);
         assert!(states.iter().all(|state| state.solution.pressure.iter().all(|p| *p < 1.5)));

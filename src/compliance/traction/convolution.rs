@@ -125,7 +125,9 @@ impl Tangential {
         let half_spaces = self.bodies.iter().filter_map(|body| body.half_space());
         half_spaces
             .map(|body| alpha_compliance(body, alpha))
-            .fold([0.0; 3], |[n, l, t], one| [n + one.c11, l + one.c22, t + one.ct])
+            .fold([0.0; 3], |[n, l, t], compliance| {
+                [n + compliance.c11, l + compliance.c22, t + compliance.ct]
+            })
     }
 
     /// Coefficients of a loaded cell less those of its neighbour along x, and along y, for tractions along both.

@@ -87,6 +87,7 @@ use crate::numerics::parallel::{Lanes, ONE, update_with_largest, where_positive}
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct Discretisation {
     /// Error of the peak pressure \[Pa\]. `None` where the pressure is singular, at a sharp edge of the
     /// shape or where the grid cuts the contact: then the peak has no limit, and a warning says so.

@@ -132,6 +132,7 @@ pub(crate) fn not_allowed(p: Lanes, limit: Lanes) -> Lanes {
 /// Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
 /// Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Hardness {
     /// One number for all cells.
     Uniform(f64),

@@ -24,8 +24,8 @@ pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
     let window = [0, 1].map(|k| {
         cells[k].start.saturating_sub(WINDOW_MARGIN)..(cells[k].end + WINDOW_MARGIN).min(shape[k])
     });
-    let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
-    if part > LARGEST_PART { full_window(shape) } else { window }
+    let share = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
+    if share > LARGEST_PART { full_window(shape) } else { window }
 }
 
 /// The smallest window that holds both.
@@ -42,7 +42,7 @@ pub(crate) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView
 }
 
 /// Values of a window in C order, each row written by `fill`.
-fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
+fn window_values([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
     let mut values = vec![0.0; x.len() * y.len()];
     each_row(&mut values, y.len(), |k, row| fill(x.start + k, row));
     values
@@ -103,7 +103,7 @@ impl Patch {
 
     /// This pressure in another window.
     pub(crate) fn moved(&self, window: Window) -> Self {
-        let values = filled(&window, |i, row| {
+        let values = window_values(&window, |i, row| {
             for (value, j) in row.iter_mut().zip(window[1].clone()) {
                 *value = self.at(i, j);
             }
@@ -148,7 +148,7 @@ impl Patch {
             _ => 0.0,
         };
         let columns: Vec<_> = window[1].clone().map(|j| taps(1, j)).collect();
-        let values = filled(&window, |i, row| {
+        let values = window_values(&window, |i, row| {
             let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, weight)| (line(i), weight));
             for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);

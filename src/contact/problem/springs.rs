@@ -10,6 +10,7 @@ use crate::model::grid::Grid;
 /// It is that of a bed, of soft asperities, or of what a step of wear removes per pressure. One number for all cells is
 /// what [`Response::local`](crate::Response::local) adds to a body.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Compliance {
     /// One number for all cells.
     Uniform(f64),

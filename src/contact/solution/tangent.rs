@@ -79,8 +79,8 @@ impl Tangent {
         }
         let inverse = convolution.approximation(&corner, repeats).inverse;
         let contact = block(&solution.pressure, &window);
-        let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
-        let coordinates = [part(0), part(1)];
+        let within = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
+        let coordinates = [within(0), within(1)];
         let middle = |line: &Vec<f64>| 0.5 * (line[0] + line[line.len() - 1]);
         let half = |axis: usize| 0.5 * shape[axis] as f64 * grid.spacing()[axis];
         Ok(Self {
@@ -141,10 +141,10 @@ impl Tangent {
 
     /// Displacement of a cell of the grid under unit pressure on another, with the datum of the tangent. Cells farther apart
     /// than the window is wide need [`Tangent::reach`] first.
-    pub(crate) fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
-        let [i, j] = [0, 1].map(|axis| one[axis].abs_diff(other[axis]));
+    pub(crate) fn entry(&self, cell: [usize; 2], loaded: [usize; 2]) -> f64 {
+        let [i, j] = [0, 1].map(|axis| cell[axis].abs_diff(loaded[axis]));
         let added = self.planned.additions.iter();
-        let added: f64 = added.map(|added| added.entry([one[0], other[0]], j)).sum();
+        let added: f64 = added.map(|added| added.entry([cell[0], loaded[0]], j)).sum();
         self.far.get().unwrap_or(&self.planned.coefficients)[[i, j]] + added
     }
 
@@ -191,16 +191,17 @@ impl Tangent {
                 }
             }
         };
-        let mut rest = right.to_vec();
-        beside(&mut rest);
+        let mut residual = right.to_vec();
+        beside(&mut residual);
         // What is left beside the span may be rounding.
-        let part = dot(&rest, &rest).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
-        if part <= NOTHING {
+        let relative =
+            dot(&residual, &residual).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
+        if relative <= NOTHING {
             return Ok(vec![0.0; right.len()]);
         }
-        let tolerance = tolerance.max(ROUNDING / part);
+        let tolerance = tolerance.max(ROUNDING / relative);
         linear_cg::solve(
-            &rest,
+            &residual,
             |input, out| {
                 self.restricted(&self.convolution, input, out, &mut first);
                 beside(out);
@@ -264,11 +265,11 @@ impl Solution {
         // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
         let mut stiffness = [[0.0; 3]; 3];
         for (j, [b, x]) in columns.iter().enumerate() {
-            let mut rest = vec![0.0; b.len()];
-            tangent.apply(x, &mut rest);
-            rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+            let mut residual = vec![0.0; b.len()];
+            tangent.apply(x, &mut residual);
+            residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
             for (i, [b, y]) in columns.iter().enumerate() {
-                stiffness[i][j] = dot(b, x) + dot(y, &rest);
+                stiffness[i][j] = dot(b, x) + dot(y, &residual);
             }
         }
         tangent.lower_datum(&mut stiffness);

@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use crate::compliance::ends::Ends;
 use crate::contact::problem::patch::rows;
-use crate::model::grid::{Grid, Window};
+use crate::model::grid::{Axis, Grid, Window};
 use crate::model::surface::{Extent, Surface};
 use crate::numerics::layout::slice;
 use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest, where_positive};
@@ -19,8 +19,8 @@ pub enum Warning {
     GridEdge,
     /// The contact reaches the end of a shape of finite length, as of a roller.
     SharpEnd {
-        /// 0 along x, 1 along y.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
     },
     /// The contact reaches the free end of one body, where the other extends beyond it.
     FreeEnd,
@@ -30,27 +30,27 @@ pub enum Warning {
     SharpEdge,
     /// The contact reaches the rim of a measured map.
     MapRim {
-        /// 0 along x, 1 along y.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
     },
     /// Fewer than eight cells resolve the contact.
     Coarse {
-        /// 0 along x, 1 along y.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
         /// Number of cells across the contact.
         cells: usize,
     },
     /// The spots of a rough contact are only a few cells wide.
     CoarseSpots {
-        /// 0 along x, 1 along y.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
         /// Mean width of the spots in cells, weighted by their load.
         cells: f64,
     },
     /// The contact is not small compared with a radius of curvature.
     LargeContact {
-        /// 0 along x, 1 along y.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
         /// Half-width over radius.
         ratio: f64,
     },
@@ -122,7 +122,7 @@ impl Warning {
     /// Name of the kind of warning, without numbers, by which warnings are counted.
     ///
     /// ```
-    /// assert_eq!(nacre::Warning::SharpEnd { axis: 0 }.kind(), "sharp end");
+    /// assert_eq!(nacre::Warning::SharpEnd { axis: nacre::Axis::X }.kind(), "sharp end");
     /// ```
     pub fn kind(&self) -> &'static str {
         match self {
@@ -158,63 +158,50 @@ impl Warning {
     }
 }
 
+// What warnings without numbers say.
+const GRID_EDGE: &str = "the contact touches the edge of the grid; take a larger grid";
+const SHARP_END_X: &str = "the contact reaches the end of the shape along x, and the bodies extend beyond it: the \
+    pressure there is that of a sharp edge on a half-space, far too high for a roller's end, \
+    and grows as the grid is refined; give the bodies their ends";
+const SHARP_END_Y: &str = "the contact reaches the end of the shape along y: the pressure there is that of \
+    a sharp edge on a half-space that extends beyond it, and grows as the grid is refined";
+const FREE_END: &str = "the contact reaches the free end of one body along x, beyond which the other extends: the pressure \
+    there has no limit, and grows slowly as the grid is refined";
+const COATED_END: &str = "a body with layers has a free end: what the end adds to the displacement there is a model, with \
+    an error of up to 4 % of the displacement where moduli differ by a factor of 4, and 9 % at 10";
+const SHARP_EDGE: &str = "the contact reaches a sharp edge of the shape: the pressure there has no limit, and \
+    grows as the grid is refined";
+const UNKNOWN_STATIONS: &str = "the error of the peak pressure is not known: with a profile through fewer of its stations there is no \
+    such contact; give more stations";
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let along = |axis: &usize| if *axis == 0 { "x" } else { "y" };
         match self {
-            Self::GridEdge => {
-                write!(f, "the contact touches the edge of the grid; take a larger grid")
-            }
-            Self::SharpEnd { axis: 0 } => write!(
-                f,
-                "the contact reaches the end of the shape along x, and the bodies extend beyond it: the \
-                 pressure there is that of a sharp edge on a half-space, far too high for a roller's end, \
-                 and grows as the grid is refined; give the bodies their ends"
-            ),
-            Self::SharpEnd { .. } => write!(
-                f,
-                "the contact reaches the end of the shape along y: the pressure there is that of \
-                 a sharp edge on a half-space that extends beyond it, and grows as the grid is refined"
-            ),
-            Self::FreeEnd => write!(
-                f,
-                "the contact reaches the free end of one body along x, beyond which the other extends: the pressure \
-                 there has no limit, and grows slowly as the grid is refined"
-            ),
-            Self::CoatedEnd => write!(
-                f,
-                "a body with layers has a free end: what the end adds to the displacement there is a model, with \
-                 an error of up to 4 % of the displacement where moduli differ by a factor of 4, and 9 % at 10"
-            ),
-            Self::SharpEdge => write!(
-                f,
-                "the contact reaches a sharp edge of the shape: the pressure there has no limit, and \
-                 grows as the grid is refined"
-            ),
+            Self::GridEdge => f.write_str(GRID_EDGE),
+            Self::SharpEnd { axis: Axis::X } => f.write_str(SHARP_END_X),
+            Self::SharpEnd { .. } => f.write_str(SHARP_END_Y),
+            Self::FreeEnd => f.write_str(FREE_END),
+            Self::CoatedEnd => f.write_str(COATED_END),
+            Self::SharpEdge => f.write_str(SHARP_EDGE),
             Self::MapRim { axis } => write!(
                 f,
-                "the contact reaches the rim of the measured map along {}: nothing is known beyond it, \
+                "the contact reaches the rim of the measured map along {axis}: nothing is known beyond it, \
                  so that nothing touches there, and the pressure at the rim is that of a sharp edge; \
-                 take a larger map",
-                along(axis)
+                 take a larger map"
             ),
-            Self::Coarse { axis, cells } => write!(
-                f,
-                "the contact is only {cells} cells wide along {}; take a finer grid",
-                along(axis)
-            ),
+            Self::Coarse { axis, cells } => {
+                write!(f, "the contact is only {cells} cells wide along {axis}; take a finer grid")
+            }
             Self::CoarseSpots { axis, cells } => write!(
                 f,
-                "the spots that carry the load are on average only {cells:.1} cells wide along {}, \
-                 which does not resolve their pressure; take a finer grid",
-                along(axis)
+                "the spots that carry the load are on average only {cells:.1} cells wide along {axis}, \
+                 which does not resolve their pressure; take a finer grid"
             ),
             Self::LargeContact { axis, ratio } => {
                 write!(
                     f,
-                    "the contact is not small compared with the radius along {}: half-width/radius = \
-                     {ratio:.2}; the bodies are taken as half-spaces",
-                    along(axis)
+                    "the contact is not small compared with the radius along {axis}: half-width/radius = \
+                     {ratio:.2}; the bodies are taken as half-spaces"
                 )?;
                 f.write_str(if *ratio > 1.0 { WRONG_UNITS } else { "" })
             }
@@ -237,11 +224,7 @@ impl fmt::Display for Warning {
                  profile: give more stations, the corners of true edges, or a smoothing length against noise",
                 100.0 * error
             ),
-            Self::UnknownStations => write!(
-                f,
-                "the error of the peak pressure is not known: with a profile through fewer of its stations there is no \
-                 such contact; give more stations"
-            ),
+            Self::UnknownStations => f.write_str(UNKNOWN_STATIONS),
             Self::EndlessCrown { at } => write!(
                 f,
                 "the load acts {at:.3e} from the middle of the roller, beyond its flat part, and the contact does not reach \
@@ -253,22 +236,27 @@ impl fmt::Display for Warning {
                  out the square: about {:.0} % of strains and slip",
                 50.0 * size
             ),
-            Self::Unestimated { reason } => {
-                write!(
-                    f,
-                    "force, torque, motion and dissipated energy have no estimate of their discretisation error: "
-                )?;
-                f.write_str(match reason {
-                    Unestimated::Coarse => "it needs 16 cells across the contact; take a finer grid",
-                    Unestimated::Unsolved => {
-                        "on cells of twice the length there is no solution; take a finer or larger grid"
-                    }
-                    Unestimated::Coefficients => {
-                        "the influence coefficients that were given are those of this grid alone; leave them out"
-                    }
-                    Unestimated::Before => "the step before has none",
-                })
+            Self::Unestimated { reason } => write!(
+                f,
+                "force, torque, motion and dissipated energy have no estimate of their discretisation error: {}",
+                reason.explanation()
+            ),
+        }
+    }
+}
+
+impl Unestimated {
+    /// Why, and what to do.
+    fn explanation(self) -> &'static str {
+        match self {
+            Self::Coarse => "it needs 16 cells across the contact; take a finer grid",
+            Self::Unsolved => {
+                "on cells of twice the length there is no solution; take a finer or larger grid"
             }
+            Self::Coefficients => {
+                "the influence coefficients that were given are those of this grid alone; leave them out"
+            }
+            Self::Before => "the step before has none",
         }
     }
 }
@@ -317,17 +305,17 @@ pub(crate) fn warnings(
             warnings.extend(distinct);
             is_cut &= sharp == [None; 2];
             if (0..2).any(|k| reached[k] && on_map[k]) {
-                warnings.push(Warning::MapRim { axis });
+                warnings.push(Warning::MapRim { axis: Axis::ALL[axis] });
                 is_cut = false;
             }
         }
         if cells < FEW_CELLS {
-            warnings.push(Warning::Coarse { axis, cells });
+            warnings.push(Warning::Coarse { axis: Axis::ALL[axis], cells });
         }
         let half_width = 0.5 * (high - low + spacing);
         let ratio = if grid.is_periodic()[axis] { 0.0 } else { half_width / radii[axis] };
         if ratio > LARGE_CONTACT {
-            warnings.push(Warning::LargeContact { axis, ratio });
+            warnings.push(Warning::LargeContact { axis: Axis::ALL[axis], ratio });
         }
     }
     if is_cut {
@@ -349,7 +337,7 @@ pub(crate) fn warnings(
         && !warnings.iter().any(is_coarse)
     {
         let cells = widths[axis];
-        warnings.push(Warning::CoarseSpots { axis, cells });
+        warnings.push(Warning::CoarseSpots { axis: Axis::ALL[axis], cells });
     }
     warnings
 }
@@ -375,7 +363,7 @@ fn on_crown(pressure: &Array2<f64>, grid: &Grid, flat: [f64; 2]) -> Option<Warni
 /// The warning of a contact that reaches the end of a shape on side `k` of an axis; `None` where all bodies end there.
 fn sharpness(bodies: &Ends, axis: usize, k: usize, end: f64, spacing: f64) -> Option<Warning> {
     match bodies.at(k, end, 0.5 * spacing) {
-        (count, _) if axis != 0 || count == 0 => Some(Warning::SharpEnd { axis }),
+        (count, _) if axis != 0 || count == 0 => Some(Warning::SharpEnd { axis: Axis::ALL[axis] }),
         (_, true) => None,
         (_, false) => Some(Warning::FreeEnd),
     }
@@ -511,6 +499,7 @@ mod data {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use super::{Unestimated, Warning};
+    use crate::model::grid::Axis;
 
     /// A warning by its kind, axis and figure, which are 0 where it has none.
     #[derive(Serialize, Deserialize)]
@@ -535,10 +524,10 @@ mod data {
                 Self::GridEdge | Self::SharpEdge | Self::FreeEnd | Self::CoatedEnd => (0, 0.0),
                 Self::UnknownStations => (0, 0.0),
                 Self::EndlessCrown { at } => (0, at),
-                Self::SharpEnd { axis } | Self::MapRim { axis } => (axis, 0.0),
-                Self::Coarse { axis, cells } => (axis, cells as f64),
-                Self::CoarseSpots { axis, cells } => (axis, cells),
-                Self::LargeContact { axis, ratio } => (axis, ratio),
+                Self::SharpEnd { axis } | Self::MapRim { axis } => (axis.index(), 0.0),
+                Self::Coarse { axis, cells } => (axis.index(), cells as f64),
+                Self::CoarseSpots { axis, cells } => (axis.index(), cells),
+                Self::LargeContact { axis, ratio } => (axis.index(), ratio),
                 Self::OutsideGrid { depth } => (0, depth),
                 Self::PeakError { error } | Self::Stations { error } => (0, error),
                 Self::LargeMotion { size } => (0, size),
@@ -551,16 +540,17 @@ mod data {
     impl<'de> Deserialize<'de> for Warning {
         fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
             let WarningData { kind, axis, figure } = WarningData::deserialize(data)?;
+            let direction = if axis == 0 { Axis::X } else { Axis::Y };
             let all = [
                 Self::GridEdge,
-                Self::SharpEnd { axis },
+                Self::SharpEnd { axis: direction },
                 Self::FreeEnd,
                 Self::CoatedEnd,
                 Self::SharpEdge,
-                Self::MapRim { axis },
-                Self::Coarse { axis, cells: figure as usize },
-                Self::CoarseSpots { axis, cells: figure },
-                Self::LargeContact { axis, ratio: figure },
+                Self::MapRim { axis: direction },
+                Self::Coarse { axis: direction, cells: figure as usize },
+                Self::CoarseSpots { axis: direction, cells: figure },
+                Self::LargeContact { axis: direction, ratio: figure },
                 Self::OutsideGrid { depth: figure },
                 Self::PeakError { error: figure },
                 Self::Stations { error: figure },
@@ -586,12 +576,12 @@ mod tests {
     use ndarray::Array2;
 
     use super::{Outline, Warning};
-    use crate::model::grid::full_window;
+    use crate::model::grid::{Axis, full_window};
 
     #[test]
     fn a_contact_wider_than_its_radius_asks_for_units() {
         let asks = |ratio| {
-            Warning::LargeContact { axis: 1, ratio }.to_string().contains("consistent units")
+            Warning::LargeContact { axis: Axis::Y, ratio }.to_string().contains("consistent units")
         };
         assert!(asks(1.1) && !asks(0.9));
     }

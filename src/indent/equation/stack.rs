@@ -20,6 +20,7 @@ const LEVELS: usize = 12;
 
 /// A number that an indentation depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum IndentParameter {
     /// A number of the body of this position.
     Body(usize, BodyParameter),

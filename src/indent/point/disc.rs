@@ -100,18 +100,18 @@ fn least(places: &[f64], mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
             continue;
         }
         let (mut a, mut b) = (places[k - 1], places[k + 1]);
-        let part = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let [mut x, mut y] = [b - part * (b - a), a + part * (b - a)];
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let [mut x, mut y] = [b - golden * (b - a), a + golden * (b - a)];
         let (mut at_x, mut at_y) = (f(x)?, f(y)?);
         for _ in 0..GOLDEN {
             least = least.min(at_x).min(at_y);
             if at_x < at_y {
                 (b, y, at_y) = (y, x, at_x);
-                x = b - part * (b - a);
+                x = b - golden * (b - a);
                 at_x = f(x)?;
             } else {
                 (a, x, at_x) = (x, y, at_y);
-                y = a + part * (b - a);
+                y = a + golden * (b - a);
                 at_y = f(y)?;
             }
         }
@@ -217,7 +217,7 @@ impl Point {
         };
         let mut places = self.knots([0.0, a]);
         places.extend(nodes(&layers.ends));
-        places.extend([0.99, 0.999, 0.9999].map(|part| part * a));
+        places.extend([0.99, 0.999, 0.9999].map(|fraction| fraction * a));
         if !tip.is_sharp() {
             places.push(0.0);
         }

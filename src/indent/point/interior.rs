@@ -28,6 +28,7 @@ const PHASE: f64 = 40.0;
 
 /// Stresses at one place below the surface \[Pa\], tension positive, in the frame of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InteriorStress {
     /// σ_rr.
     pub rr: f64,

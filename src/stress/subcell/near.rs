@@ -213,7 +213,7 @@ impl NearPlan {
         stresses: impl Fn([f64; 2], [f64; 2]) -> Components,
     ) -> Offset {
         let [dx, dy] = self.sides;
-        let number = self.cuts.seen_from(by, depth / self.shorter());
+        let number = self.cuts.cut_number(by, depth / self.shorter());
         let cut = self.cuts.get(number);
         let stress = |Piece { centre, half }: &Piece| {
             let at = [(i as f64 - centre[0]) * dx, (j as f64 - centre[1]) * dy];
@@ -365,7 +365,7 @@ impl NearPlan {
                 continue;
             }
             let graded = by.iter().all(|by| by.abs() <= 1).then(|| Cut::towards(at, self.line));
-            let seen = self.cuts.seen_from(by, depth / self.shorter());
+            let seen = self.cuts.cut_number(by, depth / self.shorter());
             let cut = graded.as_ref().unwrap_or_else(|| self.cuts.get(seen));
             let (pressures, moments) = match root {
                 Some(root) => {

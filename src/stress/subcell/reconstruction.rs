@@ -395,7 +395,7 @@ impl Cuts {
     }
 
     /// Number of the cut for a target `offset` cells away, at a depth in cells.
-    pub(super) fn seen_from(&self, offset: [isize; 2], depth: f64) -> usize {
+    pub(super) fn cut_number(&self, offset: [isize; 2], depth: f64) -> usize {
         let near = match offset.map(isize::unsigned_abs) {
             [0, 0] => 0,
             [0 | 1, 0 | 1] => 1,

@@ -13,7 +13,7 @@ use super::{pair, tight, unit};
 use crate::support::checks::{difference, largest};
 use crate::support::random::uniform;
 use crate::support::reference::{cases, number};
-use crate::support::settings::{Controls, converged, plan, pressed, stack};
+use crate::support::settings::{converged, plan, pressed, stack};
 
 /// Error of the displacement that is stated for one end.
 const STATED: f64 = 1e-5;

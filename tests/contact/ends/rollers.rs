@@ -71,7 +71,7 @@ fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
     let words = "the free end of one body along x, beyond which the other extends";
     assert!(message.contains(words), "{message}");
     let half_space = straight([&whole, &whole], &Motion::load(LOAD))?;
-    assert_eq!(half_space.report.warnings, [Warning::SharpEnd { axis: 0 }]);
+    assert_eq!(half_space.report.warnings, [Warning::SharpEnd { axis: nacre::Axis::X }]);
     assert_eq!(half_space.report.free_ends(), None);
     let message = half_space.report.warnings[0].to_string();
     assert!(message.contains("give the bodies their ends"), "{message}");

@@ -1,12 +1,16 @@
 //! Solves a coated sphere with nacre as a dependency, without Python.
 
-use nacre::{Elastic, HalfSpace, Layer, Motion, Sphere, hertz, solve};
+use nacre::contact::solve_with;
+use nacre::{Elastic, HalfSpace, Layer, Motion, Options, Setup, Sphere, hertz};
 
 fn main() -> nacre::Result<()> {
     let steel = Elastic::new(210e9, 0.3)?;
     let coating = Elastic::new(420e9, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(coating, 40e-6)?])?;
-    let solution = solve(&Sphere::new(5e-3)?, &body, &Motion::load(100.0))?;
+    let options = Options::default().with_tolerance(1e-10);
+    let (sphere, motion) = (Sphere::new(5e-3)?, Motion::load(100.0));
+    let solution = solve_with(&sphere, &body.into(), &Setup::default(), &motion, &options)?;
+    assert!(solution.report.residual <= 1e-10, "{:e}", solution.report.residual);
 
     // The peak lies between those on half-spaces of steel and of the coating.
     let bare = hertz::Point::new(5e-3, steel.plane_strain_modulus(), 100.0)?;
