@@ -17,7 +17,7 @@ from nacre.contact.arguments import (
 )
 from nacre.contact.normal import Numbers
 from nacre.contact.stresses import StressFields, StressLimits, StressOptions
-from nacre.contact.wear_solution import WearOptions
+from nacre.contact.wear_march import WearOptions
 
 __all__ = [
     "FREE",

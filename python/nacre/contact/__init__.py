@@ -32,16 +32,15 @@ from nacre.contact.arguments import (
 )
 from nacre.contact.friction import FrictionReport, FrictionSolution, History
 from nacre.contact.solution import Report, Solution
-from nacre.contact.wear_solution import (
+from nacre.contact.wear_march import (
     PlannedWearKeywords,
-    Rates,
     Sliding,
     WearControl,
-    WearHistory,
     Wearing,
     WearKeywords,
     wear_history,
 )
+from nacre.contact.wear_solution import Rates, WearHistory
 
 MOST_PRINTED = 1000
 """Largest number of coefficients that a plan prints."""

@@ -13,7 +13,7 @@ import nacre._core as core
 from nacre._tools.groups import keyword_units
 from nacre._tools.units import SI, Within, symbol, system
 from nacre.contact.solution import Solution
-from nacre.contact.wear_solution import KEYWORDS
+from nacre.contact.wear_march import KEYWORDS
 from nacre.fatigue import assess
 from nacre.fatigue.criteria import Criterion
 from nacre.results import quantities

@@ -17,7 +17,7 @@ from nacre._tools.groups import keyword_units
 from nacre._tools.units import System, size_of
 from nacre.app.fields import field_of
 from nacre.case import Case
-from nacre.contact.wear_solution import KEYWORDS
+from nacre.contact.wear_march import KEYWORDS
 from support import assert_close
 
 SYSTEMS = ("SI", "N-mm-MPa")
