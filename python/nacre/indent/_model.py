@@ -137,7 +137,7 @@ class Model:
         self.depth = np.concatenate([curve.depth for curve in curves])
         self.force = np.concatenate([curve.force for curve in curves])
         ends = np.cumsum([0, *(len(curve) for curve in curves)])
-        self.parts = [slice(int(a), int(b)) for a, b in itertools.pairwise(ends)]
+        self.slices = [slice(int(a), int(b)) for a, b in itertools.pairwise(ends)]
         if noise == "relative":
             if (self.force <= 0).any():
                 wrong = int((self.force <= 0).sum())
@@ -193,7 +193,7 @@ class Model:
         depth = self.depth.copy()
         for k, unknown in enumerate(self.unknowns):
             if unknown.kind and unknown.kind not in OF_FORCE:
-                rows = self.parts[unknown.curve]
+                rows = self.slices[unknown.curve]
                 depth[rows] -= unknown.value(float(x[k])) * self._lever(unknown)
         return depth
 
@@ -205,7 +205,7 @@ class Model:
         if unknown.kind == "drift":
             assert curve.time is not None
             return np.asarray(curve.time - curve.time[0])
-        return self.pull[self.parts[unknown.curve]] if unknown.kind == "compliance" else 1.0
+        return self.pull[self.slices[unknown.curve]] if unknown.kind == "compliance" else 1.0
 
     def loads(self, x: Array) -> tuple[Array, Array]:
         """Return the load of each point, and its derivatives with respect to x."""
@@ -233,7 +233,7 @@ class Model:
         place = 0
         for k, unknown in enumerate(self.unknowns):
             if unknown.kind:
-                rows = self.parts[unknown.curve]
+                rows = self.slices[unknown.curve]
                 if unknown.kind in OF_FORCE:
                     load[rows] += unknown.value(float(x[k])) * self._lever(unknown)
                     columns[rows, k] = unknown.scale * self._lever(unknown)

@@ -64,7 +64,7 @@ def likeliest_noise(model: Model, x: Array) -> tuple[Noise, float]:
         least = floor * model.top
         value, rate = uniform(model.force, least)
         misfit = value - uniform(load, least)[0]
-        square = np.concatenate([np.diff(misfit[rows], 2) ** 2 / 6 for rows in model.parts]).mean()
+        square = np.concatenate([np.diff(misfit[rows], 2) ** 2 / 6 for rows in model.slices]).mean()
         size = model.force.size * math.log(square + (0.01 * ROUNDING) ** 2)
         likelihoods.append(0.5 * (float(np.log(rate).sum()) - 0.5 * size))
     best = int(np.argmax(likelihoods))
@@ -151,7 +151,7 @@ def examine(model: Model, best: Estimate) -> Examination:
     else:
         left = np.maximum(chi2 - share**2, 1e-30 * chi2) / (dof - 1)
         chances = 2 * stdtr(dof - 1, -np.abs(share) / np.sqrt(left))
-    ratio, due, chance = durbin_watson(remainder[:count], basis[:count], model.parts)
+    ratio, due, chance = durbin_watson(remainder[:count], basis[:count], model.slices)
     is_structured = chance < LEVEL and not (model.is_known and chi2 < 0.5 * dof)
     is_large = model.is_known and float(chdtrc(dof, chi2)) < LEVEL
     is_explained = bool((chances[independent] < LEVEL / max(independent.sum(), 1)).any())
@@ -171,7 +171,7 @@ def examine(model: Model, best: Estimate) -> Examination:
         first = min(remedies, key=lambda k: float(left[k]))
         shift = moves[:, first] * change[first]
         after = remainder - own[:, first] * share[first] / lengths[first]
-        if durbin_watson(after[:count], basis[:count], model.parts)[2] < LEVEL:
+        if durbin_watson(after[:count], basis[:count], model.slices)[2] < LEVEL:
             text += f"; none of these alone makes the rest noise: {OTHERWISE}"
     else:
         text += f"; {OTHERWISE}"
@@ -238,7 +238,7 @@ def _share(model: Model, size: float) -> str:
 
 
 def _sentence(model: Model, residuals: Array, size: float, ratio: float) -> str:
-    local = np.concatenate([np.diff(residuals[rows], 2) for rows in model.parts])
+    local = np.concatenate([np.diff(residuals[rows], 2) for rows in model.slices])
     near = math.sqrt(float(local @ local) / (6 * local.size))
     of = "largest force" if model.noise == "absolute" else "force"
     return (

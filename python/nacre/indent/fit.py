@@ -397,9 +397,9 @@ def _result(
         reasons=reasons(model, best, ends, minima)
         | dict.fromkeys(model.free if examination.warnings else (), UNFIT),
         sensitivity=examination.sensitivity,
-        residuals=[residuals[rows] for rows in model.parts],
-        loads=[load[rows] for rows in model.parts],
-        approaches=[approach[rows] for rows in model.parts],
+        residuals=[residuals[rows] for rows in model.slices],
+        loads=[load[rows] for rows in model.slices],
+        approaches=[approach[rows] for rows in model.slices],
         chi2=best.chi2,
         dof=model.dof,
         sigma=sigma,

@@ -24,7 +24,7 @@ from nacre.results.values import encode
 class Identity(NamedTuple):
     """Identity of the outputs of a study."""
 
-    parts: dict[str, object]
+    data: dict[str, object]
     """Plain data that differs between outputs."""
     unknown: list[str]
     """Descriptions of what the data cannot tell apart."""
@@ -56,7 +56,7 @@ def key_of(arguments: Mapping[str, object], identity: Identity) -> str:
     """Return a key that differs between cases, and between the outputs that are kept."""
     # Threads change no bit of a solution.
     physical = {name: value for name, value in arguments.items() if name != "threads"}
-    what = {"nacre": __version__, "solve": encode(physical, digest=True), **identity.parts}
+    what = {"nacre": __version__, "solve": encode(physical, digest=True), **identity.data}
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 

@@ -102,7 +102,7 @@ def test_correlated_points_count_as_fewer(monkeypatch: pytest.MonkeyPatch) -> No
     best = Estimate(one, 1.0, 1.0, 1.96, np.eye(1), np.eye(1), 1.0, one)
     model: Any = SimpleNamespace(
         **{"at": lambda x: (rest, np.ones((200, 1))), "names": ["mean"], "free": [], "dof": 199},
-        **{"depth": rest, "parts": [slice(0, 200)], "is_known": False, "noise": "relative"},
+        **{"depth": rest, "slices": [slice(0, 200)], "is_known": False, "noise": "relative"},
         weight=one,
     )
     r = 1 - np.diff(rest) @ np.diff(rest) / (rest @ rest) / 2
