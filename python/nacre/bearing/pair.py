@@ -542,6 +542,11 @@ class PairSolution(Equilibrium):
         return max(one.peak_pressure for one in self.bearings)
 
     @property
+    def edge_pressure(self) -> float:
+        """Largest pressure in the outer tenths of a roller of either bearing [Pa]; NaN of balls."""
+        return max(bearing.edge_pressure for bearing in self.bearings)
+
+    @property
     def largest_load(self) -> float:
         """Largest force of a contact [N]."""
         return max(one.largest_load for one in self.bearings)

@@ -13,9 +13,11 @@ import pytest
 import nacre
 from bodies import quiet
 from nacre.bearing import (
+    AngularContactBall,
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
+    Pair,
     SphericalRoller,
     TaperedRoller,
     film_thickness,
@@ -338,6 +340,19 @@ def test_case_is_solved_saved_loaded_drawn_and_swept(tmp_path: Path, capsys: Cap
         pressure = study.edge_pressure.sel({"bearing.clearance": 41e-6}).values
         assert pressure[1] > pressure[0]
         assert pressure[1] == pytest.approx(solution.edge_pressure, rel=1e-9)
+
+
+def test_a_study_of_a_pair_has_the_numbers_of_its_solutions() -> None:
+    ball = AngularContactBall(count=12, diameter=11.1e-3, pitch_diameter=46e-3, contact_angle=0.4)
+    pair = Pair(ball, ball, arrangement="O", distance=16e-3, preload_force=200.0)
+    keywords: dict[str, Any] = {"force": (400.0, 0.0, 150.0), "model": "iso16281"}
+    study = nacre.sweep({"bearing": pair, **keywords}, {"speed": [100.0, 200.0]}, progress=False)
+    assert study["error"].values.tolist() == ["", ""]
+    for number, speed in enumerate((100.0, 200.0)):
+        solution = pair.solve(speed=speed, **keywords)
+        assert study["peak_pressure"].values[number] == solution.peak_pressure
+        assert study["largest_load"].values[number] == solution.largest_load
+    assert np.isnan(study["edge_pressure"]).all()  # balls have no edges
 
 
 def test_a_function_makes_a_study_of_bearings() -> None:
