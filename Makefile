@@ -40,6 +40,7 @@ test-rust: $(BUILD)
 	cargo test --doc --features serde
 	PYO3_PYTHON=none cargo run --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 
+# Neighbours share what they have solved: each process takes a row of them, and steals what the other has left.
 test-python: $(WHEEL) $(DEV)
 	$(BIN)/pytest -n 2 --dist worksteal
 

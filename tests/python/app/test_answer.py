@@ -115,7 +115,9 @@ def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.slow] if name in ("bearing", "roller") else [])
+        pytest.param(
+            name, marks=[pytest.mark.slow] if name in ("bearing", "fatigue", "roller") else []
+        )
         for name in templates.KINDS
     ],
 )

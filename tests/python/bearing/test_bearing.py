@@ -134,7 +134,10 @@ def reaction(bearing: Any, place: Any, options: dict[str, Any]) -> np.ndarray[An
     [
         (CylindricalRoller(**ROLLERS), STANDARD, (1e-10, 1e-10, 0, 1e-8, 1e-8)),
         # A step is so short that no cell joins the contact: derivatives are those of the cells.
-        (CylindricalRoller(**ROLLERS), FEWEST, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
+        pytest.param(
+            *(CylindricalRoller(**ROLLERS), FEWEST, (2e-11, 2e-11, 0, 1e-9, 1e-9)),
+            marks=pytest.mark.slow,
+        ),
         (TaperedRoller(**TAPERED), STANDARD | {"speed": 500.0}, (1e-10,) * 3 + (1e-8,) * 2),
         pytest.param(
             TaperedRoller(**TAPERED), FEWEST, (2e-11,) * 3 + (1e-9,) * 2, marks=pytest.mark.slow

@@ -37,7 +37,11 @@ ANGLE = 0.17
 FORCE = (20e3, 1e3, 2e3)
 COARSE: dict[str, Any] = {"cells": (40, 12)}
 STANDARD: dict[str, Any] = {"model": "iso16281"}
-BOTH = pytest.mark.parametrize("options", [COARSE, STANDARD], ids=["solved", "standard"])
+BOTH = pytest.mark.parametrize(
+    "options",
+    [pytest.param(COARSE, marks=pytest.mark.slow), STANDARD],
+    ids=["solved", "standard"],
+)
 Array = np.ndarray[Any, Any]
 
 

@@ -32,7 +32,11 @@ SIZE: dict[str, Any] = {
 ANGLE = 0.25
 COARSE: dict[str, Any] = {"cells": (40, 24)}
 STANDARD: dict[str, Any] = {"model": "iso16281"}
-BOTH = pytest.mark.parametrize("options", [COARSE, STANDARD], ids=["solved", "standard"])
+BOTH = pytest.mark.parametrize(
+    "options",
+    [pytest.param(COARSE, marks=pytest.mark.slow), STANDARD],
+    ids=["solved", "standard"],
+)
 Array = np.ndarray[Any, Any]
 
 

@@ -66,7 +66,14 @@ def spoilt(value: Any, off: float) -> Any:
     return value * (1 + off) if isinstance(value, float) else value
 
 
-@pytest.mark.parametrize(("name", "chosen"), QUICK, ids=[name for name, _ in QUICK])
+@pytest.mark.parametrize(
+    ("name", "chosen"),
+    [
+        pytest.param(*row, marks=[pytest.mark.slow] if row[0] == "shakedown" else [])
+        for row in QUICK
+    ],
+    ids=[name for name, _ in QUICK],
+)
 def test_generators_find_the_stored_numbers(name: str, chosen: dict[str, list[int]]) -> None:
     assert worst(name, chosen) <= 1
 

@@ -262,6 +262,7 @@ def test_contours_of_a_chart_are_smooth_over_sides_as_they_are_drawn() -> None:
         assert abs((np.log(points) ** 2).sum(axis=1) - level).max() < 0.16
 
 
+@pytest.mark.slow
 def test_a_curve_has_units_and_bars_of_its_errors(chart: Any) -> None:
     curve = design.load_curve(BALL, STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
     axes = plot.curve(curve, "stiffness")

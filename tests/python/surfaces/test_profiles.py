@@ -168,6 +168,7 @@ def test_the_peak_between_stations_is_that_of_hertz() -> None:
         assert (errors["peak_pressure"] or 0) < 1e-3 * hertz.peak_pressure
 
 
+@pytest.mark.slow
 def test_a_smoothing_length_takes_noise_from_a_profile() -> None:
     random = np.random.default_rng(7)
     drop, load = ROLLERS["worn groove"]
