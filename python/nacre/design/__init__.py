@@ -210,7 +210,9 @@ def tilt_curve(
         return {"shape": shape, "body": body, "load": load, "tilt": (tilt, None), **contact_options}
 
     outputs = ("moment", "eccentricity", "approach", "peak_pressure")
-    return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
+    dataset = sweep(case, {"tilt": tilt}, outputs=outputs, **study)
+    dataset["tilt"].attrs["units"] = symbol("rad")
+    return dataset
 
 
 def force_table(
@@ -275,6 +277,8 @@ def force_table(
     per = symbol("Pa" if line else "N/m")
     table["stiffness"].attrs["units"] = f"{per} times {symbol('m')} for each moment and each tilt"
     table["approach"].attrs["units"] = symbol("m")
+    for name in ("tilt_x", "tilt_y"):
+        table[name].attrs["units"] = symbol("rad")
     return table
 
 
