@@ -878,7 +878,7 @@ def _extent(solution: Solution) -> str | None:
     sides = [
         None
         if math.isnan(width)
-        else written(width, "m") + display.error_share(2 * (end or 0.0), width)
+        else written(width, "m") + display.plus_minus(2 * (end or 0.0), width)
         for width, end in zip(widths, ends, strict=True)
     ]
     return sides[1] if solution.report.grid.is_line else display.along(sides, " × ", "{}")
@@ -887,7 +887,7 @@ def _extent(solution: Solution) -> str | None:
 def _area(solution: Solution) -> str:
     unit = "m" if solution.report.grid.is_line else "m²"
     error = (solution.report.discretisation or {}).get("contact_area") or 0.0
-    return written(solution.contact_area, unit) + display.error_share(error, solution.contact_area)
+    return written(solution.contact_area, unit) + display.plus_minus(error, solution.contact_area)
 
 
 def _contact_share(solution: Solution) -> str | None:
