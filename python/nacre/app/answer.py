@@ -155,7 +155,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
         arguments = arguments | {"max_cells": ROLLER_CELLS if is_long else FEWEST_CELLS}
     solution = _solved_contact(case, arguments, wanted)
     bare = _bare(case, arguments, wanted)
-    rows, beside = (_selected(one, CONTACT_ROWS) for one in (solution, bare))
+    rows, beside = (_selected(contact, CONTACT_ROWS) for contact in (solution, bare))
     pictures, warnings, verdict = [_pressures(coated=solution, bare=bare)], solution._warnings, None
     if stage == "stress":
         keywords = case.stress() or {}
@@ -168,7 +168,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
             rows += _extremes(summary)
             options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
             if bare is not None:
-                sliding = {name: one for name, one in options.items() if name != "residual"}
+                sliding = {name: value for name, value in options.items() if name != "residual"}
                 beside += _extremes(bare.stress_summary(**sliding, progress=wanted))
             pictures.append("".join(map(_figure, depth_charts(solution, bare, **options))))
     peak = ("peak pressure", solution.peak_pressure, "Pa")
@@ -297,16 +297,16 @@ def _answer(
 ) -> Answer:
     """Return the parts of the page, and the next stage; `peak` has words, number and unit."""
     words, value, unit = peak
-    parts: Answer = {
+    page: Answer = {
         "peak": (words, display.number(value, unit, DIGITS)),
         "rows": _table(rows, beside),
         "warnings": list(dict.fromkeys(warnings)),
     }
-    parts |= {f"picture-{number}": one for number, one in enumerate(pictures, start=1)}
+    page |= {f"picture-{number}": picture for number, picture in enumerate(pictures, start=1)}
     if verdict is not None:
         level, words, lines = verdict.level, verdict.words, verdict.lines
-        parts["verdict"] = {"level": level, "words": words, "lines": lines}
-    return {"parts": parts, "next": following}
+        page["verdict"] = {"level": level, "words": words, "lines": lines}
+    return {"parts": page, "next": following}
 
 
 def _selected(result: Any, keys: set[str]) -> list[Row]:
@@ -318,7 +318,7 @@ def _extremes(summary: nacre.types.StressSummary) -> list[Row]:
     """Return the largest stresses of all layers and the substrate."""
     rows = []
     for name, label in EXTREMES.items():
-        worst = max(summary.layers, key=lambda part: getattr(part, name)[0])
+        worst = max(summary.layers, key=lambda layer: getattr(layer, name)[0])
         value, error = getattr(worst, name)[0], worst.uncertainty.get(name)
         rows.append(Row(name, label, with_error(value, error), value, "Pa", error))
     return rows
@@ -354,11 +354,11 @@ def _drawn(caption: str, x: Axis, y: Axis, curves: Mapping[str, tuple[Field, Fie
 
 def _pressures(**contacts: Contact | None) -> str:
     """Return the picture of the pressure along the longer side of the first contact."""
-    solutions = {name: one for name, one in contacts.items() if one is not None}
+    solutions = {name: contact for name, contact in contacts.items() if contact is not None}
     first = next(iter(solutions.values()))
     along_x, along_y = np.ptp(first.contact_extent, axis=1)
     axis = 0 if along_x >= along_y and not first.grid.is_line else 1
-    curves = {name: section(one, axis) for name, one in solutions.items()}
+    curves = {name: section(contact, axis) for name, contact in solutions.items()}
     return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
 
 
@@ -384,5 +384,5 @@ def _moduli(reading: Reading) -> str:
     """Return the picture of the modulus that a bare film of each depth's load would have."""
     film = np.full_like(reading.moduli, reading.modulus)
     moduli = {"read as a bare film": reading.moduli, "film": film}
-    curves = {name: (reading.depths, one) for name, one in moduli.items()}
+    curves = {name: (reading.depths, values) for name, values in moduli.items()}
     return _drawn("Apparent modulus over depth.", DEPTH, Axis("apparent modulus", "Pa"), curves)

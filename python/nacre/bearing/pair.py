@@ -164,7 +164,7 @@ class Pair:
             raise ValueError(f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}')
         read_fields(self)
         above("distance", self.distance)
-        most = FARTHEST * max(one.pitch for one in self.bearings)
+        most = FARTHEST * max(bearing.pitch for bearing in self.bearings)
         if self.distance > most:
             raise ValueError(
                 f"distance must be at most {most:.3g} m, {FARTHEST:g} pitch diameters: bearings "
@@ -186,13 +186,13 @@ class Pair:
                 f"{name} must be None in tandem, where no bearing holds against a preload, "
                 f"got {force or distance!r}"
             )
-        limits = [largest_of(one) for one in self.bearings]
-        largest_force = min(one["force"] for one in limits)
+        limits = [largest_of(bearing) for bearing in self.bearings]
+        largest_force = min(limit["force"] for limit in limits)
         if force is not None and not 0 <= force <= largest_force:
             raise ValueError(
                 f"preload_force must be from 0 to {largest_force:.3g} N, got {force!r}"
             )
-        farthest = min(one["displacement"] for one in limits) / 10
+        farthest = min(limit["displacement"] for limit in limits) / 10
         if distance is not None and not abs(distance) <= farthest:
             raise ValueError(
                 f"preload_distance must be at most {farthest:.3g} m, a tenth of the diameter of an "
@@ -301,11 +301,11 @@ def _touching(bearing: Single) -> float:
 
 def _settings(pair: Pair, options: BearingOptions) -> Array:
     """Return the displacements along z of both inner rings without load, each in its own axes."""
-    settings = np.array([_touching(one) for one in pair.bearings])
+    settings = np.array([_touching(bearing) for bearing in pair.bearings])
     if pair.preload_force:
         axial = RingConditions((None, None, pair.preload_force), None, None, None)
-        alone = [solve_bearing(one, axial, STANDSTILL, options) for one in pair.bearings]
-        return np.array([one.displacement[2] for one in alone])
+        alone = [solve_bearing(bearing, axial, STANDSTILL, options) for bearing in pair.bearings]
+        return np.array([solution.displacement[2] for solution in alone])
     settings += (pair.preload_distance or 0.0) / 2
     if (pair.preload_distance or 0.0) > 0 and pair.first != pair.second:
         free = RingConditions((None, None, 0.0), None, None, None)
@@ -316,9 +316,9 @@ def _settings(pair: Pair, options: BearingOptions) -> Array:
 
 def _read(pair: Pair, conditions: RingConditions) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Return loads, displacements, and which of the five directions are loaded, checked."""
-    one, other = (largest_of(bearing) for bearing in pair.bearings)
-    largest = {name: one[name] + other[name] for name in one} | {"tilt": 1.0}
-    largest["moment"] += (one["force"] + other["force"]) * pair.distance
+    first, second = (largest_of(bearing) for bearing in pair.bearings)
+    largest = {name: first[name] + second[name] for name in first} | {"tilt": 1.0}
+    largest["moment"] += (first["force"] + second["force"]) * pair.distance
     return as_arrays(*read_conditions(conditions, largest))
 
 
@@ -332,30 +332,31 @@ def _equilibrium(
     """Return the equilibrium of the shaft with rings that are set so far along their axes."""
     loads, moved, free = _read(pair, conditions)
     bearings = pair.bearings
-    parts = [one.motion(element_angles(one, operation.rotation)) for one in bearings]
-    shaft, counts = Shaft(parts, _ways(pair), settings), [one.elements for one in bearings]
-    laws = [one.law(options.model) for one in bearings]
-    forces = [centrifugal_force(one, operation) for one in bearings]
-    pressed = [one.approach(force) for one, force in zip(laws, forces, strict=True)]
+    motions = [bearing.motion(element_angles(bearing, operation.rotation)) for bearing in bearings]
+    shaft = Shaft(motions, _ways(pair), settings)
+    counts = [bearing.elements for bearing in bearings]
+    laws = [bearing.law(options.model) for bearing in bearings]
+    forces = [centrifugal_force(bearing, operation) for bearing in bearings]
+    pressed = [law.approach(force) for law, force in zip(laws, forces, strict=True)]
     problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
     check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
 
     def contacts(state: State) -> Law:
         places = [state.places[rows] for rows in shaft.slices]
         each = zip(bearings, laws, places, strict=True)
-        return Several([solved_contacts(*one, options) for one in each], counts)
+        return Several([solved_contacts(*contact, options) for contact in each], counts)
 
     def check(problem: Problem, state: State, tolerance: float) -> None:
-        each = zip(NAMES, bearings, _parts(problem, state), strict=True)
-        for name, bearing, (part, own) in each:
+        each = zip(NAMES, bearings, _problems(problem, state), strict=True)
+        for name, bearing, (local, equilibrium) in each:
             remedy = f"preload or thrust of the {name} bearing"
-            check_sides(bearing, part, own, tolerance, remedy)
+            check_sides(bearing, local, equilibrium, tolerance, remedy)
 
     start = problem.start(moved, np.repeat(pressed, counts))
     return find_equilibrium(problem, start, contacts, check, options)
 
 
-def _parts(problem: Problem, state: State) -> Iterator[tuple[Problem, State]]:
+def _problems(problem: Problem, state: State) -> Iterator[tuple[Problem, State]]:
     """Yield problem and state of each bearing, in its own axes."""
     shaft, laws = problem.kinematics, problem.law
     assert isinstance(shaft, Shaft)
@@ -367,10 +368,10 @@ def _parts(problem: Problem, state: State) -> Iterator[tuple[Problem, State]]:
         ring[2] += shaft.set_to[k]
         none = np.zeros(5, dtype=bool)
         force = np.asarray(problem.centrifugal)[rows]
-        part = Problem(shaft.parts[k], laws.laws[k], np.zeros(5), none, force)
-        own = replace(part, law=_constant(reaction)).state(ring, state.own[rows])
-        own.balance = state.balance
-        yield part, own
+        local = Problem(shaft.parts[k], laws.laws[k], np.zeros(5), none, force)
+        equilibrium = replace(local, law=_constant(reaction)).state(ring, state.own[rows])
+        equilibrium.balance = state.balance
+        yield local, equilibrium
 
 
 def _constant(reaction: Reaction) -> Law:
@@ -383,9 +384,9 @@ def _check_tandem(pair: Pair, solutions: Iterable[BearingSolution], loaded: bool
     if pair.arrangement != "tandem" or not pair.first.needs_thrust or not loaded:
         return
     pushed = axial = 0.0
-    for one in solutions:
-        pushed += math.hypot(*one.force[:2]) * math.tan(one.bearing.nominal_angle)
-        axial += one.force[2]
+    for solution in solutions:
+        pushed += math.hypot(*solution.force[:2]) * math.tan(solution.bearing.nominal_angle)
+        axial += solution.force[2]
     if axial < pushed:
         raise ValueError(
             f"force along z must be at least {pushed:.6g} N, by which the radial forces push the "
@@ -405,18 +406,18 @@ def solve_pair(
         quiet = replace(options, max_iterations=limit, progress=None, check=True)
         settings = _settings(pair, quiet)
     problem, state, ending = _equilibrium(pair, conditions, operation, options, settings)
-    parts = zip(pair.bearings, _parts(problem, state), strict=True)
+    equilibria = zip(pair.bearings, _problems(problem, state), strict=True)
     first, second = (
-        solution_of(bearing, operation, options, part, own, ending)
-        for bearing, (part, own) in parts
+        solution_of(bearing, operation, options, local, equilibrium, ending)
+        for bearing, (local, equilibrium) in equilibria
     )
     if ending[1] == "converged":
         _check_tandem(pair, (first, second), bool(problem.free[2]))
     total = (state.wanting + problem.loads).tolist()
     notes = tuple(
         f"{name} bearing: {text}"
-        for name, one in zip(NAMES, (first, second), strict=True)
-        for text in one.report.warnings
+        for name, solution in zip(NAMES, (first, second), strict=True)
+        for text in solution.report.warnings
     )
     solution = PairSolution(
         pair=pair,
@@ -539,7 +540,7 @@ class PairSolution(Equilibrium):
     @property
     def peak_pressure(self) -> float:
         """Largest pressure of all contacts [Pa]."""
-        return max(one.peak_pressure for one in self.bearings)
+        return max(solution.peak_pressure for solution in self.bearings)
 
     @property
     def edge_pressure(self) -> float:
@@ -549,7 +550,7 @@ class PairSolution(Equilibrium):
     @property
     def largest_load(self) -> float:
         """Largest force of a contact [N]."""
-        return max(one.largest_load for one in self.bearings)
+        return max(solution.largest_load for solution in self.bearings)
 
     def stiffness(self) -> Array:
         """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
@@ -636,7 +637,9 @@ class PairSolution(Equilibrium):
         """
         if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
-        first, second = (one.life(edge, rotating=rotating, **modification) for one in self.bearings)
+        first, second = (
+            solution.life(edge, rotating=rotating, **modification) for solution in self.bearings
+        )
         slope = LINE if isinstance(self.pair.first, TaperedRoller) else POINT
         lives = np.array([first.revolutions, second.revolutions])
         shortest = float(lives.min())
@@ -704,9 +707,9 @@ class PairSolution(Equilibrium):
         return {"model": self.first.model, **self._vector_texts(), **self._numbered_warnings()}
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
-        (heads, *rows), (_, *others) = (one._file_rows() for one in self.bearings)
+        (heads, *first), (_, *second) = (solution._file_rows() for solution in self.bearings)
         yield ["bearing", *heads]
-        for name, elements in zip(NAMES, (rows, others), strict=True):
+        for name, elements in zip(NAMES, (first, second), strict=True):
             yield from ([name, *row] for row in elements)
 
     @property
@@ -739,9 +742,9 @@ class PairSolution(Equilibrium):
 
     def _state(self) -> dict[str, object]:
         state = {name: list(getattr(self, name)) for name in VECTORS}
-        parts = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
+        results = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
         pair = {name: encode(value) for name, value in self.pair._arguments().items()}
-        return {"pair": pair, **state, **parts, "tangent": self.tangent.tolist()}
+        return {"pair": pair, **state, **results, "tangent": self.tangent.tolist()}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:

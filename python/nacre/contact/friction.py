@@ -451,8 +451,8 @@ class FrictionSolution(NormalContact, Shown, Result):
         with values.refusing(cls.__name__):
             normal = Solution.from_dict(values.heading("Solution") | state["normal"])
             fields = {name: state[name] for name in ("friction", *VECTORS)}
-            rest = {name: state[name] for name in ("motion", "report")}
-            text = as_text(cls.__name__, rest)
+            beside = {name: state[name] for name in ("motion", "report")}
+            text = as_text(cls.__name__, beside)
             return cls._of(core.FrictionSolved(normal._solved, rest=text, **fields))
 
 
@@ -761,11 +761,13 @@ def _dissipated(solution: FrictionSolution) -> str:
     return _with_error(solution, "dissipated", written(lost, unit), lost, unit)
 
 
-def _part(solution: FrictionSolution, name: Literal["force", "shift"], part: float) -> str:
+def _component(
+    solution: FrictionSolution, name: Literal["force", "shift"], component: float
+) -> str:
     """Return a component of a force or a shift, with the error of the vector."""
     unit = "m" if name == "shift" else ("N/m" if solution.grid.is_line else "N")
-    text = written(part, unit)
-    return _with_error(solution, name, text, abs(part), unit) if part else text
+    text = written(component, unit)
+    return _with_error(solution, name, text, abs(component), unit) if component else text
 
 
 TEXTS: dict[str, Callable[[FrictionSolution], str | None]] = {
@@ -792,8 +794,11 @@ def _step_rows(steps: Sequence[FrictionSolution]) -> list[list[str]]:
         display.without_rounding(np.ravel([step.force for step in steps]).tolist()), (-1, 2)
     )
     for number, (step, motion, pull) in enumerate(zip(steps, moves, pulls, strict=True)):
-        motion_cells = [f"{part:.4g}" if rolls else _part(step, "shift", part) for part in motion]
-        force_cells = [_part(step, "force", part) for part in pull]
+        motion_cells = [
+            f"{component:.4g}" if rolls else _component(step, "shift", component)
+            for component in motion
+        ]
+        force_cells = [_component(step, "force", component) for component in pull]
         outcome = [_dissipated(step), step.report.termination]
         rows.append([str(number), *force_cells, *motion_cells, *outcome])
     return rows

@@ -176,9 +176,9 @@ class Report(Result):
         return self.termination == "converged"
 
     @classmethod
-    def _of(cls, parts: Parts) -> Self:
+    def _of(cls, record: Parts) -> Self:
         """Return the report of the parts that the compiled module hands over."""
-        report, *bodies = parts
+        report, *bodies = record
         data = report["data"]
         balance, motion = data["balance"], data["motion"]
         fields = {
@@ -208,8 +208,8 @@ class Report(Result):
                 raise ValueError(f'report: the value of the key "{name}" does not fit: {encoded!r}')
             bodies.append(value)
         for name, keys in NESTED.items():
-            if isinstance(part := state[name], Mapping):
-                state[name] = values.with_names(name, part, keys)
+            if isinstance(entries := state[name], Mapping):
+                state[name] = values.with_names(name, entries, keys)
         state |= {name: None for name in ENDLESS if state[name] == math.inf}
         return as_text("Report", state), *bodies
 
@@ -409,7 +409,7 @@ class Solution(NormalContact, Shown, Result):
         -0.67
         """
         outputs = output if isinstance(output, list) else [output]
-        named_outputs = [described(one) for one in outputs]
+        named_outputs = [described(entry) for entry in outputs]
         all_gradients = gradients(self, "gradient", outputs, named_outputs, wrt, shape, tolerance)
         return all_gradients if isinstance(output, list) else all_gradients[0]
 
@@ -778,9 +778,9 @@ class Solution(NormalContact, Shown, Result):
 
     def _attributes(self) -> dict[str, object]:
         """Return what files say of the contact besides its numbers and fields."""
-        report, parts = self.report, ("body", "counterbody", "grid", "motion", "discretisation")
+        report, names = self.report, ("body", "counterbody", "grid", "motion", "discretisation")
         return {
-            **{name: json.dumps(values.encode(getattr(report, name))) for name in parts},
+            **{name: json.dumps(values.encode(getattr(report, name))) for name in names},
             "tolerance": report.tolerance,
             "termination": report.termination,
             "solver": report.solver or "unknown",
@@ -808,9 +808,9 @@ class Solution(NormalContact, Shown, Result):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         position = {name: state.pop(name) for name in ("approach", "tilt")}
-        parts = Report._parts(state.pop("report"))
+        report = Report._parts(state.pop("report"))
         with values.refusing(cls.__name__):
-            return cls._of(core.Solved(as_text(cls.__name__, position), parts, **state))
+            return cls._of(core.Solved(as_text(cls.__name__, position), report, **state))
 
 
 def _moduli(report: Report) -> list[Row]:
@@ -878,7 +878,7 @@ def _extent(solution: Solution) -> str | None:
     sides = [
         None
         if math.isnan(width)
-        else written(width, "m") + display.error_share(2 * (end or 0.0), width)
+        else written(width, "m") + display.plus_minus(2 * (end or 0.0), width)
         for width, end in zip(widths, ends, strict=True)
     ]
     return sides[1] if solution.report.grid.is_line else display.along(sides, " × ", "{}")
@@ -887,7 +887,7 @@ def _extent(solution: Solution) -> str | None:
 def _area(solution: Solution) -> str:
     unit = "m" if solution.report.grid.is_line else "m²"
     error = (solution.report.discretisation or {}).get("contact_area") or 0.0
-    return written(solution.contact_area, unit) + display.error_share(error, solution.contact_area)
+    return written(solution.contact_area, unit) + display.plus_minus(error, solution.contact_area)
 
 
 def _contact_share(solution: Solution) -> str | None:
@@ -901,7 +901,7 @@ def _has_spots(solution: Solution) -> bool:
     """Return whether the contact consists of spots: a line crosses more than the two of a ring."""
     inside = solution.in_contact.astype(np.int8)
     begins = [np.diff(inside, axis=axis, prepend=0) == 1 for axis in range(2)]
-    return max(int(one.sum(axis).max()) for axis, one in enumerate(begins)) > 2
+    return max(int(starts.sum(axis).max()) for axis, starts in enumerate(begins)) > 2
 
 
 def _range(values: float | Field | None, unit: str) -> str | None:

@@ -128,9 +128,9 @@ class Sliding(Group):
         distance = core.real(known[0], getattr(self, known[0]))
         if not 0.0 <= distance < math.inf:
             raise ValueError(f"{known[0]} must be finite and at least 0, got {distance:g}")
-        for name, one in (("slide", "cycles"), ("roll", "passes")):
-            if (getattr(self, name) is None) != (getattr(self, one) is None):
-                raise ValueError(f"{name} must be given with {one}, and {one} with {name}")
+        for name, count in (("slide", "cycles"), ("roll", "passes")):
+            if (getattr(self, name) is None) != (getattr(self, count) is None):
+                raise ValueError(f"{name} must be given with {count}, and {count} with {name}")
             if not isinstance(keywords := getattr(self, name), Mapping | None):
                 raise TypeError(f"{name} must be a mapping of keywords, got {keywords!r}")
         if self.slip is not None and self.sliding is None:
@@ -164,18 +164,18 @@ class Sliding(Group):
         """Steps of one cycle."""
         if self.slide is None:
             return None
-        rest = self._rest(self.slide, ("steps", "friction"))
-        given = rest.get("steps", ())
-        if not isinstance(given, Sequence) or not all(isinstance(one, Mapping) for one in given):
+        keywords = self._rest(self.slide, ("steps", "friction"))
+        given = keywords.get("steps", ())
+        if not isinstance(given, Sequence) or not all(isinstance(step, Mapping) for step in given):
             raise TypeError(f"steps of slide must be a list of mappings, got {given!r}")
         steps = [{**step} for step in given]
-        if not steps or rest.get("friction") is None:
+        if not steps or keywords.get("friction") is None:
             raise ValueError("slide must have friction, and steps of one cycle")
         if wrong := {key for step in steps for key in step} - {*STEP} | {
             key for step in steps for key in step if key in MOTION
         }:
             raise ValueError(f"steps of slide must not have {', '.join(sorted(map(str, wrong)))}")
-        steps[0].setdefault("friction", rest["friction"])
+        steps[0].setdefault("friction", keywords["friction"])
         return [FrictionStep.of(step) for step in steps]
 
     @property
@@ -184,8 +184,8 @@ class Sliding(Group):
         if self.roll is None:
             return None
         names = ("friction", "creepage", "force", "spin", "direction", "order")
-        rest = self._rest(self.roll, names)
-        return Rolling(self.motion or Motion(), **rest)
+        keywords = self._rest(self.roll, names)
+        return Rolling(self.motion or Motion(), **keywords)
 
     motion: Motion | None = None
     """Motion along z, for rolling."""
@@ -194,10 +194,10 @@ class Sliding(Group):
     def _rest(keywords: Mapping[str, object], names: Sequence[str]) -> dict[str, Any]:
         """Return those keywords that are no options, which must be among the names."""
         options = ("tolerance", "max_convolutions", "coupling")
-        rest = {key: value for key, value in keywords.items() if key not in options}
-        if wrong := set(rest) - set(names):
+        named = {key: value for key, value in keywords.items() if key not in options}
+        if wrong := set(named) - set(names):
             raise ValueError(f"slide and roll must not have {', '.join(sorted(map(str, wrong)))}")
-        return rest
+        return named
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,7 +343,7 @@ def rates(name: str, rate: Any, body: Body | None) -> list[float]:
     by_layer = [*by_layer, *[None] * (count - len(by_layer))]
     names = [*layer_names(body), "substrate"]
     elastic = not isinstance(body.substrate, core.Rigid | core.Free)
-    missing = [one for one, value in zip(names, by_layer, strict=True) if value is None]
+    missing = [layer for layer, value in zip(names, by_layer, strict=True) if value is None]
     if not elastic and missing == ["substrate"]:
         by_layer[-1], missing = 0.0, []
     if missing:
@@ -660,10 +660,10 @@ def _warnings_of(
     part, frozen = _worn_part(states[-1]), model == "frozen"
     went_on = events and events[0].distance < states[-1].distance
     if went_on or _worn_part(states[0]) >= 1.0:
-        rest = "still has it" if frozen else "lacks it there to first order only"
+        change = "still has it" if frozen else "lacks it there to first order only"
         notes.append(
-            f"a layer is through, and the elastic contact {rest}: what follows errs by an unknown "
-            "part, to either side"
+            f"a layer is through, and the elastic contact {change}: what follows errs by an "
+            "unknown part, to either side"
         )
     elif frozen and error is not None and error > MOST_THINNING:
         notes.append(

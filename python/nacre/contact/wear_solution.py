@@ -338,8 +338,8 @@ class WearHistory(Shown, Result):
         """Return whether all is equal."""
         if not isinstance(other, WearHistory):
             return False
-        rest = [{**one._state(), "states": len(one)} for one in (self, other)]
-        return same(*rest) and self.states == other.states
+        plain = [{**history._state(), "states": len(history)} for history in (self, other)]
+        return same(*plain) and self.states == other.states
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -389,16 +389,16 @@ class WearHistory(Shown, Result):
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         with values.refusing(cls.__name__):
-            parts = {
+            entries = {
                 name: tuple(
-                    kind.from_dict(values.heading(kind.__name__) | one) for one in state[name]
+                    kind.from_dict(values.heading(kind.__name__) | entry) for entry in state[name]
                 )
                 for name, kind in (("states", WearState), ("events", WearThrough))
             }
             report = WearReport.from_dict(values.heading("WearReport") | state["report"])
-            if not parts["states"]:
+            if not entries["states"]:
                 raise ValueError("states must hold one at least")
-            return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **parts)  # type: ignore[arg-type]
+            return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **entries)  # type: ignore[arg-type]
 
     @classmethod
     def _kept(cls, records: Mapping[str, Record]) -> Self:
@@ -408,14 +408,14 @@ class WearHistory(Shown, Result):
             for record in records.values():
                 numbers = np.frombuffer(base64.b64decode(record["numbers"]))
                 states += _filled(record["states"], _arrays(numbers))
-            rest = {key: record[key] for key in ("events", "unit", "report", "inputs")}
-        return cls._restored({"states": states, **rest})
+            beside = {key: record[key] for key in ("events", "unit", "report", "inputs")}
+        return cls._restored({"states": states, **beside})
 
     def _keep(self, journal: Journal, first: int = 0) -> None:
         """Add states to a journal, each with all that is known beside it."""
         for place in range(first, len(self)) if journal.path else ():
-            one = dataclasses.replace(self, states=(self.states[place],))
-            plain, numbers = _packed(one._state())
+            single = dataclasses.replace(self, states=(self.states[place],))
+            plain, numbers = _packed(single._state())
             text = base64.b64encode(numbers.tobytes()).decode()
             journal.append({"key": str(place), "numbers": text, **plain})
 
@@ -498,9 +498,9 @@ class WearHistory(Shown, Result):
         heads, columns = ["step"], [np.arange(len(self.states))]
         for row in self._step_rows():
             numbers = np.asarray(getattr(self, row.name))
-            for part, name in enumerate(("body", "counterbody") if numbers.ndim == 2 else ("",)):
+            for body, name in enumerate(("body", "counterbody") if numbers.ndim == 2 else ("",)):
                 heads.append(heading(row, self, name))
-                columns.append(numbers[:, part] if numbers.ndim == 2 else numbers)
+                columns.append(numbers[:, body] if numbers.ndim == 2 else numbers)
         return [heads, *(list(row) for row in zip(*(c.tolist() for c in columns), strict=True))]
 
     def _comments(self) -> dict[str, object]:
@@ -597,18 +597,18 @@ def _bare(solution: Solution) -> dict[str, object]:
 
 def _packed(state: Any) -> tuple[Any, Field]:
     """Return a state with the shapes of its arrays in their places, and the numbers of all."""
-    parts: list[Field] = []
+    arrays: list[Field] = []
 
     def shapes(value: Any) -> Any:
         if isinstance(value, np.ndarray):
-            parts.append(np.ravel(value).astype(np.float64))
+            arrays.append(np.ravel(value).astype(np.float64))
             return {"shape": list(value.shape)}
         if isinstance(value, dict):
             return {key: shapes(item) for key, item in value.items()}
         return [shapes(item) for item in value] if isinstance(value, list | tuple) else value
 
     plain = shapes(state)
-    return plain, np.concatenate(parts)
+    return plain, np.concatenate(arrays)
 
 
 def _arrays(numbers: Field) -> Callable[[Sequence[int]], Field]:
@@ -618,9 +618,9 @@ def _arrays(numbers: Field) -> Callable[[Sequence[int]], Field]:
     def take(shape: Sequence[int]) -> Field:
         nonlocal place
         count = math.prod(shape)
-        part = numbers[place : place + count]
+        values = numbers[place : place + count]
         place += count
-        return part.reshape(tuple(shape))
+        return values.reshape(tuple(shape))
 
     return take
 

@@ -19,6 +19,7 @@ from nacre.fatigue.criteria import Rule
 from nacre.fatigue.summary import (
     ESTIMATE,
     PLASTICITY,
+    Row,
     assessment_of,
     checked_depths,
     flag,
@@ -163,9 +164,8 @@ class ShakedownMap(Shown, Warned, Result):
     def _file_rows(self) -> Iterable[Iterable[object]]:
         yield ["layer", "friction", "limits", "first_yield", "depths"]
         for layer, name in enumerate(self.names):
-            parts = (self.friction, self.limits[layer], self.first_yield[layer], self.depths[layer])
-            for friction, *columns in zip(*(part.tolist() for part in parts), strict=True):
-                yield [name, friction, *columns]
+            columns = (row[layer].tolist() for row in (self.limits, self.first_yield, self.depths))
+            yield from ([name, *row] for row in zip(self.friction.tolist(), *columns, strict=True))
 
     def _inputs(self) -> Rows:
         return [remark("rule", self.rule)]
@@ -271,11 +271,7 @@ def shakedown_map(
             "solution must be one without friction, got a FrictionSolution: nacre.fatigue.assess "
             "takes it"
         )
-    coefficients = core.real_array("friction", friction)
-    if coefficients.ndim != 1 or not coefficients.size:
-        raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
-    if not np.isfinite(coefficients).all() or coefficients.min() < 0:
-        raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
+    coefficients = _coefficients(friction)
     assessment = assessment_of(solution, (), rule, residual, body, direction, x, threads)
     ordered_depths = checked_depths(depths, assessment.rolling.body)
     regions = [
@@ -301,10 +297,7 @@ def shakedown_map(
             for k, rows in enumerate(
                 assessment.evaluate(region, ordered_depths, coefficients.tolist())
             ):
-                best = {
-                    name: max(rows, key=lambda row, name=name: row.values[name])  # type: ignore[misc]
-                    for name in ("shakedown", "first_yield")
-                }
+                best = _deciding(rows)
                 limits[i, k] = peak / best["shakedown"].values["shakedown"]
                 first[i, k] = peak / best["first_yield"].values["first_yield"]
                 deciding[i, k] = best["shakedown"].z
@@ -318,3 +311,20 @@ def shakedown_map(
     return ShakedownMap(
         coefficients, limits, first, deciding, names, rule, peak, is_estimate, tuple(warning_texts)
     )
+
+
+def _coefficients(friction: Sequence[float] | Real) -> Array:
+    """Return coefficients of friction as an array, checked."""
+    coefficients = core.real_array("friction", friction)
+    if coefficients.ndim != 1 or not coefficients.size:
+        raise ValueError(f"friction must be a sequence of numbers, got {friction!r}")
+    if not np.isfinite(coefficients).all() or coefficients.min() < 0:
+        raise ValueError(f"friction must be finite and at least 0, got {friction!r}")
+    return coefficients
+
+
+def _deciding(rows: Sequence[Row]) -> dict[str, Row]:
+    """Return the depths that need the largest yield stresses, by the names of the values."""
+    return {
+        name: max(rows, key=lambda row: row.values[name]) for name in ("shakedown", "first_yield")
+    }

@@ -263,13 +263,13 @@ class FatigueSummary(Shown, Warned, Result):
             **read_fields(
                 cls.__name__,
                 state,
-                layers=lambda parts: [LayerFatigue._restored(one) for one in parts],
-                interfaces=lambda parts: [InterfaceFatigue._restored(one) for one in parts],
+                layers=lambda states: [LayerFatigue._restored(layer) for layer in states],
+                interfaces=lambda states: [InterfaceFatigue._restored(face) for face in states],
                 criteria=lambda entries: checked_criteria(map(values.decode, entries)),
                 rule=rule_of,
                 peak_pressure=float,
                 depths=numbers,
-                profiles=lambda columns: {name: numbers(one) for name, one in columns.items()},
+                profiles=lambda rows: {name: numbers(row) for name, row in rows.items()},
                 is_estimate=flag,
                 warnings=lambda texts: [word(text) for text in texts],
                 doubt=lambda text: None if text is None else word(text),
@@ -430,9 +430,10 @@ class FatigueSummary(Shown, Warned, Result):
 
     def __repr__(self) -> str:
         """Return how much the summary holds."""
+        names = ", ".join(type(criterion).__name__ for criterion in self.criteria) or "none"
         return (
             f"<FatigueSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces, "
-            f"criteria {', '.join(type(one).__name__ for one in self.criteria) or 'none'}>"
+            f"criteria {names}>"
         )
 
 
@@ -494,11 +495,11 @@ def rule_of(name: object) -> Rule:
 
 def numbers(sequence: Iterable[float]) -> Array:
     """Return an array of numbers, or raise."""
-    return np.array([float(one) for one in sequence])
+    return np.array([float(number) for number in sequence])
 
 
 def _by_name(entries: Mapping[str, float]) -> dict[str, float]:
-    return {name: float(one) for name, one in entries.items()}
+    return {name: float(number) for name, number in entries.items()}
 
 
 def _balanced(entry: tuple[float, Iterable[float], Iterable[float]]) -> Balanced:
@@ -556,8 +557,8 @@ class Assessment:
         body = self.rolling.body
         faces = [0.0, *body.interfaces, np.inf]
         names = [*(layer.name for layer in body.layers), None]
-        parts = [Region(k, names[k], *ends) for k, ends in enumerate(pairwise(faces))]
-        return parts if isinstance(body.substrate, core.Elastic) else parts[:-1]
+        regions = [Region(k, names[k], *ends) for k, ends in enumerate(pairwise(faces))]
+        return regions if isinstance(body.substrate, core.Elastic) else regions[:-1]
 
     def depths(self, region: Region) -> Array:
         """Return depths in a layer, its faces included."""
@@ -583,13 +584,13 @@ class Assessment:
         Stresses are linear in the coefficient: pressure and traction are evaluated once for all.
         """
         every = np.unique(np.concatenate(depths))
-        parts: list[tuple[list[float], Side]] = [
+        sides: list[tuple[list[float], Side]] = [
             ([z for z in every if z == 0.0], "below"),
             ([z for z in every if z > 0.0 and z != region.bottom], "below"),
             ([z for z in every if z == region.bottom], "above"),
         ]
         rows: list[list[Row]] = [[] for _ in frictions]
-        for chosen, side in parts:
+        for chosen, side in sides:
             if not chosen:
                 continue
             history, errors = self.rolling.stress(chosen, side, any(frictions))
@@ -656,12 +657,12 @@ class Assessment:
             return [[] for _ in frictions]
         rows = self.rows(region, [chosen] * len(frictions), frictions)
         for _ in range(ROUNDS if depths is None else 0):
-            new_depths = [self._vertices(one) for one in rows]
+            new_depths = [self._vertices(profile) for profile in rows]
             if not any(map(len, new_depths)):
                 break
             new = self.rows(region, new_depths, frictions)
-            rows = [one + added for one, added in zip(rows, new, strict=True)]
-        return [sorted(one, key=lambda row: row.z) for one in rows]
+            rows = [profile + added for profile, added in zip(rows, new, strict=True)]
+        return [sorted(profile, key=lambda row: row.z) for profile in rows]
 
     def _vertices(self, rows: list[Row]) -> Array:
         """Return the depths at the maxima of parabolas through three depths, where they are new."""
@@ -681,7 +682,7 @@ def _range(traction: Array) -> float:
     """Return the largest distance of two values of a shear traction ``(times, 2)``."""
     if not traction[:, 1].any():
         return float(np.ptp(traction[:, 0]))
-    return float(max(np.hypot(*(traction - one).T).max() for one in traction))
+    return float(max(np.hypot(*(traction - point).T).max() for point in traction))
 
 
 def _vertex(depths: Array, stresses: Array) -> float | None:
@@ -690,10 +691,10 @@ def _vertex(depths: Array, stresses: Array) -> float | None:
     if k in (0, len(stresses) - 1):
         return None
     (a, b, c), (f, g, h) = depths[k - 1 : k + 2], stresses[k - 1 : k + 2]
-    one, other = (b - a) * (g - h), (b - c) * (g - f)
-    if one == other:
+    left, right = (b - a) * (g - h), (b - c) * (g - f)
+    if left == right:
         return None
-    vertex = b - 0.5 * ((b - a) * one - (b - c) * other) / (one - other)
+    vertex = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right)
     return float(vertex) if a < vertex < c else None
 
 
@@ -706,11 +707,11 @@ def checked_criteria(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
     if isinstance(criteria, Criterion) or not isinstance(criteria, Iterable):
         raise TypeError(f"criteria must be a sequence of criteria, got {criteria!r}")
     all_criteria = tuple(criteria)
-    for one in all_criteria:
-        if not isinstance(one, Criterion):
+    for criterion in all_criteria:
+        if not isinstance(criterion, Criterion):
             kinds = ", ".join(kind.__name__ for kind in CRITERIA.values())
-            raise TypeError(f"criteria must hold {kinds}, got {one!r}")
-    names = [type(one).__name__ for one in all_criteria]
+            raise TypeError(f"criteria must hold {kinds}, got {criterion!r}")
+    names = [type(criterion).__name__ for criterion in all_criteria]
     if len(set(names)) < len(names):
         raise ValueError(f"criteria must be of different kinds, got {', '.join(names)}")
     return all_criteria
@@ -868,9 +869,9 @@ def assess(
             raise ValueError(f"shear_yield must be finite and above 0, got {limit!r}")
     check_limits("shear_yield", limits, assessment.rolling.body)
     layers = [None] * len(assessment.rolling.body.layers)  # whose limits are not those of criteria
-    for one in assessment.criteria:
+    for criterion in assessment.criteria:
         for name in ("bending", "torsion"):
-            check_limits(name, [*layers, getattr(one, name)], assessment.rolling.body)
+            check_limits(name, [*layers, getattr(criterion, name)], assessment.rolling.body)
     friction = core.real("friction", friction)
     if not 0.0 <= friction <= MOST_FRICTION:
         raise ValueError(f"friction must be a number, finite and at least 0, got {friction!r}")
@@ -955,15 +956,15 @@ def _layer(
         name: (row.values[name], (x, _at(row.at[name], assessment.rolling), row.z))
         for name, row in best.items()
     }
-    criteria = {type(one).__name__: one for one in assessment.criteria}
+    criteria = {type(criterion).__name__: criterion for criterion in assessment.criteria}
     factors: dict[str, float] = {}
     for name in ("shakedown", "first_yield"):
         if limit is not None and peaks[name][0] > 0:
             factors[name] = limit / peaks[name][0]
     if region.bottom == np.inf:
-        for name, one in criteria.items():
+        for name, criterion in criteria.items():
             if peaks[name][0] > 0:
-                factors[name] = one.limit / peaks[name][0]
+                factors[name] = criterion.limit / peaks[name][0]
     layer = LayerFatigue(
         region.layer,
         region.name,

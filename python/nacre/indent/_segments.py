@@ -46,23 +46,35 @@ def arrival(values: Array) -> int:
     Least squares of a parabola up to this point and of a constant from it on, among the points
     up to the largest one. Of several visits to the largest value the first counts.
     """
+    start, top = _first_rise(values)
+    return start + _end_of_rise(values[start : top + 1] - float(values.max()))
+
+
+def _first_rise(values: Array) -> tuple[int, int]:
+    """Return the ends of the first rise to the largest value: from a window below it to its top.
+
+    The top is the largest value before values leave the window again.
+    """
     noise = noise_of(values) if values.size > 2 else 0.0
-    largest, size = float(values.max()), float(np.ptp(values))
-    window = max(BEND * size, 2 * SPAN * noise)
-    first = int(np.argmax(values >= largest - SURE * noise))
-    leaves = np.flatnonzero(values[first:] < largest - window)
-    stop = first + int(leaves[0]) if leaves.size else values.size
-    top = first + int(np.argmax(values[first:stop]))
-    below = np.flatnonzero(values[:top] < largest - window)
-    start = int(below[-1]) if below.size else 0
-    rise = values[start : top + 1] - largest
+    largest = float(values.max())
+    floor = largest - max(BEND * float(np.ptp(values)), 2 * SPAN * noise)
+    visit = int(np.argmax(values >= largest - SURE * noise))
+    leaves = np.flatnonzero(values[visit:] < floor)
+    leave = visit + int(leaves[0]) if leaves.size else values.size
+    top = visit + int(np.argmax(values[visit:leave]))
+    below = np.flatnonzero(values[:top] < floor)
+    return int(below[-1]) if below.size else 0, top
+
+
+def _end_of_rise(rise: Array) -> int:
+    """Return the point with the least misfit, the last of equals: trials get closer by rounds."""
     low, high = 0, rise.size - 1
     while True:
         step = max(1, (high - low) // TRIALS)
         trials = np.arange(high, low - 1, -step)
         best = int(trials[np.argmin([_misfit(rise, int(trial)) for trial in trials])])
         if step == 1:
-            return start + best
+            return best
         low, high = max(low, best - step), min(high, best + step)
 
 

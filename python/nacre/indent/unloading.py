@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -90,6 +91,60 @@ ON_FILMS = (
 """Note on thin films; the tenth is Bückle's rule (ISO 14577-4 extrapolates to no depth)."""
 
 
+class _Theory(NamedTuple):
+    """Elastic unloading from the largest depth, which gives hardness and moduli."""
+
+    tip: core.Tip
+    counterbody: core.Elastic | None
+    deepest: float
+    epsilon: float
+    beta: float
+
+    def contact_depth(self, load: float, slope: float) -> float:
+        """Return the depth over which the tip touches [m]."""
+        return self.deepest - self.epsilon * load / slope
+
+    def numbers(self, load: float, slope: float) -> Array:
+        """Return hardness, reduced modulus, modulus, area and contact depth."""
+        contact = self.contact_depth(load, slope)
+        area = math.pi * section(self.tip, contact) ** 2
+        reduced = math.sqrt(math.pi / area) * slope / (2 * self.beta)
+        own = 0.0 if self.counterbody is None else 1 / self.counterbody.plane_strain_modulus
+        return np.array([load / area, reduced, 1 / (1 / reduced - own), area, contact])
+
+    def checked_numbers(self, load: float, slope: float) -> list[float]:
+        """Return the numbers, or raise a `ValueError` where there is no such contact."""
+        contact = self.contact_depth(load, slope)
+        # The section of a flat punch is one at all depths; without yield its contact depth is 0.
+        if contact <= 0 and self.tip.kind != "flat_punch":
+            raise ValueError(
+                f"curve must have a contact depth above 0, got {contact:.4g} "
+                f"at the largest depth {self.deepest:.4g}: its depth has another zero"
+            )
+        hardness, reduced, modulus, *section_numbers = self.numbers(load, slope).tolist()
+        if not modulus > 0:
+            raise ValueError(
+                f"counterbody must be stiffer than the reduced modulus, {reduced:.4g}, got "
+                f"{self.counterbody!r}"
+            )
+        return [hardness, reduced, modulus, *section_numbers]
+
+    def errors(self, load: float, slope: float, covariance: Array) -> Array:
+        """Return standard errors of hardness and moduli by the covariance of force and slope."""
+        # Central differences: small beside the numbers, and large beside their rounding.
+        steps = 1e-5 * np.array([load, slope])
+        rates = np.stack(
+            [
+                (self.numbers(load + dp, slope + ds) - self.numbers(load - dp, slope - ds))
+                / (2 * step)
+                for (dp, ds), step in zip(np.diag(steps), steps, strict=True)
+            ],
+            axis=1,
+        )[:3]
+        variances: Array = np.einsum("ij,jk,ik->i", rates, covariance, rates)
+        return np.sqrt(variances)
+
+
 def oliver_pharr(
     curve: Curve,
     tip: core.Tip,
@@ -160,62 +215,22 @@ def oliver_pharr(
     >>> print(f"{found.hardness / 1e9:.2f} GPa, {found.reduced_modulus / 1e9:.1f} GPa")
     2.70 GPa, 31.1 GPa
     """
-    low, high = _checked_part(part)
+    ends = _checked_part(part)
     for name, factor in (("epsilon", epsilon), ("beta", beta)):
         if not (isinstance(factor, int | float) and 0 < factor < math.inf):
             raise ValueError(f"{name} must be positive and finite, got {factor!r}")
     if counterbody is not None and not isinstance(counterbody, core.Elastic):
         raise TypeError(f"counterbody must be an Elastic, got {counterbody!r}")
-    if int(np.argmax(curve.force)) > len(curve) - LEAST_POINTS and curve.depth[0] < curve.depth[-1]:
-        raise ValueError(
-            "curve must have an unloading after its largest force, got a loading; one that is "
-            "sorted by depth is Curve(depth[::-1], force[::-1])"
-        )
-    branch = curve.unloading()
+    branch, points = _points(curve, *ends)
+    depth, force = branch.depth[points], branch.force[points]
     deepest, size = float(branch.depth.max()), float(branch.force.max())
-    first = int(np.argmax(branch.force <= high * size))
-    below = np.flatnonzero(branch.force[first:] < low * size)
-    span = slice(first, first + int(below[0]) if below.size else None)
-    depth, force = branch.depth[span], branch.force[span]
-    if depth.size <= LEAST_POINTS or np.ptp(depth) == 0:
-        raise ValueError(
-            f"curve must have more than {LEAST_POINTS} points of its unloading between {low:g} and "
-            f"{high:g} of the largest force, got {depth.size}"
-        )
     law, covariance = _power_law((deepest - depth) / deepest, force / size)
     units = np.array([size, size / deepest, 1.0])
     load, slope, power = (float(number) for number in law * units)
-
-    def derived(load: float, slope: float) -> Array:
-        contact = deepest - epsilon * load / slope
-        area = math.pi * section(tip, contact) ** 2
-        reduced = math.sqrt(math.pi / area) * slope / (2 * beta)
-        own = 0.0 if counterbody is None else 1 / counterbody.plane_strain_modulus
-        return np.array([load / area, reduced, 1 / (1 / reduced - own), area, contact])
-
-    # The section of a flat punch is one at all depths, and its contact depth without yield is 0.
-    if deepest - epsilon * load / slope <= 0 and tip.kind != "flat_punch":
-        raise ValueError(
-            f"curve must have a contact depth above 0, got {deepest - epsilon * load / slope:.4g} "
-            f"at the largest depth {deepest:.4g}: its depth has another zero"
-        )
-    hardness, reduced, modulus, area, contact = (float(one) for one in derived(load, slope))
-    if not modulus > 0:
-        raise ValueError(
-            f"counterbody must be stiffer than the reduced modulus, {reduced:.4g}, got "
-            f"{counterbody!r}"
-        )
-    # Central differences: small beside the numbers, and large beside their rounding.
-    steps = 1e-5 * np.array([load, slope])
-    rates = np.stack(
-        [
-            (derived(load + one, slope + other) - derived(load - one, slope - other)) / (2 * step)
-            for one, other, step in ((steps[0], 0.0, steps[0]), (0.0, steps[1], steps[1]))
-        ],
-        axis=1,
-    )[:3]
     covariance = covariance * np.outer(units, units)
-    errors = np.sqrt(np.einsum("ij,jk,ik->i", rates, covariance[:2, :2], rates))
+    theory = _Theory(tip, counterbody, deepest, epsilon, beta)
+    hardness, reduced, modulus, area, contact = theory.checked_numbers(load, slope)
+    errors = theory.errors(load, slope, covariance[:2, :2])
     power_error = math.sqrt(float(covariance[2, 2]))
     notes = _notes(branch, load, slope, power, power_error)
     for note in notes:
@@ -253,6 +268,27 @@ def _checked_part(part: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
+def _points(curve: Curve, low: float, high: float) -> tuple[Curve, slice]:
+    """Return the unloading, and its points between two shares of the largest force."""
+    if int(np.argmax(curve.force)) > len(curve) - LEAST_POINTS and curve.depth[0] < curve.depth[-1]:
+        raise ValueError(
+            "curve must have an unloading after its largest force, got a loading; one that is "
+            "sorted by depth is Curve(depth[::-1], force[::-1])"
+        )
+    branch = curve.unloading()
+    size = float(branch.force.max())
+    first = int(np.argmax(branch.force <= high * size))
+    below = np.flatnonzero(branch.force[first:] < low * size)
+    span = slice(first, first + int(below[0]) if below.size else None)
+    depth = branch.depth[span]
+    if depth.size <= LEAST_POINTS or np.ptp(depth) == 0:
+        raise ValueError(
+            f"curve must have more than {LEAST_POINTS} points of its unloading between {low:g} and "
+            f"{high:g} of the largest force, got {depth.size}"
+        )
+    return branch, span
+
+
 def _power_law(below: Array, force: Array) -> tuple[Array, Array]:
     """Return P, S and m of P (1 − S x/(m P))^m, over x below the largest depth, with covariance."""
     with extra("fit"):
@@ -267,9 +303,9 @@ def _power_law(below: Array, force: Array) -> tuple[Array, Array]:
     # A line through both ends of the part is less steep, and its force larger, than the law.
     start = np.array([1.0, float(np.ptp(force) / np.ptp(below)), 1.5])
     best = least_squares(law, start, x_scale="jac", bounds=([0.1, 0.0, 0.5], [10, np.inf, 10]))
-    rest, rank = best.fun, max(force.size - 3, 1)
-    variance = float(rest @ rest) / rank
-    along = float(rest[1:] @ rest[:-1]) / float(rest @ rest) if variance > 0 else 0.0
+    misfit, squares = best.fun, float(best.fun @ best.fun)
+    variance = squares / max(force.size - 3, 1)
+    along = float(misfit[1:] @ misfit[:-1]) / squares if variance > 0 else 0.0
     spread = (1 + along) / (1 - along) if 0 < along < 1 else 1.0
     return best.x, variance * spread * np.linalg.pinv(best.jac.T @ best.jac)
 

@@ -112,8 +112,8 @@ def bearing_pair(solution: PairSolution) -> dict[str, Axes]:
     >>> sorted(plot.bearing_pair(pair.solve(model="iso16281")))
     ['first loads', 'first pressure', 'second loads', 'second pressure']
     """
-    parts = ("loads", "pressure")
-    names = [[f"{which} {part}" for part in parts] for which in ("first", "second")]
+    charts = ("loads", "pressure")
+    names = [[f"{which} {chart}" for chart in charts] for which in ("first", "second")]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 0.8 * WIDTH), layout="constrained")
         polar: dict[str | tuple[str, ...], dict[str, object]] = {
@@ -124,8 +124,8 @@ def bearing_pair(solution: PairSolution) -> dict[str, Axes]:
             width_ratios=[1, 1.5],
             per_subplot_kw=polar,
         )
-        for row, one in zip(names, solution.bearings, strict=True):
-            bearing(one, {part: panels[name] for part, name in zip(parts, row, strict=True)})
+        for row, solved in zip(names, solution.bearings, strict=True):
+            bearing(solved, {chart: panels[name] for chart, name in zip(charts, row, strict=True)})
             pressure = panels[row[1]]
             title = f"{row[1].partition(' ')[0]} bearing, {pressure.get_title(loc='left')}"
             pressure.set_title(title, loc="left")
@@ -255,9 +255,9 @@ def elements_pressure(
     curves = [curve for curve in curves if curve[2].size]
     drawn: list[tuple[list[int], Ring, Array, Array]] = []
     for element, name, x, values in curves:  # elements on both sides of the load are alike
-        for others, other, _, known in drawn:
-            if other == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
-                others.append(element)
+        for alike, which, _, known in drawn:
+            if which == name and np.allclose(known, values, rtol=1e-6, atol=1.0):
+                alike.append(element)
                 break
         else:
             drawn.append(([element], name, x, values))

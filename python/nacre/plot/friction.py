@@ -122,7 +122,7 @@ def _arrows(
     # Symmetrical about the middle of the contact.
     picked = [side[(side - (side[0] + side[-1]) // 2) % step == 0] for side in (rows, columns)]
     some = np.ix_(*picked)
-    qx, qy = (np.where(touching, part, np.nan)[some] for part in solution.traction)
+    qx, qy = (np.where(touching, traction, np.nan)[some] for traction in solution.traction)
     largest = np.nanmax(np.hypot(qx, qy), initial=0.0)
     if largest <= 0:
         return

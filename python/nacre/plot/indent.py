@@ -101,7 +101,7 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
     path
         File, whose ending is the format: ``.pdf``, ``.png``, ``.svg``.
     """
-    rows = [part for line in str(fit).splitlines() for part in KEEP.wrap(line)]
+    rows = [row for line in str(fit).splitlines() for row in KEEP.wrap(line)]
     rows += ["", *_comparison(fit)]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")
@@ -167,16 +167,16 @@ def _draw(fit: Fit, axes: Axes, number: int) -> None:
 
 
 def _residuals(fit: Fit, axes: Axes, number: int) -> None:
-    curve, rest = fit.curves[number], fit.residuals[number]
+    curve, residuals = fit.curves[number], fit.residuals[number]
     depth = Scale.of(float(np.abs(curve.depth).max()), "m")
     if fit.noise == "absolute":
-        scale = Scale.of(float(np.abs(rest).max()), "N")
+        scale = Scale.of(float(np.abs(residuals).max()), "N")
         factor, label = scale.factor, f"residual [{scale.unit}]"
     else:
         factor, label = 100.0, "residual [%]"
     axes.axhspan(-2 * factor * fit.sigma, 2 * factor * fit.sigma, color="0.93", zorder=0)
     axes.axhline(0.0, color="0.6", linewidth=0.6)
     colour = COLOURS[number % len(COLOURS)]
-    axes.plot(depth.factor * curve.depth, factor * rest, "o", ms=2.5, color=colour)
+    axes.plot(depth.factor * curve.depth, factor * residuals, "o", ms=2.5, color=colour)
     axes.set_xlabel(f"depth [{depth.unit}]")
     axes.set_ylabel(label)

@@ -79,12 +79,7 @@ def interface_map(
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")
     if quantity not in ("shear", "normal"):
         raise ValueError(f"quantity must be 'shear' or 'normal', got {quantity!r}")
-    depths = body_of(solution, body).interfaces
-    if not depths:
-        raise ValueError("a solution must have layers for a map of an interface, got a bare body")
-    if not 0 <= interface < len(depths):
-        raise ValueError(f"interface must be from 0 to {len(depths) - 1}, got {interface}")
-    depth = depths[interface]
+    depth = _depth(solution, body, interface)
     field = solution.stress(depth, side="above", body=body, threads=threads, **options)
     values = field.zz if quantity == "normal" else np.hypot(field.xz, field.yz)
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
@@ -127,6 +122,16 @@ def interface_map(
         note = "the contact outlined" if same else "x and y to different scales"
         axes.set_title(f"interfaces[{interface}] at z = {written(depth, 'm', 3)}; {note}")
     return axes
+
+
+def _depth(solution: Solution, body: Member, interface: int) -> float:
+    """Return the depth of an interface [m], or raise a `ValueError` if there is none."""
+    depths = body_of(solution, body).interfaces
+    if not depths:
+        raise ValueError("a solution must have layers for a map of an interface, got a bare body")
+    if not 0 <= interface < len(depths):
+        raise ValueError(f"interface must be from 0 to {len(depths) - 1}, got {interface}")
+    return depths[interface]
 
 
 def _arrows(

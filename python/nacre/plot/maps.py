@@ -60,19 +60,19 @@ def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) 
             axes = figure.subplot_mosaic(layout, width_ratios=(1.25, 1))
         elif isinstance(axes, Axes):
             axes = {"map": axes}
-        parts = dict(axes)
-        for name, part in parts.items():
+        panels = dict(axes)
+        for name, panel in panels.items():
             if name == "map":
-                pressure_map(solution, part)
+                pressure_map(solution, panel)
             elif name == "x":
-                section(solution, "x", axes=part)
+                section(solution, "x", axes=panel)
             elif name == "y":
-                section(solution, "y", axes=part)
+                section(solution, "y", axes=panel)
             elif name == "numbers":
-                _numbers(solution, part)
+                _numbers(solution, panel)
             else:
                 raise ValueError(f"axes must be named map, x, y or numbers, got {name!r}")
-    return parts
+    return panels
 
 
 def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
@@ -103,13 +103,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     if grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
-    window = np.array(ends)
-    if solution.contact_area > 0:
-        contact = extent(solution)
-        margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
-        whole = np.array(grid.periodic)[:, np.newaxis]
-        around = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
-        window = np.where(whole, window, around)
+    window = _window(solution, np.array(ends))
     scales, same = lengths(window)
     scale = Scale.of(solution.peak_pressure, "Pa")
     with styled():
@@ -140,32 +134,43 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             ylim=scales[1].factor * window[1],
         )
         outline(axes, solution, [length.factor for length in scales])
-        repeats = all(grid.periodic)
         if solution.contact_area > 0 and not any(grid.periodic):
-            at = [
-                length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
-            ]
-            for colour, width in (("black", 2.6), ("white", 1.2)):
-                axes.plot(
-                    *at,
-                    color=colour,
-                    linestyle="none",
-                    marker="+",
-                    markersize=8,
-                    markeredgewidth=width,
-                )
-        title = "nothing touches"
-        if solution.contact_area > 0:
-            share = f"{100 * solution.contact_share:.3g} % of the area touches"
-            title = share if repeats else "the cross marks the resultant force"
-            if any(grid.periodic) and not repeats:
-                title = f"periodic along {'xy'[grid.periodic.index(True)]}"
+            _mark_resultant(axes, solution, scales)
         if same:
             axes.set_aspect("equal")
-        else:
-            title += "; x and y to different scales"
-        axes.set_title(title)
+        axes.set_title(_title(solution) + ("" if same else "; x and y to different scales"))
     return axes
+
+
+def _window(solution: Solution, ends: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the ends of the picture: a margin around the contact, or those of a period."""
+    if solution.contact_area <= 0:
+        return ends
+    grid, contact = solution.report.grid, extent(solution)
+    margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
+    around = np.clip(contact + margin * [-1, 1], ends[:, :1], ends[:, 1:])
+    return np.where(np.array(grid.periodic)[:, np.newaxis], ends, around)
+
+
+def _mark_resultant(axes: Axes, solution: Solution, scales: Sequence[Scale]) -> None:
+    """Draw a cross where the resultant force acts."""
+    at = [length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)]
+    for colour, width in (("black", 2.6), ("white", 1.2)):
+        axes.plot(
+            *at, color=colour, linestyle="none", marker="+", markersize=8, markeredgewidth=width
+        )
+
+
+def _title(solution: Solution) -> str:
+    """Return what the map shows besides the pressure."""
+    periodic = solution.report.grid.periodic
+    if solution.contact_area <= 0:
+        return "nothing touches"
+    if all(periodic):
+        return f"{100 * solution.contact_share:.3g} % of the area touches"
+    if any(periodic):
+        return f"periodic along {'xy'[periodic.index(True)]}"
+    return "the cross marks the resultant force"
 
 
 def _cells_within(

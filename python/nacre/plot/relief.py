@@ -139,11 +139,11 @@ def _contact(solution: Solution) -> tuple[npt.NDArray[np.float64], ...]:
     """Return x, y and pressure of the contact and two cells around it; thinned out if many."""
     if solution.report.grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a relief, got a line")
-    pressure, parts = solution.pressure, []
+    pressure, cells_along = solution.pressure, []
     for axis, cells in enumerate(pressure.shape):
         loaded = np.flatnonzero(pressure.any(axis=1 - axis))
         low, high = (loaded[0] - 2, loaded[-1] + 2) if loaded.size else (0, cells - 1)
         low, high = max(low, 0), min(high, cells - 1)
         count = min(MOST, high - low + 1)
-        parts.append(np.unique(np.linspace(low, high, count).round().astype(int)))
-    return solution.x[parts[0]], solution.y[parts[1]], pressure[np.ix_(*parts)]
+        cells_along.append(np.unique(np.linspace(low, high, count).round().astype(int)))
+    return solution.x[cells_along[0]], solution.y[cells_along[1]], pressure[np.ix_(*cells_along)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal, Unpack
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +40,64 @@ LABELS = {
     "tension": "largest principal stress",
 }
 """Labels of the quantities that can be drawn."""
+SIGNED_QUANTITIES = ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
+"""Quantities that have either sign."""
+
+
+class _Section(NamedTuple):
+    """Values of a quantity of stress in a vertical plane, and how they are drawn."""
+
+    quantity: str
+    values: Array
+    along: str
+    sides: Array
+    """Edges of the cells along x or y [m]."""
+    edges: Array
+    """Edges of the cells over the depth [m]."""
+    ends: tuple[float, float]
+    """Ends of the picture along x or y [m]."""
+    across: Scale
+    """Scale along x or y."""
+    interfaces: Sequence[float]
+    peak: tuple[float, float]
+    """Place of the largest value: along x or y, and depth [m]."""
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the values."""
+        return Scale.of(self._highest, "Pa")
+
+    @property
+    def _highest(self) -> float:
+        inside = np.isfinite(self.values)
+        return float(np.abs(self.values).max(initial=0.0, where=inside))
+
+    def draw(self, axes: Axes, bottom: float, down: Scale) -> QuadMesh:
+        """Draw the values to a depth, lines at the interfaces and a cross at the largest value."""
+        across, scale = self.across, self.scale
+        signed = self.quantity in SIGNED_QUANTITIES
+        largest = scale.factor * self._highest or 1.0
+        mesh = axes.pcolormesh(
+            across.factor * self.sides,
+            down.factor * self.edges,
+            scale.factor * self.values,
+            cmap=SIGNED if signed else COLOURMAP,
+            vmin=-largest if signed else 0.0,
+            vmax=largest,
+            rasterized=True,
+        )
+        axes.grid(visible=False)
+        for interface in self.interfaces:
+            if interface < bottom:
+                for colour, width in (("white", 2.0), ("black", 0.9)):
+                    axes.axhline(down.factor * interface, color=colour, linewidth=width)
+        peak = (across.factor * self.peak[0], down.factor * self.peak[1])
+        for colour, width in (("black", 2.6), ("white", 1.2)):
+            axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
+        axes.set(xlabel=f"{self.along} [{across.unit}]", ylabel=f"z [{down.unit}]")
+        axes.set_xlim(across.factor * self.ends[0], across.factor * self.ends[1])
+        axes.set_ylim(down.factor * bottom, 0.0)
+        return mesh
 
 
 def stress_section(
@@ -115,52 +173,27 @@ def stress_section(
     sides = grid.center[axis] + grid.size[axis] * np.linspace(-0.5, 0.5, len(centres) + 1)
     low, high = np.clip(around(solution, axis, bottom), sides[0], sides[-1])
     (across, down), same = lengths([(low, high), (0.0, bottom)])
-    inside = np.isfinite(values)
-    if not inside.any():
+    if not np.isfinite(values).any():
         raise ValueError(f"at must be in the body, whose ends are {half_space.ends}, got {at:g}")
-    highest = float(np.abs(values).max(initial=0.0, where=inside))
-    scale = Scale.of(highest, "Pa")
-    signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
-    largest = scale.factor * highest or 1.0
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
-
-    def draw_section(axes: Axes, bottom: float, down: Scale) -> QuadMesh:
-        mesh = axes.pcolormesh(
-            across.factor * sides,
-            down.factor * edges,
-            scale.factor * values,
-            cmap=SIGNED if signed else COLOURMAP,
-            vmin=-largest if signed else 0.0,
-            vmax=largest,
-            rasterized=True,
-        )
-        axes.grid(visible=False)
-        for interface in half_space.interfaces:
-            if interface < bottom:
-                for colour, width in (("white", 2.0), ("black", 0.9)):
-                    axes.axhline(down.factor * interface, color=colour, linewidth=width)
-        peak = (across.factor * centres[column], down.factor * field.z[row])
-        for colour, width in (("black", 2.6), ("white", 1.2)):
-            axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
-        axes.set(xlabel=f"{along} [{across.unit}]", ylabel=f"z [{down.unit}]")
-        axes.set_xlim(across.factor * low, across.factor * high)
-        axes.set_ylim(down.factor * bottom, 0.0)
-        return mesh
-
+    peak = centres[column], field.z[row]
+    section = _Section(
+        quantity, values, along, sides, edges, (low, high), across, half_space.interfaces, peak
+    )
     enlarged = enlarged_depth(half_space.interfaces, bottom) if axes is None else 0.0
     with styled():
         axes = axes or new_axes(0.75, 0.75 if enlarged else 0.45)
-        mesh = draw_section(axes, bottom, down)
-        colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
+        mesh = section.draw(axes, bottom, down)
+        colourbar(axes, mesh, f"{LABELS[quantity]} [{section.scale.unit}]")
         if enlarged:
             halves = axes.figure.add_gridspec(2)
             axes.set_subplotspec(halves[0])
             below = axes.figure.add_subplot(halves[1])
-            draw_section(below, enlarged, Scale.of(enlarged, "m"))
+            section.draw(below, enlarged, Scale.of(enlarged, "m"))
             axes.set_xlabel("")
             axes.tick_params(labelbottom=False)
-        other = "y" if along == "x" else "x"
-        title = f"at {other} = {written(at, 'm', 3)}; the cross marks the largest value, "
+        normal = "y" if along == "x" else "x"
+        title = f"at {normal} = {written(at, 'm', 3)}; the cross marks the largest value, "
         title += written(float(np.nanmax(values)), "Pa", 3)
         if same:
             axes.set_aspect("equal")
@@ -305,11 +338,11 @@ def _edges(body: HalfSpace, bottom: float, name: str, count: object) -> Array:
     if enlarged := enlarged_depth(body.interfaces, bottom):
         faces.insert(-1, enlarged)
     least = max(4, rows // 4) if enlarged else 4
-    parts = [
+    edges = [
         np.linspace(top, end, max(least, round(rows * (end - top) / bottom)), endpoint=False)
         for top, end in pairwise(faces)
     ]
-    return np.concatenate([*parts, [bottom]])
+    return np.concatenate([*edges, [bottom]])
 
 
 def around(solution: Solution, axis: int, width: float) -> Array:

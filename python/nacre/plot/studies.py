@@ -141,7 +141,7 @@ def _refined(
         for side in positions
     ]
     coarse, dense = (
-        [part.ravel() / span for part, span in zip(np.meshgrid(*mesh), spans, strict=True)]
+        [axis.ravel() / span for axis, span in zip(np.meshgrid(*mesh), spans, strict=True)]
         for mesh in (positions, fine)
     )
     smooth = CubicTriInterpolator(Triangulation(*coarse), np.ravel(values), kind="min_E")

@@ -34,9 +34,9 @@ def _section(state: WearState, values: Array) -> tuple[Array, Array]:
     return (grid.y, values[i]) if grid.is_line else (grid.x, values[:, j])
 
 
-def _scale(parts: Iterable[Array], unit: str) -> Scale:
+def _scale(arrays: Iterable[Array], unit: str) -> Scale:
     """Return the scale of the largest of these numbers."""
-    return Scale.of(max(float(np.abs(part).max()) for part in parts), unit)
+    return Scale.of(max(float(np.abs(numbers).max()) for numbers in arrays), unit)
 
 
 def wear(history: WearHistory, axes: Axes | None = None) -> Axes:

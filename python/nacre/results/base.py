@@ -60,13 +60,13 @@ def _plain(value: object) -> object:
     return values.encode(value)
 
 
-def same(one: object, other: object) -> bool:
+def same(first: object, second: object) -> bool:
     """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
-    return type(one) is type(other) and bool(one == other)
+    if isinstance(first, dict) and isinstance(second, dict):
+        return first.keys() == second.keys() and all(same(first[key], second[key]) for key in first)
+    if isinstance(first, np.ndarray) and isinstance(second, np.ndarray):
+        return np.array_equal(first, second, equal_nan=True)
+    return type(first) is type(second) and bool(first == second)
 
 
 def has_friction(solution: object) -> bool:
@@ -125,17 +125,17 @@ def as_text(kind: str, state: Mapping[str, object], *, infinite: bool = False) -
 
 def _fitted(kind: object, value: object) -> object:
     """Return plain data as a value of the type of a field, or raise a `TypeError`."""
-    origin, parts = get_origin(kind), get_args(kind)
-    if NoneType in parts and origin is not tuple:  # a type or None
-        return None if value is None else _fitted(parts[0], value)
-    if origin is Literal and any(same(value, word) for word in parts):
+    origin, types = get_origin(kind), get_args(kind)
+    if NoneType in types and origin is not tuple:  # a type or None
+        return None if value is None else _fitted(types[0], value)
+    if origin is Literal and any(same(value, word) for word in types):
         return value
     if origin is tuple and isinstance(value, list | tuple):
-        kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
+        kinds = types[:1] * len(value) if types[1:] == (...,) else types
         if len(kinds) == len(value):
             return tuple(map(_fitted, kinds, value))
     if origin is dict and isinstance(value, dict):
-        return {_fitted(parts[0], key): _fitted(parts[1], item) for key, item in value.items()}
+        return {_fitted(types[0], key): _fitted(types[1], item) for key, item in value.items()}
     if kind is float and type(value) is int:
         return float(value)
     if kind in (bool, int, float, str) and type(value) is kind:

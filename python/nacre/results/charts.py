@@ -144,8 +144,8 @@ def contact_map(result: Peaked, values: Array, axis: Axis, caption: str) -> Map:
     pressure, places = result.pressure, (result.x, result.y)
     cells = [slice(low, high + 1) for low, high in display.loaded_parts(pressure)]
     x, y = (
-        Axis(name, "m", (float(side[part][0] - step / 2), float(side[part][-1] + step / 2)))
-        for name, side, part, step in zip("xy", places, cells, result.grid.spacing, strict=True)
+        Axis(name, "m", (float(side[span][0] - step / 2), float(side[span][-1] + step / 2)))
+        for name, side, span, step in zip("xy", places, cells, result.grid.spacing, strict=True)
     )
     loaded = np.where(pressure > 0, values, np.nan)[cells[0], cells[1]]
     return Map(caption, loaded, (x, y, axis))

@@ -238,13 +238,13 @@ def text(rows: Sequence[Row], warnings: Sequence[str]) -> str:
     return printable("\n".join([*lines, *(f"warning: {warning}" for warning in warnings)]))
 
 
-def part(part: InLayer | AtInterface) -> str:
+def part(place: InLayer | AtInterface) -> str:
     """Return number and name of a layer, or number of an interface, in a summary."""
-    if isinstance(part, AtInterface):
-        return f"interfaces[{part.interface}]"
-    if part.depths[1] == np.inf:
+    if isinstance(place, AtInterface):
+        return f"interfaces[{place.interface}]"
+    if place.depths[1] == np.inf:
         return "the substrate"
-    return layer_name(part.layer, part.name)
+    return layer_name(place.layer, place.name)
 
 
 def layer_name(number: int, name: str | None) -> str:
@@ -297,13 +297,13 @@ def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
 
 def loaded_parts(pressure: npt.NDArray[np.float64]) -> list[tuple[int, int]]:
     """Return the first and last cells along x and y of the contact and a margin around it."""
-    parts = []
+    extents = []
     for axis, cells in enumerate(pressure.shape):
         loaded = np.flatnonzero(pressure.any(axis=1 - axis))
         low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
         margin = 1 + (high - low) // 10
-        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
-    return parts
+        extents.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    return extents
 
 
 def figure_of(axes: Axes) -> Figure:
@@ -331,7 +331,7 @@ def estimated(solution: Estimated, name: str, unit: str, digits: int = 4) -> str
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
         return f"{number(value, unit, digits)} (error not known: see the warning)"
-    return number(value, unit, digits) + error_share(error, value)
+    return number(value, unit, digits) + plus_minus(error, value)
 
 
 def estimated_row(solution: Estimated, quantity: Quantity, digits: int = 4) -> Row:
@@ -342,7 +342,7 @@ def estimated_row(solution: Estimated, quantity: Quantity, digits: int = 4) -> R
     return Row(name, quantity.label, text, getattr(solution, name), unit, error)
 
 
-def error_share(error: float, value: float) -> str:
+def plus_minus(error: float, value: float) -> str:
     """Return what is said of an error of a value: nothing where it is rounding."""
     share = abs(error / value) if value else 0.0
     return f" ± {rounded(100 * share, 1)} %" if share > NOISE else ""

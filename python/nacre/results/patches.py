@@ -99,7 +99,7 @@ def crosses(cells: npt.NDArray[np.bool_], grid: core.Grid, axis: int) -> bool:
             continue
         place[start] = 0
         order, before = breadth_first_order(graph, start, directed=False)
-        for part in order[1:]:
-            step = next(s for b, s in neighbours[int(before[part])] if b == part)
-            place[int(part)] = place[int(before[part])] + step
+        for node in order[1:]:
+            step = next(s for b, s in neighbours[int(before[node])] if b == node)
+            place[int(node)] = place[int(before[node])] + step
     return any(place[a] + step != place[b] for a in neighbours for b, step in neighbours[a])

@@ -120,10 +120,13 @@ def text(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", core.NacreWarning)
         judgements = list(verdicts(results))
-        parts = [results[0]._sections(**(stress or {})), *(one._sections() for one in results[1:])]
-    notes = [Sections("", inputs, warnings=[str(one.message) for one in caught])]
+        sections = [
+            results[0]._sections(**(stress or {})),
+            *(result._sections() for result in results[1:]),
+        ]
+    notes = [Sections("", inputs, warnings=[str(warning.message) for warning in caught])]
     today = datetime.date.today().isoformat()
-    return page(name, today, [*parts, *notes], judgements, case)
+    return page(name, today, [*sections, *notes], judgements, case)
 
 
 def writer(result: Reported) -> dict[str, Callable[[Path], None]]:
@@ -136,8 +139,8 @@ def verdicts(results: Sequence[Reported]) -> Iterator[Verdict]:
 
     One that has to be computed stands only where there is no other.
     """
-    members = [one for one in (getattr(result, "verdict", None) for result in results) if one]
-    properties = {one.words: one for one in reversed(members) if not callable(one)}
+    members = list(filter(None, (getattr(result, "verdict", None) for result in results)))
+    properties = {verdict.words: verdict for verdict in reversed(members) if not callable(verdict)}
     yield from reversed(properties.values())
     for compute in members if not properties else ():
         with suppress(ValueError):  # of contacts whose stresses are not known
@@ -147,27 +150,27 @@ def verdicts(results: Sequence[Reported]) -> Iterator[Verdict]:
 def page(
     name: str,
     date: str,
-    parts: Sequence[Sections],
+    sections: Sequence[Sections],
     judgements: Sequence[Verdict],
     case: str | None = None,
 ) -> str:
     """Return the page of a report."""
-    several = sum(bool(part.title) for part in parts) > 1
+    several = sum(bool(section.title) for section in sections) > 1
 
     def each(name: str, block: Callable[..., object]) -> list[Markup]:
         """Return a block of each part, with its title where there are several."""
         return [
-            markup("part", title=_heading(part.title * several), content=block(content))
-            for part in parts
-            if (content := getattr(part, name))
+            markup("part", title=_heading(section.title * several), content=block(content))
+            for section in sections
+            if (content := getattr(section, name))
         ]
 
-    texts = dict.fromkeys(text for part in parts for text in part.warnings)
+    texts = dict.fromkeys(text for section in sections for text in section.warnings)
     chapters = {
         "Given": each("inputs", _pairs),
         "Results": each("numbers", _pairs),
         "Pictures": each("pictures", _figures),
-        "Parts": each("tables", lambda members: [_table(one) for one in members]),
+        "Parts": each("tables", lambda members: [_table(member) for member in members]),
         "Model and limits": each("model", _pairs),
         "Warnings": [markup("note", text=text) for text in texts or ["no warnings"]],
         "Case file": case and markup("case", text=case),
@@ -176,10 +179,10 @@ def page(
     return markup(
         "page",
         style=Markup(svg.STYLE),
-        title=parts[0].title[:1].upper() + parts[0].title[1:],
+        title=sections[0].title[:1].upper() + sections[0].title[1:],
         name=name,
         source=tables.SOURCE,
-        verdicts=[_verdict(one) for one in judgements],
+        verdicts=[_verdict(verdict) for verdict in judgements],
         head=_pairs(head),
         chapters=[
             markup("chapter", title=title, content=content)
@@ -210,7 +213,7 @@ def _leaves(path: str, value: object, units: Mapping[str, str]) -> Iterator[Row]
             arguments = {**arguments, "center": _without_rounding(arguments)}
         for key, item in arguments.items():
             yield from _leaves(f"{path}.{key}", item, units)
-    elif isinstance(value, list) and not all(isinstance(one, float | int | None) for one in value):
+    elif isinstance(value, list) and not all(isinstance(v, float | int | None) for v in value):
         for number, item in enumerate(value):
             yield from _leaves(f"{path}[{number}]", item, units)
     elif value is not None and not (isinstance(value, list) and all(v is None for v in value)):
@@ -228,7 +231,7 @@ def _without_rounding(grid: Mapping[str, Any]) -> object:
 
 def _leaf(value: object, unit: str) -> str:
     if isinstance(value, list):
-        texts = ["–" if one is None else _leaf(one, unit) for one in value]
+        texts = ["–" if entry is None else _leaf(entry, unit) for entry in value]
         more = f" and {len(texts) - MOST_LISTED} more" if len(texts) > MOST_LISTED else ""
         return ", ".join(texts[:MOST_LISTED]) + more
     if isinstance(value, bool):
@@ -296,7 +299,7 @@ def _column(
 
 def drawn(pictures: Iterable[charts.Picture]) -> list[Drawing]:
     """Return pictures, drawn in the units that are set now."""
-    return [Drawing(one.caption, svg.drawing(one)) for one in pictures]
+    return [Drawing(picture.caption, svg.drawing(picture)) for picture in pictures]
 
 
 def notebook_picture(pictures: Sequence[charts.Picture]) -> bytes | None:
@@ -317,7 +320,8 @@ def _pairs(rows: Rows) -> Markup:
 
 def _figures(pictures: Iterable[Drawing]) -> Markup:
     figures = [
-        markup("figure", drawing=Markup(one.drawing), caption=one.caption) for one in pictures
+        markup("figure", drawing=Markup(picture.drawing), caption=picture.caption)
+        for picture in pictures
     ]
     return markup("figures", figures=figures)
 
@@ -325,16 +329,16 @@ def _figures(pictures: Iterable[Drawing]) -> Markup:
 def _table(members: Table) -> Markup:
     """Return a table, in parts as wide as a page, each with the first column."""
     step, widest = MOST_COLUMNS - 1, max(len(members.head), 2)
-    parts = []
+    blocks = []
     for first in range(1, widest, step):
         head, *rows = (
             [line[0], *line[first : first + step]] for line in (members.head, *members.rows)
         )
-        parts.append(
+        blocks.append(
             markup("table", rows=[_row("head", head), *(_row("cell", row) for row in rows)])
         )
     notes = [markup("note", text=note) for note in members.notes]
-    return markup("part", title=_heading(members.title), content=[*parts, *notes])
+    return markup("part", title=_heading(members.title), content=[*blocks, *notes])
 
 
 def _row(kind: str, cells: Iterable[str]) -> Markup:

@@ -118,9 +118,9 @@ def _chart(chart: Chart, size: tuple[float, float]) -> str:
     curves, axes, inset = chart.curves, chart.axes, chart.inset
     points = [_thinned(curve, axes[0].ends or (-math.inf, math.inf)) for curve in curves]
     low, high = _ends(
-        [part for _, part in points], has_zero=axes[1].has_zero and axes[1].scale == "linear"
+        [heights for _, heights in points], has_zero=axes[1].has_zero and axes[1].scale == "linear"
     )
-    x_ends = axes[0].ends or _ends([part for part, _ in points])
+    x_ends = axes[0].ends or _ends([places for places, _ in points])
     colours = _colours(curves)
     labels = [(k, curve.label) for k, curve in enumerate(curves) if curve.label]
     columns, column = 1, 40 + LETTER * max((len(label) for _, label in labels), default=0)
@@ -129,17 +129,17 @@ def _chart(chart: Chart, size: tuple[float, float]) -> str:
     x = Side(axes[0], x_ends, LEFT, size[0] - RIGHT)
     y_ends = axes[1].ends or (low, high * (1.0 if inset is None else ABOVE))
     y = Side(axes[1], y_ends, size[1] - BOTTOM, TOP + LINE * math.ceil(len(labels) / columns))
-    parts = [_frame(x, y)]
-    parts += [
+    elements = [_frame(x, y)]
+    elements += [
         _curve(curve.look, colour, x, y, places)
         for curve, colour, places in zip(curves, colours, points, strict=True)
     ]
     for mark in x.at(np.array([place for place in chart.marks if x_ends[0] < place < x_ends[1]])):
-        parts.append(f"<path class='mark' d='M{mark:.1f} {y.start:.1f}V{y.end:.1f}'/>")
+        elements.append(f"<path class='mark' d='M{mark:.1f} {y.start:.1f}V{y.end:.1f}'/>")
     for number, (k, label) in enumerate(labels):
         left, top = LEFT + column * (number % columns), TOP + LINE * (number // columns)
-        parts.append(f"<path {colours[k]} stroke-width='2' d='M{left:.6g} {top}h18'/>")
-        parts.append(_text(label, left + 24, top + 4))
+        elements.append(f"<path {colours[k]} stroke-width='2' d='M{left:.6g} {top}h18'/>")
+        elements.append(_text(label, left + 24, top + 4))
     if inset is not None:
         small = (INSET * size[0], INSET * size[1])
         corner = f"x='{x.end - small[0]:.1f}' y='{y.end + 2:.1f}'"
@@ -147,8 +147,8 @@ def _chart(chart: Chart, size: tuple[float, float]) -> str:
         unnamed = [curve._replace(label="") for curve in curves]
         inner = _chart(chart._replace(curves=unnamed, axes=units, inset=None), small)
         size_of = f"width='{small[0]}' height='{small[1]}'"
-        parts.append(inner.replace("<svg", f"<svg {corner} {size_of}", 1))
-    return _picture(parts, size)
+        elements.append(inner.replace("<svg", f"<svg {corner} {size_of}", 1))
+    return _picture(elements, size)
 
 
 def _colours(curves: Sequence[Curve]) -> list[str]:
@@ -169,24 +169,24 @@ def _ring(ring: Bars) -> str:
     x, y = WIDTH / 2, TOP + LINE * (len(labels) + 1) + OUTER
     radius = Side(ring.axis, (0.0, float(heights.max(initial=0.0)) or 1.0), INNER, OUTER)
     width = min(7.0, 0.7 * 2 * math.pi * INNER / (count * series))
-    parts = [_text(radius.label, x, TOP + 4, "middle")]
+    elements = [_text(radius.label, x, TOP + 4, "middle")]
     for length, number in radius.ticks():
-        parts.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
-        parts.append(_text(number, x + 3, y - length - 2))
+        elements.append(f"<circle class='frame' cx='{x}' cy='{y}' r='{length:.1f}'/>")
+        elements.append(_text(number, x + 3, y - length - 2))
     for k, label in enumerate(filter(None, labels)):
-        parts.append(f"<path class='c{k}' stroke-width='7' d='M4 {TOP + LINE * (k + 1)}h10'/>")
-        parts.append(_text(label, 20, TOP + LINE * (k + 1) + 4))
+        elements.append(f"<path class='c{k}' stroke-width='7' d='M4 {TOP + LINE * (k + 1)}h10'/>")
+        elements.append(_text(label, 20, TOP + LINE * (k + 1) + 4))
     shifts = 1.2 * width / INNER * (np.arange(series) - (series - 1) / 2)
     for (j, k), end in np.ndenumerate(radius.at(heights)):
         c, s = math.cos(places[j, k] + shifts[k]), -math.sin(places[j, k] + shifts[k])
         ends = f"M{x + INNER * c:.1f} {y + INNER * s:.1f}L{x + end * c:.1f} {y + end * s:.1f}"
         if end > INNER:
-            parts.append(f"<path class='c{k}' stroke-width='{width:.1f}' d='{ends}'/>")
+            elements.append(f"<path class='c{k}' stroke-width='{width:.1f}' d='{ends}'/>")
         if k == 0 and j % math.ceil(count / MOST_NUMBERS) == 0:
             across, down = math.cos(places[j, 0]), -math.sin(places[j, 0])
             place = x + (INNER - 12) * across, y + (INNER - 12) * down + 4
-            parts.append(_text(f"{j}", *place, "middle"))
-    return _picture(parts, (WIDTH, y + OUTER + LINE))
+            elements.append(_text(f"{j}", *place, "middle"))
+    return _picture(elements, (WIDTH, y + OUTER + LINE))
 
 
 def _map(cells: Map) -> str:
@@ -201,14 +201,14 @@ def _map(cells: Map) -> str:
     x = Side(axes[0], (x_low, x_high), LEFT, LEFT + width)
     y = Side(axes[1], (y_low, y_high), TOP + height, TOP)
     colour, right = Side(axes[2], (low, high), y.start, y.end), x.end + RIGHT
-    parts = [
+    elements = [
         _cells((values - low) / ((high - low) or 1.0), LEFT, TOP, width, height),
         _cells(np.linspace(0.0, 1.0, 128)[None, :], right, TOP, 12, height),
         _frame(x, y, "frame"),
         *(_text(number, right + 16, place + 4) for place, number in colour.ticks()),
         _text(colour.label, right + 12, TOP + height + 34, "end"),
     ]
-    return _picture(parts, (WIDTH, TOP + height + BOTTOM))
+    return _picture(elements, (WIDTH, TOP + height + BOTTOM))
 
 
 def _cells(shares: Array, x: float, y: float, width: float, height: float) -> str:
@@ -260,9 +260,9 @@ def _thinned(curve: Curve, ends: Ends) -> tuple[Array, Array]:
     return x[keep], y[keep]
 
 
-def _ends(parts: Sequence[Array], has_zero: bool = False) -> Ends:
+def _ends(data: Sequence[Array], has_zero: bool = False) -> Ends:
     """Return the ends of numbers; with 0 among them, they have room beyond."""
-    values = np.concatenate([*parts, [0.0]] if has_zero or not any(map(np.size, parts)) else parts)
+    values = np.concatenate([*data, [0.0]] if has_zero or not any(map(np.size, data)) else data)
     low, high = float(values.min()), float(values.max())
     if low == high:  # one number, or none
         low, high = min(low, 0.0), max(high, 0.0) or 1.0
@@ -274,17 +274,17 @@ def _frame(x: Side, y: Side, paper: str = "frame paper") -> str:
     """Return the frame of a picture, with ticks and labels."""
     width, height = x.end - x.start, y.start - y.end
     size = f"width='{width:.1f}' height='{height:.1f}'"
-    parts = [f"<rect class='{paper}' x='{x.start}' y='{y.end}' {size}/>"]
+    elements = [f"<rect class='{paper}' x='{x.start}' y='{y.end}' {size}/>"]
     for place, number in x.ticks():
-        parts.append(f"<path class='frame' d='M{place:.1f} {y.start:.1f}v4'/>")
-        parts.append(_text(number, place, y.start + 16, "middle"))
+        elements.append(f"<path class='frame' d='M{place:.1f} {y.start:.1f}v4'/>")
+        elements.append(_text(number, place, y.start + 16, "middle"))
     for place, number in y.ticks():
-        parts.append(f"<path class='frame' d='M{x.start:.1f} {place:.1f}h-4'/>")
-        parts.append(_text(number, x.start - 7, place + 4, "end"))
-    parts.append(_text(x.label, (x.start + x.end) / 2, y.start + 34, "middle"))
+        elements.append(f"<path class='frame' d='M{x.start:.1f} {place:.1f}h-4'/>")
+        elements.append(_text(number, x.start - 7, place + 4, "end"))
+    elements.append(_text(x.label, (x.start + x.end) / 2, y.start + 34, "middle"))
     middle = (y.start + y.end) / 2
     turned = f"<g transform='rotate(-90 12 {middle:.1f})'>"
-    return "".join(parts) + turned + _text(y.label, 12, middle + 2, "middle") + "</g>"
+    return "".join(elements) + turned + _text(y.label, 12, middle + 2, "middle") + "</g>"
 
 
 def _curve(look: str, colour: str, x: Side, y: Side, points: tuple[Array, Array]) -> str:
@@ -309,5 +309,5 @@ def alone(drawing: str) -> bytes:
     return drawing.replace("<svg", head, 1).replace(">", f"><style>{STYLE}</style>", 1).encode()
 
 
-def _picture(parts: Sequence[str], size: tuple[float, float]) -> str:
-    return f"<svg viewBox='0 0 {size[0]:.0f} {size[1]:.0f}'>{''.join(parts)}</svg>"
+def _picture(elements: Sequence[str], size: tuple[float, float]) -> str:
+    return f"<svg viewBox='0 0 {size[0]:.0f} {size[1]:.0f}'>{''.join(elements)}</svg>"

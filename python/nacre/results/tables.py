@@ -101,9 +101,9 @@ def columns(result: HasQuantities) -> dict[str, Array]:
     """Return a column for each field of a contact, two of a vector, by their headings."""
     arrays = {}
     for row, values in fields(result).items():
-        parts = zip("xy", values, strict=True) if row.dims == VECTOR else [("", values)]
-        for axis, part in parts:
-            arrays[heading(row, result, axis)] = part.astype(int) if part.dtype == bool else part
+        components = zip("xy", values, strict=True) if row.dims == VECTOR else [("", values)]
+        for axis, data in components:
+            arrays[heading(row, result, axis)] = data.astype(int) if data.dtype == bool else data
     return arrays
 
 
@@ -141,18 +141,18 @@ def write_cells(result: Gridded, path: Path) -> None:
     _write(result, path, {"": (slice(None), slice(None))}, **comments)
 
 
-def _write(result: Gridded, path: Path, parts: Mapping[str, Part], **comments: object) -> None:
+def _write(result: Gridded, path: Path, blocks: Mapping[str, Part], **comments: object) -> None:
     """Write parts of the grid, each with its name in a column of its own if it has one."""
     x, y = np.meshgrid(result.x, result.y, indexing="ij")
     positions = {f"{name} [{symbol('m')}]": side for name, side in (("x", x), ("y", y))}
     table = positions | columns(result)
 
     def rows() -> Iterator[list[object]]:
-        for name, part in parts.items():
-            values = (np.ravel(column[part]).tolist() for column in table.values())
+        for name, block in blocks.items():
+            values = (np.ravel(column[block]).tolist() for column in table.values())
             yield from ([name, *row] if name else list(row) for row in zip(*values, strict=True))
 
-    head = [*(["along"] if "x" in parts else []), *table]
+    head = [*(["along"] if "x" in blocks else []), *table]
     write_rows(path, [head, *rows()], **comments)
 
 

@@ -73,8 +73,8 @@ def write_surface(result: Gridded, path: Path) -> None:
     cells: dict[str, npt.NDArray[np.generic] | tuple[npt.NDArray[np.generic], ...]] = {}
     for row, values in fields(result).items():
         if row.dims == VECTOR:
-            parts = [cell_data(part) for part in values]
-            cells[row.name] = (*parts, np.zeros_like(parts[0]))
+            components = [cell_data(component) for component in values]
+            cells[row.name] = (*components, np.zeros_like(components[0]))
         else:
             cells[row.name] = cell_data(values)
     gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
@@ -121,17 +121,17 @@ def _planes(
     elastic = isinstance(plan.body.substrate, core.Elastic)
     below = ~on[-1] if not elastic else np.full(depths.shape, True)
     stress_options = {name: value for name, value in options.items() if name not in plan_options}
-    parts = []
+    stresses = []
     if above.any():
-        parts.append(plan.stress(depths[above], side="above", **stress_options))
+        stresses.append(plan.stress(depths[above], side="above", **stress_options))
     if below.any():
-        parts.append(plan.stress(depths[below], side="below", **stress_options))
-    z = np.concatenate([part.z for part in parts])
+        stresses.append(plan.stress(depths[below], side="below", **stress_options))
+    z = np.concatenate([stress.z for stress in stresses])
     order = np.argsort(z, kind="stable")  # the side above comes first
     names = [*COMPONENTS, "von_mises", "max_shear"]
     names += ["ux", "uy", "uz"] if options.get("displacement") else []
-    planes = {name: [getattr(part, name) for part in parts] for name in names}
-    planes["tension"] = [part.principal[0] for part in parts]
+    planes = {name: [getattr(stress, name) for stress in stresses] for name in names}
+    planes["tension"] = [stress.principal[0] for stress in stresses]
     return z[order], {
         name: np.asfortranarray(np.concatenate(fields)[order].transpose(1, 2, 0))
         for name, fields in planes.items()
