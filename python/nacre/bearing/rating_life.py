@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from nacre.results.shown import TableResult
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
+    from nacre.bearing.pair import PairLife
     from nacre.bearing.solution import BearingSolution
 
 EDGES = {
@@ -76,7 +77,7 @@ class BearingLife(TableResult):
     _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
-        *("viscosity_ratio", "contamination_factor"),
+        *("viscosity_ratio", "contamination_factor", "required_life"),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
@@ -108,6 +109,10 @@ class BearingLife(TableResult):
     """The same by the standard's simple formula, C_0/22 or C_0/8.2 [N]."""
     model: str
     """Model in words."""
+    required_life: float | None = None
+    """Life that is required [h], which decides the verdict; None without."""
+
+    _of: ClassVar[str] = ""
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -119,7 +124,7 @@ class BearingLife(TableResult):
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict: how long the bearing lives; no life is required of it."""
+        """Verdict: how long the bearing lives; bad below `required_life`, good from 1.5 of it."""
         return life_verdict(self)
 
     def _rows(self) -> list[Row]:
@@ -287,6 +292,18 @@ def life_of(
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
     return _combined(solution.bearing, terms, rates, (float(reliability), factor), words)
+
+
+Life = TypeVar("Life", "BearingLife", "PairLife")
+
+
+def required(life: Life, hours: float | None) -> Life:
+    """Return a life with the required one [h], checked."""
+    if hours is None:
+        return life
+    if not math.isfinite(life.hours) and math.isfinite(life.revolutions):
+        raise ValueError("required_life must be given with a speed, got none: there are no hours")
+    return replace(life, required_life=above("required_life", hours))
 
 
 def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:

@@ -185,6 +185,7 @@ class BearingLife(Table):
         description="Load spectrum in place of the solved load: tables with share, force and "
         "speed, whose lives add up by Miner's rule.",
     )
+    required_life: Number | None = Field(None, description=LIFE["required_life"])
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords of `BearingSolution.life`."""

@@ -211,6 +211,7 @@ def test_each_number_of_a_case_has_a_unit() -> None:
         *("count", "rows", "poisson", "rating_factor", "osculation", "contact_angle", "tolerance"),
         *("max_iterations", "cells", "tilt", "rotation", "speed", "end_factor", "k1", "k2"),
         *("film_ratio", "viscosity_ratio", "contamination", "reliability", "share"),
+        "required_life",
     }
 
     def numbers(table: Any, path: tuple[str, ...]) -> set[str]:

@@ -76,7 +76,8 @@ def test_a_state_is_plain_data_that_gives_the_result_back(kind: str) -> None:
 LATER = {"rolling_direction", "uncertainty", "doubt"}
 """Keys that states of format 1 did not have at first: without them they are None."""
 LATER_OF = {
-    "StressSummary": {"friction"},
+    "StressSummary": {"friction", "caution", "bond_strength"},
+    "fatigue": {"caution"},
     "FrictionReport": {"coupling_energy", "warnings"},
     "shakedown map": {"warnings"},
 }
