@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -235,6 +236,7 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     rows, life = _selected(solution, BEARING_ROWS), case.life()
     if life is not None:
         rated = solution.life(**life)
+        solution = replace(solution, _life=rated)
         rows += [*rated._rows(), *rated._remarks()]
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):

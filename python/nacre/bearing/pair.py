@@ -10,7 +10,7 @@ import math
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, Unpack, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,7 @@ from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
+from nacre.bearing.rating_life import required
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
@@ -55,7 +56,7 @@ from nacre.bearing.solving import (
     solve_bearing,
     solved_contacts,
 )
-from nacre.bearing.verdict import pair_verdict
+from nacre.bearing.verdict import life_verdict, pair_verdict
 from nacre.results import display, files
 from nacre.results.charts import Picture
 from nacre.results.quantities import AXIS, frozen, quantity
@@ -466,6 +467,24 @@ class PairLife(TableResult):
     """Life of the second bearing in revolutions; infinite without load."""
     model: str
     """Model in words."""
+    reliability: float = 0.9
+    """Share of pairs that reach the life."""
+    modification_factor: float | None = None
+    """Factor a_ISO of the bearing that lives shorter; None without lubrication."""
+    required_life: float | None = None
+    """Life that is required [h], which decides the verdict; None without."""
+
+    _LATER = ("reliability", "modification_factor", "required_life")
+    _of: ClassVar[str] = "both bearings, "
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        return super()._restored(state | {"reliability": state.get("reliability") or 0.9})
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict: how long both live; bad below `required_life`, good from 1.5 of it."""
+        return life_verdict(self)
 
     def _rows(self) -> list[Row]:
         rows = []
@@ -505,6 +524,7 @@ class PairSolution(Equilibrium):
     """
 
     _TITLE = "pair of bearings"
+    _DERIVED = ("_life",)
 
     pair: Pair
     """Pair that was solved."""
@@ -526,6 +546,8 @@ class PairSolution(Equilibrium):
     """Stiffness of the pair ``(5, 5)``, which `stiffness` returns."""
     report: BearingReport
     """Report: how the solution came about, with the warnings of both bearings."""
+    _life: PairLife | None = field(default=None, repr=False)
+    """Life that was asked for, which the verdict has."""
 
     @property
     def bearings(self) -> tuple[BearingSolution, BearingSolution]:
@@ -534,8 +556,8 @@ class PairSolution(Equilibrium):
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict: those on both bearings, of which the worst decides."""
-        return pair_verdict(dict(zip(NAMES, self.bearings, strict=True)))
+        """Verdict: the life of both, and those on both bearings, of which the worst decides."""
+        return pair_verdict(self._life or self.life(), dict(zip(NAMES, self.bearings, strict=True)))
 
     @property
     def peak_pressure(self) -> float:
@@ -611,7 +633,7 @@ class PairSolution(Equilibrium):
         rotating : {"inner", "outer"}, optional
             Rings that rotate against the load; by default those that rotate in `solve`.
         **modification
-            Reliability, lubrication and speed, as those of `BearingSolution.life`.
+            Reliability, lubrication, speed and required life, as those of `BearingSolution.life`.
 
         Returns
         -------
@@ -637,6 +659,7 @@ class PairSolution(Equilibrium):
         """
         if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
+        hours_required = modification.pop("required_life", None)
         first, second = (
             solution.life(edge, rotating=rotating, **modification) for solution in self.bearings
         )
@@ -646,7 +669,17 @@ class PairSolution(Equilibrium):
         shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
         both = float((shares**slope).sum()) ** (-1 / slope)
         hours = both * min(first.hours, second.hours)
-        return PairLife(both * shortest, hours, first.revolutions, second.revolutions, first.model)
+        shorter = min(first, second, key=lambda one: one.revolutions)
+        life = PairLife(
+            revolutions=both * shortest,
+            hours=hours,
+            first=first.revolutions,
+            second=second.revolutions,
+            model=first.model,
+            reliability=first.reliability,
+            modification_factor=shorter.modification_factor,
+        )
+        return required(life, hours_required)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the shaft's numbers and of both bearings'; needs ``nacre-contact[files]``.

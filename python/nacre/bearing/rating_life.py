@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -35,6 +36,7 @@ from nacre.results.shown import TableResult
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
+    from nacre.bearing.pair import PairLife
     from nacre.bearing.solution import BearingSolution
 
 EDGES = {
@@ -74,7 +76,7 @@ class BearingLife(TableResult):
     _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
-        *("viscosity_ratio", "contamination_factor"),
+        *("viscosity_ratio", "contamination_factor", "required_life"),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
@@ -106,6 +108,10 @@ class BearingLife(TableResult):
     """C_u by the standard's simple formula [N]: C_0/22 or C_0/8.2."""
     model: str
     """Model in words."""
+    required_life: float | None = None
+    """Life that is required [h], which decides the verdict; None without."""
+
+    _of: ClassVar[str] = ""
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -117,7 +123,7 @@ class BearingLife(TableResult):
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict: how long the bearing lives; no life is required of it."""
+        """Verdict: how long the bearing lives; bad below `required_life`, good from 1.5 of it."""
         return life_verdict(self)
 
     def _rows(self) -> list[Row]:
@@ -285,6 +291,18 @@ def life_of(
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
     return _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+
+
+Life = TypeVar("Life", "BearingLife", "PairLife")
+
+
+def required(life: Life, hours: float | None) -> Life:
+    """Return a life with the required one [h], checked."""
+    if hours is None:
+        return life
+    if not math.isfinite(life.hours) and math.isfinite(life.revolutions):
+        raise ValueError("required_life must be given with a speed, got none: there are no hours")
+    return replace(life, required_life=above("required_life", hours))
 
 
 def _limit(bearing: Bearing, lubrication: Lubrication, limit: float | None) -> float | None:

@@ -20,7 +20,7 @@ from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
 from nacre.bearing.kinds import RollerBearing
 from nacre.bearing.modified import Lubrication
-from nacre.bearing.rating_life import BearingLife, Duty, life_of
+from nacre.bearing.rating_life import BearingLife, Duty, life_of, required
 from nacre.bearing.static import StaticLoad, static_load_of
 from nacre.bearing.verdict import bearing_verdict
 from nacre.contact import Contact
@@ -45,6 +45,8 @@ from nacre.results.verdict import Verdict
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+
+    from nacre.bearing.film import Film
 
 Array = npt.NDArray[np.float64]
 
@@ -268,6 +270,9 @@ class BearingSolution(Equilibrium):
     """Report: how the solution came about."""
     _contacts: dict[tuple[int, int], Solution] = field(default_factory=dict, repr=False)
     """Contacts that are known, by element and ring."""
+    _life: BearingLife | None = field(default=None, repr=False)
+    _film: Film | None = field(default=None, repr=False)
+    """Life and film that were asked for, which the verdict has."""
 
     @property
     @derived("N", label="largest load", after="moment")
@@ -310,7 +315,8 @@ class BearingSolution(Equilibrium):
         """Verdict: life, and the largest pressure against that of the static rating of ISO 76.
 
         It is bad above that pressure, which is 4000 MPa of rollers and 4200 MPa of balls, fair
-        where less than 1.5 times below it or where the largest pressure is at an edge.
+        where less than 1.5 times below it or where the largest pressure is at an edge. Without a
+        required life, which a case file gives, it is unknown; `life` judges one.
         """
         return bearing_verdict(self)
 
@@ -441,6 +447,7 @@ class BearingSolution(Equilibrium):
         additives: bool = False,
         fatigue_load_limit: float | None = None,
         spectrum: Iterable[Duty] | None = None,
+        required_life: float | None = None,
     ) -> BearingLife:
         """Rate the bearing by ISO/TS 16281 and, with a lubrication, by a_ISO of ISO 281.
 
@@ -478,6 +485,8 @@ class BearingSolution(Equilibrium):
             Load spectrum in place of the solved load: tuples of the share of the time, the forces
             along x, y and z [N] and the speed [rad/s]. Shares sum to 1. Each load is solved with
             moments, tilts and displacements of this solution, and lives add up by Miner's rule.
+        required_life : float, optional
+            Life that is required [h], which decides the verdict; it needs a speed.
 
         Returns
         -------
@@ -514,9 +523,10 @@ class BearingSolution(Equilibrium):
         lubrication = Lubrication(
             viscosity_ratio, kinematic_viscosity, film_ratio, contamination, additives
         )
-        return life_of(
+        life = life_of(
             self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
         )
+        return required(life, required_life)
 
     def static_load(self) -> StaticLoad:
         """Rate the bearing at rest by ISO 76: rating, equivalent static load and safety factor.

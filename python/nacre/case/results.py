@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import nacre
@@ -79,9 +80,11 @@ def _bearing(case: Case, arguments: Options, options: Options) -> Results:
         results = {"bearing": bearing.solve(**keywords, **options)}
         if life is not None:
             results["life"] = results["bearing"].life(**life)
+            results["bearing"] = replace(results["bearing"], _life=results["life"])
     if film is not None:
         with naming(case, "bearing.film"):
             results["film"] = _film(results["bearing"], **film)
+            results["bearing"] = replace(results["bearing"], _film=results["film"])
     return results
 
 

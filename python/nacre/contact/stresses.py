@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -24,7 +24,7 @@ from nacre.results.quantities import Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.verdict import NO_LIMIT, SINGULAR, UNCONVERGED, Demand, Verdict, judged
+from nacre.results.verdict import SLIGHT, UNCONVERGED, Demand, Verdict, doubts_of, judged
 
 if TYPE_CHECKING:
     import xarray
@@ -49,6 +49,8 @@ EXTREMES = (
 )
 """Columns of the table of a stress summary."""
 Progress = Callable[[float], object]
+Bonds = tuple[float, float] | Mapping[int | str, tuple[float, float]]
+"""Shear and tension that all interfaces bear, or those below layers, by number or name."""
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
@@ -476,7 +478,7 @@ class StressSummary(Shown, Warned, Result):
 
     _COMPILED = True
     _DERIVED = ("warnings",)
-    _LATER = ("friction", "doubt")
+    _LATER = ("friction", "doubt", "caution", "bond_strength")
     _TITLE = "stresses"
 
     layers: list[LayerStress]
@@ -494,19 +496,24 @@ class StressSummary(Shown, Warned, Result):
     doubt: str | None
     """What leaves the pressure without a certain value, and so the extremes; None without.
 
-    It has no limit at an edge, or the solution has not converged.
+    It has no limit at an edge, the cells do not resolve it, or the solution has not converged.
     """
+    caution: str | None
+    """What leaves the verdict fair at best; None without."""
+    bond_strength: tuple[tuple[float, float] | None, ...] | None
+    """Shear and tension that the interfaces bear [Pa], from the surface down; None without."""
     warnings: list[str]
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
     @classmethod
     def _from_fields(
-        cls, fields: dict[str, Any], friction: Pair | None = None, doubt: str | None = None
+        cls, fields: dict[str, Any], friction: Pair | None = None, **contact: Any
     ) -> Self:
         layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
         interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
-        parts = {"layers": layers, "interfaces": interfaces, "friction": friction, "doubt": doubt}
-        return cls(**fields | parts)
+        parts = {"layers": layers, "interfaces": interfaces, "friction": friction}
+        state: dict[str, Any] = dict.fromkeys(cls._LATER) | fields | parts | contact
+        return cls(**state)
 
     @classmethod
     def _restored(cls, state: dict[str, object]) -> Self:
@@ -522,7 +529,7 @@ class StressSummary(Shown, Warned, Result):
         substrate the largest von Mises stress.
         """
         doubt = self.doubt if self.finished else UNFINISHED
-        return judged(_demands(self), doubt)
+        return judged(_demands(self), doubt, caution=self.caution)
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -720,8 +727,8 @@ class StressPlan:
             options = StressOptions(self._member, friction, direction, residual, None, tell)
             fields = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
-        doubt = doubt_of(self._solution)
-        return _warned(StressSummary._from_fields(fields, sliding, doubt))
+        doubts = _doubts_of(self._solution)
+        return _warned(StressSummary._from_fields(fields, sliding, **doubts))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -840,6 +847,7 @@ class Stressed:
         body: Member = "body",
         yield_stress: ByLayer | None = None,
         strength: ByLayer | None = None,
+        bond_strength: Bonds | None = None,
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
@@ -863,6 +871,9 @@ class Stressed:
             is not known.
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
+        bond_strength : tuple of float or dict, optional
+            Shear and tension that the interfaces bear [Pa], for the verdict: a pair for all, or
+            ``{0: (shear, tension)}`` by number, or the name of the layer above.
         refine : float, optional
             Largest estimated error of the extremes, as a part of them, such as 0.05. Patches that
             hold the places where value and error together exceed an extreme by more are solved
@@ -905,12 +916,14 @@ class Stressed:
         True
         """
         _check_limits_of(self, body, yield_stress, strength)
+        bonds = _bond_strengths(self, body, bond_strength)
         limits = StressLimits(yield_stress, strength, refine)
         with lasting("stresses", progress) as tell:
             options = StressOptions(body, friction, direction, residual, threads, tell)
             fields = core.stress_summary(self._solved, limits, options)
         sliding = self._sliding(friction, direction, body)
-        return _warned(StressSummary._from_fields(fields, sliding, doubt_of(self)))
+        contact = _doubts_of(self) | {"bond_strength": bonds}
+        return _warned(StressSummary._from_fields(fields, sliding, **contact))
 
     def verdict(
         self,
@@ -918,6 +931,7 @@ class Stressed:
         body: Member = "body",
         yield_stress: ByLayer | None = None,
         strength: ByLayer | None = None,
+        bond_strength: Bonds | None = None,
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
@@ -929,7 +943,9 @@ class Stressed:
 
         Parameters
         ----------
-        body, yield_stress, strength, friction, direction, residual, refine : optional
+        body, yield_stress, strength, bond_strength : optional
+            As in `stress_summary`.
+        friction, direction, residual, refine : optional
             As in `stress_summary`.
         threads, progress : optional
             Likewise.
@@ -955,6 +971,7 @@ class Stressed:
             body=body,
             yield_stress=yield_stress,
             strength=strength,
+            bond_strength=bond_strength,
             friction=friction,
             direction=direction,
             residual=residual,
@@ -1186,22 +1203,70 @@ def doubt_of(solution: Stressed) -> str | None:
     normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
-    return None if SINGULAR.isdisjoint(normal.report.warning_kinds) else NO_LIMIT
+    return doubts_of(normal.report.warning_kinds, "unknown")
+
+
+def caution_of(solution: Stressed) -> str | None:
+    """Return what leaves a verdict on a solution fair at best, or None."""
+    return doubts_of(solution._normal.report.warning_kinds, "fair")
+
+
+def _doubts_of(solution: Stressed) -> dict[str, Any]:
+    return {"doubt": doubt_of(solution), "caution": caution_of(solution)}
+
+
+def _bond_strengths(
+    solution: Stressed, member: Member, bonds: Bonds | None
+) -> tuple[tuple[float, float] | None, ...] | None:
+    """Return shear and tension that each interface bears, checked; None without any."""
+    if bonds is None:
+        return None
+    report = solution._normal.report
+    body = report.counterbody if among(member, ("counterbody",)) else report.body
+    layers = body.layers if isinstance(body, core.HalfSpace) else ()
+    given: dict[Any, Any] = (
+        dict(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
+    )
+    strengths: list[tuple[float, float] | None] = []
+    for k, layer in enumerate(layers):
+        names = [name for name in (k, layer.name, f"interfaces[{k}]") if name in given]
+        strength = given.pop(names[0]) if names else None
+        if strength is not None:
+            pair = tuple(core.real("bond_strength", one) for one in _shear_and_tension(strength))
+            if not all(0 < one < np.inf for one in pair):
+                raise ValueError(f"bond_strength must be above 0 and finite, got {strength!r}")
+            strength = cast(tuple[float, float], pair)
+        strengths.append(strength)
+    if given:
+        raise ValueError(f"bond_strength must be of layers above an interface, got {[*given]!r}")
+    return tuple(strengths)
+
+
+def _shear_and_tension(strength: object) -> tuple[object, object]:
+    """Return shear and tension that an interface bears, or raise a `ValueError`."""
+    if not isinstance(strength, Sequence) or len(strength) != 2:
+        raise ValueError(f"bond_strength must be (shear, tension) [Pa], got {strength!r}")
+    return strength[0], strength[1]
 
 
 def _demands(summary: StressSummary) -> Iterator[Demand]:
     """Yield the stresses that layers and interfaces have to bear, with their limits."""
-    noise = display.SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
+    noise = SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
     for layer in summary.layers:
         peaks = {name: _demand(layer, name, words) for name, words in WORDS.items()}
         limited = [one for one in peaks.values() if one.factor is not None]
         pulled = layer.tension[0] > noise and layer.depths[1] < np.inf
         need = peaks["tension"] if pulled else peaks["von_mises"]._replace(quantity=MISES)
-        yield from limited or ([need] if need.value > 0 else [])
+        yield from limited
+        # The yield stress of a brittle coat says nothing of its tension.
+        if need.value > noise and need.factor is None and (pulled or not limited):
+            yield need
     for face in summary.interfaces:
-        for one in (_demand(face, name, name) for name in ("shear", "tension")):
+        bond = (summary.bond_strength or {face.interface: None})[face.interface]
+        for k, name in enumerate(("shear", "tension")):
+            one = _demand(face, name, name)
             if one.value > noise:
-                yield one
+                yield one if bond is None else one._replace(factor=bond[k] / one.value)
 
 
 def _demand(part: LayerStress | InterfaceStress, name: str, words: str) -> Demand:

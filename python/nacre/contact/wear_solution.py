@@ -30,7 +30,7 @@ from nacre.results.report import Rows, Table, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 from nacre.results.tables import heading
-from nacre.results.verdict import Level, Verdict, number
+from nacre.results.verdict import MARGIN, Level, Verdict, level_of, number
 
 if TYPE_CHECKING:
     import xarray
@@ -47,6 +47,7 @@ MODEL = (
 )
 MOST_SECTIONS = 8
 """Sections of a chart of worn depths; of more states some are left out."""
+UNASKED = "No distance is required: verdict_for(distance) judges it."
 THICKNESSES: dict[str, str] = {
     "frozen": "as thick as before",
     "first order": "thinner to first order in the depth",
@@ -290,23 +291,71 @@ class WearHistory(Shown, Result):
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict: whether a layer is through, after which distance and where."""
-        end = travelled(float(self.distance[-1]), self.unit)
-        if (life := self.life) is None:
-            report = self.states[0].solution.report
-            has_layers = any(map(layer_names, (report.body, report.counterbody)))
-            deepest = number(float(self.deepest[-1].max()), "m")
-            words = f"{'No layer is through' if has_layers else 'Worn'} after {end}"
-            words += f": {deepest} {'worn ' if has_layers else ''}at most."
-            level: Level = "good" if has_layers and self.report.converged else "unknown"
-            return Verdict(level, words)
+        """Verdict: whether a layer is through, after which distance and where.
+
+        It is unknown: `verdict_for` judges a distance that is required.
+        """
+        return self._judged(None)
+
+    def verdict_for(self, required: float) -> Verdict:
+        """Return the verdict on a distance after which no layer may be through.
+
+        Parameters
+        ----------
+        required : float
+            Distance [m], cycles or passes, above 0.
+
+        Returns
+        -------
+        Verdict
+            Bad where a layer is through before, good where none is at 1.5 of it.
+
+        Raises
+        ------
+        ValueError
+            If the distance is not above 0 and finite.
+
+        Examples
+        --------
+        >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+        >>> body = nacre.HalfSpace(steel, [nacre.Layer(steel, 2e-6)])
+        >>> history = nacre.wear(nacre.Sphere(5e-3), body, load=10.0, rate=1e-16, sliding=1.0)
+        >>> history.verdict_for(0.5).level
+        'good'
+        """
+        distance = core.real("required", required)
+        if not 0 < distance < math.inf:
+            raise ValueError(f"required must be above 0 and finite, got {distance:g}")
+        return self._judged(distance)
+
+    def _judged(self, required: float | None) -> Verdict:
+        """Return the verdict, on a required distance where there is one."""
+        reached, life = float(self.distance[-1]), self.life
+        needed = "" if required is None else f", {travelled(required, self.unit)} required"
+        report, worn = self.states[0].solution.report, float(self.deepest[-1].max())
+        has_layers = any(map(layer_names, (report.body, report.counterbody)))
+        lines = () if required is not None or not has_layers else (UNASKED,)
+        level: Level = "unknown"
+        if life is None:
+            end = travelled(reached, self.unit)
+            words = f"{'No layer is through' if has_layers else 'Worn'} after {end}{needed}"
+            words += f": {number(worn, 'm')} {'worn ' if has_layers else ''}at most."
+            if not worn > 0:
+                return Verdict("unknown", f"Cannot tell: nothing has worn after {end}.", lines)
+            rings = any(state.rings for state in self.states)
+            if required is not None and has_layers and self.report.converged and not rings:
+                level = "good" if reached >= MARGIN * required else "fair"
+                level = level if reached >= required else "unknown"
+            return Verdict(level, words, lines)
         axes = "y" if self.states[0].solution.grid.is_line else "xy"
         places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
-        words = (
-            f"{life.layer} of the {life.body}: through after {life._travelled(self.unit)} "
-            f"at {', '.join(places)}."
-        )
-        return Verdict("bad", words, (), None, life.layer, None)
+        when = f"after {life._travelled(self.unit)}" if life.distance > 0 else "from the start"
+        words = f"{life.layer} of the {life.body}: through {when} at {', '.join(places)}{needed}."
+        if required is None:
+            return Verdict("unknown", words, lines, None, life.layer, None)
+        factor = life.distance / required
+        share = None if not factor or life.uncertainty is None else life.uncertainty / life.distance
+        return Verdict(level_of(factor, share), words, lines, factor, life.layer, share)
 
     @property
     def _thickness(self) -> str:

@@ -15,7 +15,14 @@ from nacre._tools.rounding import ceil, floor
 from nacre._tools.typing import Direction, Member, Side
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
-from nacre.contact.stresses import Stress, StressFields, StressOptions, StressPlan, doubt_of
+from nacre.contact.stresses import (
+    Stress,
+    StressFields,
+    StressOptions,
+    StressPlan,
+    caution_of,
+    doubt_of,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -97,7 +104,7 @@ class Rolling:
             raise ValueError("solution must be in contact, got one whose pressure is 0 everywhere")
         self.plan: StressPlan = solution.stress_plan(body, threads)
         self.body = self.plan.body
-        self.doubt = doubt_of(solution)
+        self.doubt, self.caution = doubt_of(solution), caution_of(solution)
         tractions = solution.traction if isinstance(solution, FrictionSolution) else None
         self.has_tractions = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0

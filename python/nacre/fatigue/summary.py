@@ -28,7 +28,7 @@ from nacre.results.quantities import PROFILE, Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.verdict import Demand, Verdict, judged, times
+from nacre.results.verdict import Demand, Verdict, judged, outcome_of, times
 
 if TYPE_CHECKING:
     import xarray
@@ -240,11 +240,13 @@ class FatigueSummary(Shown, Warned, Result):
     doubt: str | None = None
     """What leaves the pressure without a certain value, and so all values; None without.
 
-    It has no limit at an edge, or the solution has not converged.
+    It has no limit at an edge, the cells do not resolve it, or the solution has not converged.
     """
+    caution: str | None = None
+    """What leaves the verdict fair at best; None without."""
 
     _TITLE = "shakedown and fatigue"
-    _LATER = ("doubt",)
+    _LATER = ("doubt", "caution")
 
     @property
     def shear_yield(self) -> Array:
@@ -273,6 +275,7 @@ class FatigueSummary(Shown, Warned, Result):
                 is_estimate=flag,
                 warnings=lambda texts: [word(text) for text in texts],
                 doubt=lambda text: None if text is None else word(text),
+                caution=lambda text: None if text is None else word(text),
             )
         )
 
@@ -288,11 +291,11 @@ class FatigueSummary(Shown, Warned, Result):
 
         First yield alone is no failure, as residual stresses may end it.
         """
-        factors = [layer.safety_factors.get("shakedown", 0.0) for layer in self.layers]
-        notes = [_yields(layer) for layer, f in zip(self.layers, factors, strict=True) if f >= 1]
+        shaken = [layer for layer in self.layers if _surely_shakes_down(layer)]
+        notes = [_yields(layer) for layer in shaken if self.doubt is None]
         if self.is_estimate:
             notes.append(f"{ESTIMATE[0].upper()}{ESTIMATE[1:]}.")
-        return judged(self._demands(), self.doubt, notes)
+        return judged(self._demands(), self.doubt, notes, self.caution)
 
     def _demands(self) -> Iterator[Demand]:
         """Yield what layers and interfaces need, with the limits."""
@@ -448,6 +451,14 @@ def _demand(layer: LayerFatigue, name: str) -> Demand:
     if name == "shakedown":
         return demand._replace(outcomes=SHAKES, need="no limit given, needs")
     return demand
+
+
+def _surely_shakes_down(layer: LayerFatigue) -> bool:
+    """Return whether a layer shakes down whatever the error of what it needs."""
+    factor, error = layer.safety_factors.get("shakedown"), layer.uncertainty.get("shakedown")
+    if factor is None or error is None:
+        return False
+    return outcome_of(factor, error / layer.shakedown[0]) == 2
 
 
 def _yields(layer: LayerFatigue) -> str:
@@ -925,6 +936,7 @@ def _summarise(
         assessment.rolling.x is not None,
         warning_texts,
         assessment.rolling.doubt,
+        assessment.rolling.caution,
     )
     for text in warning_texts:
         warnings.warn(text, core.NacreWarning, stacklevel=3)

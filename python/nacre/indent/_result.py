@@ -125,8 +125,8 @@ class Fit(Shown, Result):
     def verdict(self) -> Verdict:
         """Verdict: each free parameter with its standard error, the least certain one first.
 
-        It is good where all are known to 5 %, fair to 20 % or where a warning doubts the model,
-        and bad beyond, or where a parameter is not identifiable.
+        It is fair where all are known to 20 %, as errors of what is held fixed are not known, and
+        bad beyond, or where a parameter is not identifiable.
         """
         return fit_verdict(self)
 

@@ -14,10 +14,14 @@ from nacre.results.verdict import DIGITS, Level, Verdict, number
 if TYPE_CHECKING:
     from nacre.indent._result import Fit
 
-GOOD, FAIR = 0.05, 0.20
-"""Largest standard errors of good and of fair estimates, as shares of them; chosen here."""
+FAIR = 0.20
+"""Largest standard error of fair estimates, as a share of them; chosen here."""
 MOST_DIGITS = 6
 """Largest number of digits of an estimate."""
+NOISE = (
+    "Errors are those of noise alone: that of a radius of the tip, a thickness or a modulus that "
+    "is held fixed comes on top."
+)
 WORDS = {"young": "modulus", "poisson": "Poisson's ratio"}
 """Words for parameters that paths name otherwise."""
 
@@ -29,8 +33,10 @@ def fit_verdict(fit: Fit) -> Verdict:
         return Verdict("unknown", "No parameter was fitted.")
     worst, *better = sorted(shares, key=lambda name: -shares[name])
     share, owners = shares[worst], dict(_owners(fit))
-    level: Level = "bad" if share > FAIR else "fair" if share > GOOD or fit.warnings else "good"
+    # Errors of what is held fixed are in none of the standard errors: no fit is good.
+    level: Level = "bad" if share > FAIR else "fair"
     words, *lines = [_sentence(fit, name, owners) for name in (worst, *better)]
+    lines.append(NOISE)
     uncertainty = share if math.isfinite(share) else None
     return Verdict(level, words, tuple(lines), None, _words(worst, owners), uncertainty)
 

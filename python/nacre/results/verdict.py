@@ -18,10 +18,29 @@ DIGITS = 3
 """Digits of the numbers in a verdict."""
 MOST_PARTS = 2 * display.LAYER_ROWS
 """Largest number of layers and interfaces without a limit that get a sentence each."""
+SLIGHT = 0.01
+"""Share of the largest stress below which another is no demand."""
 SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
 """Warnings of contacts whose pressure has no limit on ever finer cells."""
 NO_LIMIT = "the pressure at an edge has no limit, and grows as the cells shrink"
 UNCONVERGED = "the solution has not converged"
+COARSE = "the cells do not resolve the contact"
+UNKNOWN_ERROR = "the error of the value that decides is not known"
+KINDS: dict[str, tuple[Level | None, str]] = {
+    **dict.fromkeys(sorted(SINGULAR), ("unknown", NO_LIMIT)),
+    "coarse": ("unknown", COARSE),
+    "coarse spots": ("unknown", COARSE),
+    "outside grid": ("unknown", "the largest stresses may lie beyond the grid"),
+    "unknown stations": ("unknown", "the errors of the sections along the roller are not known"),
+    "coated end": ("fair", "the ends of the layers are left out"),
+    "endless crown": ("fair", "a crown reaches beyond the body"),
+    "large contact": ("fair", "the contact is large for flat bodies"),
+    "large motion": ("fair", "the motion is large for cells that stay where they are"),
+    "no estimate": (None, "a missing error counts where it decides"),
+    "peak error": ("fair", "the cells leave a large error of the peak pressure"),
+    "stations": ("fair", "the sections along the roller leave a large error"),
+}
+"""Level that a kind of warning of a contact leaves at most, None for any, with the reason."""
 UNSURE = "As it stands"
 """Outcome of what holds in a result that is in doubt."""
 
@@ -105,19 +124,31 @@ def outcome_of(factor: float, share: float | None) -> int:
 
 
 def level_of(factor: float, share: float | None) -> Level:
-    """Return the level of a factor whose error is a share of it."""
+    """Return the level of a factor whose value has an error, which is a share of it."""
     outcome = outcome_of(factor, share)
     if outcome == 0:
         return "bad"
-    return "good" if outcome == 2 and factor >= MARGIN else "fair"
+    if share is None:
+        return "unknown"
+    return "good" if outcome == 2 and factor >= MARGIN * (1 + share) else "fair"
+
+
+def doubts_of(kinds: Iterable[str], level: Level) -> str | None:
+    """Return the reasons why kinds of warnings leave this level at most, or None without any."""
+    reasons = dict.fromkeys(KINDS[kind][1] for kind in kinds if KINDS[kind][0] == level)
+    return "; ".join(reasons) or None
 
 
 def judged(
-    demands: Iterable[Demand], doubt: str | None = None, notes: Sequence[str] = ()
+    demands: Iterable[Demand],
+    doubt: str | None = None,
+    notes: Sequence[str] = (),
+    caution: str | None = None,
 ) -> Verdict:
     """Return the verdict on parts: the worst outcome decides, of these the smallest factor.
 
-    With a `doubt` nothing holds; what fails does so nevertheless.
+    With a `doubt` nothing holds; what fails does so nevertheless. With a `caution`, a part without
+    a limit, or one that holds by less than the margin with its error, it is fair at best.
     """
     needs, ranked = [], []
     for one in demands:
@@ -126,11 +157,17 @@ def judged(
         else:
             ranked.append((outcome_of(one.factor, one.share), one.factor, one))
     doubts = [] if doubt is None else [f"Cannot tell: {doubt}."]
+    notes = [*notes, *([] if caution is None else [f"With care: {caution}."])]
     if not ranked:
         words, *lines = [*doubts, *_needs(needs)] or ["Cannot tell: nothing is loaded."]
         return Verdict("unknown", words, (*lines, *notes))
     outcome, factor, worst = min(ranked, key=lambda row: row[:2])
     level: Level = level_of(factor, worst.share) if doubt is None or outcome == 0 else "unknown"
+    if level == "unknown" and not doubts:
+        doubts = [f"Cannot tell: {UNKNOWN_ERROR}."]
+    others = [level_of(factor, one.share) for _, factor, one in ranked]
+    if level == "good" and (needs or caution is not None or set(others) != {"good"}):
+        level = "fair"
     ordered = [worst, *(one for _, _, one in ranked if one is not worst)]
     if level == "unknown":
         ordered = [one._replace(outcomes=(one.outcomes[0], UNSURE, UNSURE)) for one in ordered]

@@ -187,7 +187,7 @@ def test_json_holds_the_numbers_of_all_states_exactly(tmp_path: Path, capsys: Ca
     assert found["life"] == history.life.distance
     assert found["events"][0]["layer"] == "layers[0]"
     assert (found["unit"], found["units"]) == ("m", "N-mm-MPa")
-    assert found["verdict"]["wear"]["level"] == "bad"
+    assert found["verdict"]["wear"]["level"] == "unknown"
 
 
 def test_files_of_all_endings_are_saved(tmp_path: Path, capsys: Capture) -> None:

@@ -113,7 +113,10 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
         further = worn(initial=begun, until="through", sliding=10.0, scheme="euler")
     assert [event.distance for event in begun.events] == [0.0]
-    assert begun.verdict.level == "bad"
+    # What was asked is answered, and nothing is required.
+    assert begun.verdict.level == "unknown"
+    assert "through from the start" in begun.verdict.words
+    assert begun.verdict_for(1.0).level == "bad"
     assert list(begun.distance) == [0.0]
     assert further.events == begun.events
     assert list(further.distance) == [0.0, 5.0, 10.0]
@@ -376,7 +379,15 @@ def test_the_verdict_on_bodies_without_layers_is_unknown() -> None:
     history = nacre.wear(ROLLER, STEEL, load=1e5, grid=GRID, rate=1e-17, sliding=1.0, steps=1)
     assert history.verdict.level == "unknown"
     assert history.verdict.words.startswith("Worn after 1 m: ")
-    assert worn().verdict.level == "good"
+    coated = worn()
+    assert coated.verdict.level == "unknown"
+    assert "verdict_for(distance)" in coated.verdict.lines[0]
+    for required, level in ((50.0, "good"), (80.0, "fair"), (120.0, "unknown")):
+        assert coated.verdict_for(required).level == level
+    with pytest.raises(ValueError, match="required must be above 0"):
+        coated.verdict_for(0.0)
+    apart = worn(load=None, approach=-1e-6)
+    assert (apart.verdict.level, apart.verdict_for(1.0).level) == ("unknown", "unknown")
 
 
 def test_a_store_of_another_measured_surface_is_refused(tmp_path: Path) -> None:
