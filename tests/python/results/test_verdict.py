@@ -230,6 +230,8 @@ def test_every_kind_of_warning_has_its_level() -> None:
         verdict = judged([demand], doubts_of([kind], "unknown"), caution=doubts_of([kind], "fair"))
         assert verdict.level == (level or "good")
         assert (reason in str(verdict)) == (level is not None)
+        assert verdict.doubts == (None if level is None else (reason,))
+        assert Verdict.from_dict(json.loads(json.dumps(verdict.to_dict()))) == verdict
         failing = judged([demand._replace(factor=0.5)], doubts_of([kind], "unknown"))
         assert failing.level == "bad"
 
