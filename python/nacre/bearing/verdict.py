@@ -157,6 +157,8 @@ def pair_verdict(life: PairLife, bearings: Mapping[str, BearingSolution]) -> Ver
     verdicts.sort(key=lambda row: (LEVELS.index(row[1].level), row[1].factor or math.inf))
     name, worst = verdicts[0]
     decided_by = worst.decided_by and f"{name} bearing, {worst.decided_by}"
+    if worst.level != "bad":  # the one that lives shorter first
+        verdicts.sort(key=lambda row: bearings[row[0]].life().revolutions)
     lines = [
         f"{name} bearing: {sentence}"
         for name, one in verdicts

@@ -11,15 +11,16 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import plain
-from nacre.results.verdict import DIGITS, Level, Verdict, number
+from nacre.results.verdict import DIGITS, MARGIN, Level, Verdict, number
 
 if TYPE_CHECKING:
     from nacre.indent.solution import IndentSolution
 
 Array = npt.NDArray[np.float64]
 
-GOOD, FAIR = 0.05, 0.20
-"""Largest errors of a modulus of a good and of a fair indentation."""
+READ = 0.05
+"""Largest error of a modulus of which the film is said to be read."""
+UNASKED = "No tolerance is given: verdict(tolerance=...) judges the modulus."
 TOLERATED = 0.10
 """Error of the modulus up to whose depth a verdict tells."""
 DEPTHS, SHALLOWEST = 40, 1e-3
@@ -66,20 +67,22 @@ def apparent_modulus(solution: IndentSolution) -> Reading | None:
     return Reading(depths, moduli, film.young, solution.adhesion is not None)
 
 
-def substrate_verdict(reading: Reading | None) -> Verdict:
-    """Return whether the largest depth tells the modulus of the film."""
+def substrate_verdict(reading: Reading | None, tolerance: float | None = None) -> Verdict:
+    """Return whether the largest depth tells the modulus of the film, to a tolerance if any."""
     if reading is None:
         return Verdict("unknown", "Cannot tell: there is no film.")
     ratio = float(reading.moduli[-1]) / reading.modulus
     error = abs(ratio - 1)
-    level: Level = "good" if error <= GOOD else "fair" if error <= FAIR else "bad"
+    level: Level = "unknown"
+    if tolerance is not None:
+        level = "bad" if error > tolerance else "fair" if MARGIN * error > tolerance else "good"
     read, film = number(float(reading.moduli[-1]), "Pa"), number(reading.modulus, "Pa")
-    start = "The film is read" if level == "good" else "The substrate shows"
+    start = "The film is read" if error <= READ else "The substrate shows"
     words = f"{start}: as a bare film, this curve gives {read} for a film of {film}"
     words += f" ({plain(ratio, DIGITS)} times)."
     if not math.isfinite(ratio):
         words = "The substrate shows: at this depth the curve tells nothing of the film."
-    lines = [_depth(reading)]
+    lines = [_depth(reading), *([] if tolerance is not None else [UNASKED])]
     lines += ["Adhesion is left out of this reading."] if reading.has_adhesion else []
     return Verdict(level, words, tuple(lines), ratio, "substrate", None)
 

@@ -403,28 +403,40 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         caption = "Pressure over the distance from the axis."
         return [Chart(caption, [Curve(x, np.ravel(self.pressure(x)))], axes)]
 
-    def verdict(self) -> Verdict:
+    def verdict(self, tolerance: float | None = None) -> Verdict:
         """Return the verdict: whether the largest depth tells the modulus of the outermost layer.
 
         It compares with a bare half-space of the layer that bears the same load at the same depth,
-        without adhesion: good up to 5 % from the layer's modulus, fair up to 20 %, else bad. Its
-        `factor` is the modulus that is read so over the layer's.
+        without adhesion. Its `factor` is the modulus that is read so over the layer's.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            Largest error of the modulus, as a part of it, such as 0.1: beyond it the verdict is
+            bad, and good up to two thirds of it. Without, the verdict is unknown.
 
         Returns
         -------
         Verdict
             Verdict; unknown of a body without layers.
 
+        Raises
+        ------
+        ValueError
+            If the tolerance is not above 0 and finite.
+
         Examples
         --------
         >>> glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
         >>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
         >>> tip = nacre.indent.Tip.sphere(5e-6)
-        >>> verdict = nacre.indent.solve(body, tip, load=1e-3).verdict()
+        >>> verdict = nacre.indent.solve(body, tip, load=1e-3).verdict(tolerance=0.1)
         >>> verdict.level, round(verdict.factor, 1), verdict.lines[0]
         ('bad', 2.4, 'The error is below 10 % only up to 1.91 nm of depth.')
         """
-        return substrate_verdict(apparent_modulus(self))
+        if tolerance is not None and not 0 < core.real("tolerance", tolerance) < np.inf:
+            raise ValueError(f"tolerance must be above 0 and finite, got {tolerance:g}")
+        return substrate_verdict(apparent_modulus(self), tolerance)
 
     def _notebook_picture(self) -> bytes | None:
         return display.drawn(self.plot)

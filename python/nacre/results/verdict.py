@@ -74,6 +74,10 @@ class Verdict(Result):
     """Part and quantity that decide; None without a limit."""
     uncertainty: float | None = None
     """Estimated error of the factor, as a share of it; None where it is not known."""
+    doubts: tuple[str, ...] | None = None
+    """What leaves the level unknown or fair at most, apart from limits; None without."""
+
+    _LATER = ("doubts",)
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -175,7 +179,8 @@ def judged(
     sentences[level == "bad" : 0] = doubts
     words, *lines = [*sentences, *_needs(needs), *notes]
     decided_by = f"{worst.part}, {worst.quantity}"
-    return Verdict(level, words, tuple(lines), factor, decided_by, worst.share)
+    reasons = tuple(one for one in (doubt, caution) if one is not None) or None
+    return Verdict(level, words, tuple(lines), factor, decided_by, worst.share, reasons)
 
 
 def _sentence(demand: Demand) -> str:

@@ -231,6 +231,8 @@ def test_every_kind_of_warning_has_its_level() -> None:
         verdict = judged([demand], doubts_of([kind], "unknown"), caution=doubts_of([kind], "fair"))
         assert verdict.level == (level or "good")
         assert (reason in str(verdict)) == (level is not None)
+        assert verdict.doubts == (None if level is None else (reason,))
+        assert Verdict.from_dict(json.loads(json.dumps(verdict.to_dict()))) == verdict
         failing = judged([demand._replace(factor=0.5)], doubts_of([kind], "unknown"))
         assert failing.level == "bad"
 
@@ -721,3 +723,24 @@ def test_the_command_judges_bearings_in_the_units_of_the_case(
     verdicts = json.loads(capsys.readouterr().out)["verdict"]
     assert set(verdicts) == {"bearing", "life"}
     assert "4200 MPa of ISO 76" in verdicts["bearing"]["lines"][0]
+
+
+# Indentations.
+
+
+@pytest.mark.parametrize(
+    ("share", "level"), [(1.6, "good"), (1.4, "fair"), (1.01, "fair"), (0.99, "bad")]
+)
+def test_a_tolerance_of_the_modulus_decides(share: float, level: str) -> None:
+    film = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-6)])
+    found = nacre.indent.solve(film, nacre.indent.Tip.sphere(5e-6), load=1e-5)
+    verdict = found.verdict()
+    assert verdict.level == "unknown"
+    assert verdict.lines[-1] == "No tolerance is given: verdict(tolerance=...) judges the modulus."
+    assert verdict.factor is not None
+    error = abs(verdict.factor - 1)
+    assert error > 0
+    judged_verdict = found.verdict(tolerance=share * error)
+    assert (judged_verdict.level, judged_verdict.factor) == (level, verdict.factor)
+    with pytest.raises(ValueError, match="tolerance must be above 0"):
+        found.verdict(tolerance=0.0)
