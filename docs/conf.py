@@ -107,7 +107,6 @@ sphinx_gallery_conf = {
     "within_subsection_order": "drawings.place",
     "image_scrapers": ("matplotlib", "drawings.scraper"),
     "abort_on_example_error": True,
-    "parallel": os.cpu_count() or 1,  # processes; needs joblib
     "capture_repr": (),
     "image_srcset": ["3x"],  # some 1600 pixels, for sharp screens and for print
     "show_memory": False,
