@@ -127,6 +127,7 @@ fn surface(body: &HalfSpace) -> (Substrate, Vec<(Elastic, f64, Interface)>) {
     (body.substrate(), body.layers().iter().map(layer).collect())
 }
 
+/// The coefficients of a half-space: of tractions along x and y, by cells of the layered kernel.
 fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionCoefficients> {
     let [nx, ny] = grid.shape();
     check_memory(grid.shape(), 8 * 5 * (nx * ny) as u64)?;
@@ -145,16 +146,17 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
     let half @ [a, b] = spacing.map(|d| 0.5 * d);
     let displacements = |axis: usize| -> [Array2<f64>; 3] {
         // Traction along y is traction along x with both exchanged.
-        let turned = |values: [f64; COMPONENTS]| match axis {
+        let as_if_along_x = |values: [f64; COMPONENTS]| match axis {
             0 => values,
             _ => EXCHANGED.map(|k| values[k]),
         };
         // The displacements come first, and the stresses are not computed.
-        let first = |values: [f64; COMPONENTS]| {
-            let mut values = turned(values);
+        let displacements_first = |values: [f64; COMPONENTS]| {
+            let mut values = as_if_along_x(values);
             values.rotate_right(DISPLACEMENTS);
             values
         };
+        // A traction along an axis flips the parity along it.
         let odd = |k: usize| [0, 1].map(|along| ODD[k][along] != (axis == along));
         let source = CellSource {
             between: false,
@@ -163,30 +165,31 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
             depth: 0.0,
             odd: [6, 7, 8].map(odd),
             mean: |x: f64, y: f64| match axis {
-                0 => first(kernel.at::<TractionDisplacement>([x, y], half)),
-                _ => first(kernel.at::<TractionDisplacement>([y, x], [b, a])),
+                0 => displacements_first(kernel.at::<TractionDisplacement>([x, y], half)),
+                _ => displacements_first(kernel.at::<TractionDisplacement>([y, x], [b, a])),
             },
             point: |x: f64, y: f64| match axis {
-                0 => first(kernel.far::<TractionDisplacement>(x, y)),
-                _ => first(kernel.far::<TractionDisplacement>(y, x)),
+                0 => displacements_first(kernel.far::<TractionDisplacement>(x, y)),
+                _ => displacements_first(kernel.far::<TractionDisplacement>(y, x)),
             },
         };
         let mut rows = Array3::zeros((nx, DISPLACEMENTS, ny));
         let chunks = rows.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate();
         chunks.for_each(|(chunk, mut values)| {
-            let first = chunk * ROWS;
-            source.rows(first..first + values.len_of(Axis(0)), &mut |i, k, row| {
-                let mut components = values.index_axis_mut(Axis(0), i - first);
+            let first_row = chunk * ROWS;
+            source.rows(first_row..first_row + values.len_of(Axis(0)), &mut |i, k, row| {
+                let mut components = values.index_axis_mut(Axis(0), i - first_row);
                 components.row_mut(k).assign(&ArrayView1::from(row));
             });
         });
         [0, 1, 2].map(|k| rows.index_axis(Axis(1), k).to_owned())
     };
+    // yx = xy.
     let ([xx, xy, zx], [_, yy, zy]) = threads.run(|| (displacements(0), displacements(1)));
     Ok(with_parities([xx, xy, yy, zx, zy]))
 }
 
-/// What is odd vanishes on its axis, where rounding leaves a rest.
+/// What is odd vanishes on its axis, where rounding leaves a remainder.
 fn with_parities([xx, mut xy, yy, mut zx, mut zy]: [Array2<f64>; 5]) -> TractionCoefficients {
     let (along_x, along_y) = (Axis(0), Axis(1));
     for (odd, axis) in [(&mut xy, along_x), (&mut zx, along_x), (&mut zy, along_y)] {

@@ -95,8 +95,8 @@ impl TopLayers {
         for layer in &self.0 {
             let depth = depth[layer.member].mapv(|depth| depth.min(layer.thickness));
             let whole = full_window(depth.dim().into());
-            let Some(worn) = bounds(&whole, |i, j| depth[[i, j]] > 0.0) else { continue };
-            let area = Thinned { depth: Arc::new(depth), worn, layer: layer.into() };
+            let Some(worn_window) = bounds(&whole, |i, j| depth[[i, j]] > 0.0) else { continue };
+            let area = Thinned { depth: Arc::new(depth), worn_window, layer: layer.into() };
             operators.push(Arc::new(area.on(whole, threads)));
         }
         operators
@@ -124,9 +124,9 @@ impl TopLayers {
 #[derive(Debug, Clone)]
 struct Constants {
     /// S, less what counts for the resolved pressure.
-    own: f64,
+    own_cell: f64,
     /// c: what counts for the resolved pressure.
-    resolved: f64,
+    resolved_share: f64,
     /// λ/M
     ratio: f64,
     /// Q
@@ -142,8 +142,8 @@ impl From<&TopLayer> for Constants {
         let resolved =
             if layer.strain.is_line() { 0.0 } else { (1.0 - 2.0 * nu).powi(2) / (4.0 * g) };
         Self {
-            own: (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu)) - resolved,
-            resolved,
+            own_cell: (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu)) - resolved,
+            resolved_share: resolved,
             ratio: nu / (1.0 - nu),
             modulus: layer.material.plane_strain_modulus(),
             poisson: nu,
@@ -180,7 +180,7 @@ struct Thinned {
     /// w on the whole grid.
     depth: Arc<Array2<f64>>,
     /// Window outside which it is 0.
-    worn: Window,
+    worn_window: Window,
     layer: Constants,
 }
 
@@ -189,17 +189,17 @@ impl Thinned {
     fn on(self, window: Window, threads: &Threads) -> Thinning {
         let domain = match self.layer.strain.repeats() {
             true => full_window(self.depth.dim().into()),
-            false => enclosing(&window, &self.worn),
+            false => enclosing(&window, &self.worn_window),
         };
         let strains = self.layer.strain.window([domain[0].len(), domain[1].len()], threads);
-        Thinning { worn: self, window, domain, strains, fields: Mutex::default() }
+        Thinning { thinned: self, window, domain, strains, fields: Mutex::default() }
     }
 }
 
 /// −{…} of the head of this file.
 #[derive(Debug)]
 struct Thinning {
-    worn: Thinned,
+    thinned: Thinned,
     /// Cells of pressure and displacement in the grid.
     window: Window,
     /// Those and the worn ones: between them, strains are computed.
@@ -226,7 +226,7 @@ impl Beside for Thinning {
         displacement: &mut [f64],
         threads: &Threads,
     ) {
-        let Thinned { depth, layer, .. } = &self.worn;
+        let Thinned { depth, layer, .. } = &self.thinned;
         let columns = self.window[1].len();
         let wide = self.domain[1].len();
         let cells = self.domain[0].len() * wide;
@@ -248,11 +248,11 @@ impl Beside for Thinning {
         }
         self.strains.strain(p, tensor, threads);
         resolved.clear();
-        if layer.resolved > 0.0 {
+        if layer.resolved_share > 0.0 {
             resolved.extend_from_slice(p);
             self.strains.resolve(resolved);
             let cells = resolved.iter_mut().zip(each_cell(&self.domain));
-            cells.for_each(|(p, (i, j))| *p *= layer.resolved * depth[[i, j]]);
+            cells.for_each(|(p, (i, j))| *p *= layer.resolved_share * depth[[i, j]]);
             self.strains.resolve(resolved);
         }
         // From here on p is what the cell's own strains and pressure give.
@@ -263,7 +263,7 @@ impl Beside for Thinning {
             let strains = &strains[..count];
             let made = layer.tensor(p[at], strains);
             (0..count).for_each(|k| tensor[k * cells + at] = w * made[k]);
-            p[at] = w * (layer.own * p[at] + layer.ratio * Constants::trace(strains));
+            p[at] = w * (layer.own_cell * p[at] + layer.ratio * Constants::trace(strains));
         }
         p.iter_mut().zip(&*resolved).for_each(|(own, resolved)| *own += resolved);
         self.strains.adjoint(tensor, sums, threads);
@@ -278,11 +278,14 @@ impl Beside for Thinning {
             let start = self.window[k].start;
             start + window[k].start..start + window[k].end
         });
-        Arc::new(self.worn.clone().on(within, threads))
+        Arc::new(self.thinned.clone().on(within, threads))
     }
 
+    /// Displacement of `cell` from a unit pressure on `loaded` that wear adds, with the strains e of the surface under unit
+    /// pressures: −{ (λ/M) (w_cell + w_loaded) e_kk + (S − c) w_cell δ + Σ w_i (e_cell : Q e_loaded + c r_cell r_loaded) }, the sum
+    /// over all worn cells i, whose resolved shares of a pressure are r.
     fn entry(&self, cell: [usize; 2], loaded: [usize; 2]) -> f64 {
-        let Thinned { depth, worn, layer } = &self.worn;
+        let Thinned { depth, worn_window, layer } = &self.thinned;
         let [cell, loaded] =
             [cell, loaded].map(|cell| [0, 1].map(|k| self.window[k].start + cell[k]));
         let strain = |from: [usize; 2], to: [usize; 2]| {
@@ -291,20 +294,23 @@ impl Beside for Thinning {
         let direct = Constants::trace(&strain(loaded, cell));
         let mut sum = layer.ratio * (depth[cell] + depth[loaded]) * direct;
         if cell == loaded {
-            sum += layer.own * depth[cell];
+            sum += layer.own_cell * depth[cell];
         }
-        for (i, j) in each_cell(worn).filter(|(i, j)| depth[[*i, *j]] > 0.0) {
-            let made = layer.tensor(0.0, &strain(loaded, [i, j]));
+        for (i, j) in each_cell(worn_window).filter(|(i, j)| depth[[*i, *j]] > 0.0) {
+            let stress_of_load = layer.tensor(0.0, &strain(loaded, [i, j]));
             let product = match *strain([i, j], cell) {
-                [xx, xy, yy] => xx * made[0] + 2.0 * xy * made[1] + yy * made[2],
-                ref along => along.iter().sum::<f64>() * made[0],
+                [xx, xy, yy] => {
+                    xx * stress_of_load[0] + 2.0 * xy * stress_of_load[1] + yy * stress_of_load[2]
+                }
+                // A line contact has one strain.
+                ref along => along.iter().sum::<f64>() * stress_of_load[0],
             };
-            let weights = [cell, loaded].map(|cell| {
+            let shares = [cell, loaded].map(|cell| {
                 layer
                     .strain
                     .resolved([cell[0] as isize - i as isize, cell[1] as isize - j as isize])
             });
-            let resolved = layer.resolved * weights[0] * weights[1];
+            let resolved = layer.resolved_share * shares[0] * shares[1];
             sum += depth[[i, j]] * (product + resolved);
         }
         -sum

@@ -895,15 +895,17 @@ def _slide(
     on: Setup | core.Plan,
     keywords: Mapping[str, Any],
 ) -> FrictionSolution | History:
+    """Return the solution of one step, or the history of several."""
     step, options = FrictionStep.of(keywords), _friction_options(keywords)
     history = _history_steps(steps)
     moves = core.slide(shape, step, history, options, on)
-    return _solve_steps(moves, shape, len(history or [step]), options)
+    return _solve_steps(moves, shape, 1 if history is None else len(history), options)
 
 
 def _roll(
     shape: core.Shape, on: Setup | core.Plan, keywords: Mapping[str, Any]
 ) -> FrictionSolution | History:
+    """Return the solution of steady rolling, or the history of rolling over some cells."""
     rolling, options = Rolling.of(keywords), _friction_options(keywords)
     moves = core.roll(shape, rolling, options, on)
     return _solve_steps(moves, shape, rolling.cells or 1, options)
@@ -914,10 +916,8 @@ def _initial_state(
 ) -> core.Solved | Matrix | None:
     """Return what the compiled module starts a solve from."""
     if isinstance(initial, FrictionSolution):
-        initial = initial.normal
-    return (
-        initial._solved if isinstance(initial, Solution) else getattr(initial, "pressure", initial)
-    )
+        return initial.normal._solved
+    return initial._solved if isinstance(initial, Solution) else initial
 
 
 def _last_state(initial: Any) -> core.FrictionSolved | None:

@@ -97,7 +97,9 @@ def _row_count(table: Table, columns: Sequence[int]) -> int:
 def has_curve(table: Table, choices: Mapping[str, str | int | None], is_spring: bool) -> bool:
     """Return whether a table has a depth and a force."""
     try:
-        if not (is_spring and choices["depth"] is None and _height("", table) is not None):
+        if is_spring and choices["depth"] is None:
+            _height("", table)  # raises an error where there is none
+        else:
             _signed_column("", table, "depth", choices["depth"])
         _signed_column("", table, "force", choices["force"])
     except ValueError:

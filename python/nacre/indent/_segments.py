@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-SURE = 6.0
+OUTLIER = 6.0
 """Standard deviations of the noise that the largest of a hundred thousand normal values exceeds
 once in ten thousand curves."""
-SPAN = 10.0
+NOISE_RANGE = 10.0
 """Standard deviations between the largest and the smallest of a hundred thousand normal values,
 9 on average, and some to be safe."""
 BEND = 0.25
@@ -20,14 +20,14 @@ BEND = 0.25
 decades per ramp, as at a constant strain rate, is 0.25³/3, below 1 % of the value."""
 TRIALS = 50
 """Places that are compared at once: a thousand points take two rounds."""
-LEVEL = 0.01
+HELD_BAND = 0.01
 """Share of the range within which a force is held, beside its noise: what controllers keep."""
-DWELL = 5.0
+LEAST_DWELL = 5.0
 """Points within that share over those of an even ramp from which a force is held. A power law of
 exponent 2 has 2.2 times as many at a twentieth of its largest force, 1.6 at a tenth."""
 LEAST_HELD = 10
 """Fewest points of a hold: to tell a rate from."""
-BASELINE = 0.05
+LEAST_CONTACT_FORCE = 0.05
 """Share of the largest force below which an even force is a tip out of contact."""
 
 
@@ -57,8 +57,8 @@ def _first_rise(values: Array) -> tuple[int, int]:
     """
     noise = noise_of(values) if values.size > 2 else 0.0
     largest = float(values.max())
-    floor = largest - max(BEND * float(np.ptp(values)), 2 * SPAN * noise)
-    visit = int(np.argmax(values >= largest - SURE * noise))
+    floor = largest - max(BEND * float(np.ptp(values)), 2 * NOISE_RANGE * noise)
+    visit = int(np.argmax(values >= largest - OUTLIER * noise))
     leaves = np.flatnonzero(values[visit:] < floor)
     leave = visit + int(leaves[0]) if leaves.size else values.size
     top = visit + int(np.argmax(values[visit:leave]))
@@ -90,7 +90,7 @@ def departure(depth: Array, force: Array) -> int:
     """Return the last point before the unloading: both force and depth are held up to there."""
     last = force.size - 1 - arrival(force[::-1])
     after = depth[last:]
-    if after.size > 2 and np.ptp(after) > 2 * SPAN * noise_of(after):
+    if after.size > 2 and np.ptp(after) > 2 * NOISE_RANGE * noise_of(after):
         last += after.size - 1 - arrival(after[::-1])  # a force that falls at a depth that is held
     return last
 
@@ -98,28 +98,33 @@ def departure(depth: Array, force: Array) -> int:
 def find_hold(force: Array) -> slice | None:
     """Return the longest part of an unloading in which the force is held, or None.
 
-    It has more points within `LEVEL` than an even ramp would have, and is no baseline of a tip
+    It has more points within `HELD_BAND` than an even ramp would have, and is no baseline of a tip
     that is out of contact.
     """
     noise = noise_of(force) if force.size > 2 else 0.0
-    size = float(np.ptp(force))
-    within = max(LEVEL * size, SPAN * noise)
-    if within >= 0.5 * size:
+    force_range = float(np.ptp(force))
+    within = max(HELD_BAND * force_range, NOISE_RANGE * noise)
+    if within >= 0.5 * force_range:
         return None
+    # The longest run of points that are within the band.
     longest, start = slice(0, 0), 0
     for stop in range(1, force.size + 1):
         while np.ptp(force[start:stop]) > within:
             start += 1
         if stop - start > longest.stop - longest.start:
             longest = slice(start, stop)
+    # Without its ends, which belong to the ramps.
     away = np.abs(force[longest] - np.median(force[longest]))
-    near = longest.start + np.flatnonzero(away <= SURE * np.median(away))
-    longest = slice(int(near[0]), int(near[-1]) + 1)  # without ends of the ramps
+    near = longest.start + np.flatnonzero(away <= OUTLIER * np.median(away))
+    longest = slice(int(near[0]), int(near[-1]) + 1)
     points = longest.stop - longest.start
-    ramp = (force.size - points) * within / (size - within)
-    level = float(force[longest].mean())
-    falls = force[longest.stop :].size > 0 and float(force[longest.stop :].min()) < level - within
-    is_contact = falls or level > max(
-        BASELINE * float(force.max()), SURE * noise / math.sqrt(points)
+    points_of_ramp = (force.size - points) * within / (force_range - within)
+    # In contact: the force falls afterwards, or is above a baseline.
+    level, after = float(force[longest].mean()), force[longest.stop :]
+    falls_afterwards = after.size > 0 and float(after.min()) < level - within
+    is_contact = falls_afterwards or level > max(
+        LEAST_CONTACT_FORCE * float(force.max()), OUTLIER * noise / math.sqrt(points)
     )
-    return longest if points >= max(LEAST_HELD, DWELL * ramp) and is_contact else None
+    return (
+        longest if points >= max(LEAST_HELD, LEAST_DWELL * points_of_ramp) and is_contact else None
+    )

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.typing import among
-from nacre.indent._segments import SPAN, SURE, noise_of
+from nacre.indent._segments import NOISE_RANGE, OUTLIER, noise_of
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]
@@ -139,7 +139,7 @@ def _is_shuffled(depth: Array) -> bool:
 def _rises(depth: Array, force: Array, noise: float) -> bool:
     """Return whether the largest force, or the mean of deep points, exceeds what noise can do."""
     is_deep = depth[np.argmax(force)] >= np.median(depth)
-    if is_deep and float(force.max() - np.median(force)) > SURE * noise:
+    if is_deep and float(force.max() - np.median(force)) > OUTLIER * noise:
         return True
     ordered = force[np.argsort(depth, kind="stable")]
     for share in DEEP:
@@ -152,13 +152,13 @@ def _rises(depth: Array, force: Array, noise: float) -> bool:
 
 def _fall(depth: Array, force: Array) -> tuple[int, str] | None:
     """Return where depth falls, or else force after its largest value, and which of them."""
-    least = max(SPAN * noise_of(depth), LEAST_FALL[0] * float(np.ptp(depth)))
+    least = max(NOISE_RANGE * noise_of(depth), LEAST_FALL[0] * float(np.ptp(depth)))
     highest = np.maximum.accumulate(depth)
     below = np.flatnonzero(highest - depth > least)
     if below.size:
         return int(np.flatnonzero(depth[: below[0]] == highest[below[0]])[-1]), "depth"
     # Before its maximum a force may fall in a loading: snap-in, pop-in.
-    least = max(SPAN * noise_of(force), LEAST_FALL[1] * float(np.ptp(force)))
+    least = max(NOISE_RANGE * noise_of(force), LEAST_FALL[1] * float(np.ptp(force)))
     top = int(np.argmax(force))
     if float(force[top] - force[top:].min()) > least:
         return top, "force"

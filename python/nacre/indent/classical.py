@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.indent._segments import SURE, noise_of
+from nacre.indent._segments import OUTLIER, noise_of
 from nacre.indent.curves import Curve
 from nacre.indent.solution import Indentation
 from nacre.indent.unloading import EPSILON, section
@@ -179,7 +179,7 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
 def _refuse_unloading(depth: Array, force: Array, body: core.HalfSpace, tip: core.Tip) -> None:
     """Refuse a curve whose force falls to zero at a depth at which the body would bear some."""
     noise = noise_of(force) if force.size > 3 else 0.0
-    low = max(FALLEN, SURE * noise / float(force.max())) * float(force.max())
+    low = max(FALLEN, OUTLIER * noise / float(force.max())) * float(force.max())
     small = np.flatnonzero(force <= low)
     if not small.size:
         return

@@ -369,6 +369,7 @@ def _result(
     minima: list[tuple[Array, float]],
     profile: bool,
 ) -> Fit:
+    """Return the fit at the best estimate, with intervals from the ends of profiles, or linear."""
     best = examination.estimate
     x, rates = best.x, model.rates(best.x)
     spread = best.spread

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.extras import extra
-from nacre.indent._segments import SPAN, SURE, noise_of
+from nacre.indent._segments import NOISE_RANGE, OUTLIER, noise_of
 from nacre.indent.curves import LEAST_POINTS, Curve
 from nacre.results.quantities import frozen, quantity
 from nacre.results.shown import TableResult
@@ -324,13 +324,13 @@ def _notes(branch: Curve, load: float, slope: float, power: float, power_error: 
     law = load * np.maximum(1 - slope * below / (power * load), 0.0) ** power
     excess = float(np.mean(branch.force[top] - law)) / load
     noise = noise_of(branch.force) / load / math.sqrt(LEAST_POINTS)
-    if abs(excess) > OFF + SURE * noise:
+    if abs(excess) > OFF + OUTLIER * noise:
         notes.append(
             f"the force at the largest depth is {1 + excess:.3g} times that of the power law: the "
             "sample creeps, or the part begins too low; a longer hold helps"
         )
     rises = float(branch.depth.max() - branch.depth[0])
-    if rises > OFF * float(np.ptp(branch.depth)) + SPAN * noise_of(branch.depth):
+    if rises > OFF * float(np.ptp(branch.depth)) + NOISE_RANGE * noise_of(branch.depth):
         notes.append(
             f"the depth rises by another {rises:.3g} m after the force began to fall: the sample "
             "creeps, and the slope is too steep"

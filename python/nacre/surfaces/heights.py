@@ -313,8 +313,9 @@ class Text:
         for pattern in COUNTS:
             texts = [values[0] for name, values in self.head.items() if pattern.fullmatch(name)]
             texts += [value for name, value in self.comments.items() if pattern.fullmatch(name)]
-            numbers = {int(float(text)) for text in texts if NUMBER.fullmatch(text)}
-            sizes.append(numbers.pop() if len(numbers) == 1 else 0)
+            numbers = [float(text) for text in texts if NUMBER.fullmatch(text)]
+            counts = {int(number) for number in numbers if math.isfinite(number)}
+            sizes.append(counts.pop() if len(counts) == 1 else 0)
         return (sizes[0], sizes[1]) if all(sizes) else None
 
     def points(self, table: Table) -> Heights | None:

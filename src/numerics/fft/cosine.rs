@@ -31,7 +31,7 @@ fn fold_lines<'a, const W: usize>(
     mut write: impl FnMut(usize, [f64; W]),
 ) -> [f64; W] {
     let length = angles.sin.len() + 1;
-    let mut first = [0.0; W];
+    let mut c1 = [0.0; W];
     for j in 1..length.div_ceil(2) {
         let (a, b) = (line(j), line(length - j));
         let (sin, cos) = (angles.sin[j - 1], angles.cos[j - 1]);
@@ -46,7 +46,7 @@ fn fold_lines<'a, const W: usize>(
                 let (half, difference) = (0.5 * (a[k] + b[k]), a[k] - b[k]);
                 let turned = difference * sin;
                 (low[k], high[k]) = (half - turned, half + turned);
-                first[k] += difference * cos;
+                c1[k] += difference * cos;
             }
         }
         write(j, low);
@@ -62,18 +62,18 @@ fn fold_lines<'a, const W: usize>(
     } else {
         let top = line(0).map(|value| 0.5 * value);
         write(0, top);
-        for (first, top) in first.iter_mut().zip(top) {
-            *first += top;
+        for (c1, top) in c1.iter_mut().zip(top) {
+            *c1 += top;
         }
     }
-    first
+    c1
 }
 
 /// [`fold_lines`] for one sequence.
 pub(super) fn fold(f: &[f64], odd: bool, angles: &Angles, y: &mut [f64]) -> f64 {
     let (f, _) = f.as_chunks::<1>();
-    let [first] = fold_lines(|j| &f[j], odd, angles, |j, [value]| y[j] = value);
-    first
+    let [c1] = fold_lines(|j| &f[j], odd, angles, |j, [value]| y[j] = value);
+    c1
 }
 
 /// [`fold_lines`] for columns, of which two form one complex sequence of `y`; as many pairs are computed as fit into it.
@@ -94,23 +94,23 @@ pub(super) fn fold_pairs<'a, const W: usize>(
 
 /// Computes the transform of the full sequence from Y at 0 … N/2; for an odd sequence without the
 /// factor −i.
-pub(super) fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
+pub(super) fn unfold(y: &[Complex64], odd: bool, c1: f64, values: &mut [f64]) {
     if odd {
         unfold_with(y, -y[0].re, values, |y| (2.0 * y.im, -2.0 * y.re));
     } else {
-        unfold_with(y, 2.0 * first, values, |y| (2.0 * y.re, -2.0 * y.im));
+        unfold_with(y, 2.0 * c1, values, |y| (2.0 * y.re, -2.0 * y.im));
     }
 }
 
-/// Computes `values` from the term 1, `first`, and from `terms`, which gives the term 2k and the
+/// Computes `values` from the term 1, `c1`, C_1, and from `terms`, which gives the term 2k and the
 /// difference of the terms 2k + 1 and 2k − 1.
 fn unfold_with(
     y: &[Complex64],
-    first: f64,
+    c1: f64,
     values: &mut [f64],
     terms: impl Fn(Complex64) -> (f64, f64),
 ) {
-    let mut last = first;
+    let mut last = c1;
     (values[0], values[1]) = (terms(y[0]).0, last);
     let (twos, rest) = values[2..].as_chunks_mut::<2>();
     for (two, y) in twos.iter_mut().zip(&y[1..]) {
@@ -128,7 +128,7 @@ fn unfold_with(
 pub(super) fn unfold_pair(
     y: &[Complex64],
     odd: bool,
-    first: Complex64,
+    c1: Complex64,
     one: &mut [f64],
     other: &mut [f64],
 ) {
@@ -140,19 +140,19 @@ pub(super) fn unfold_pair(
     if odd {
         unfold_pair_with(y, -y[0], one, other, |y, m| (imaginary(y, m), -real(y, m)));
     } else {
-        let first = 2.0 * first;
-        unfold_pair_with(y, first, one, other, |y, m| (real(y, m), -imaginary(y, m)));
+        let c1 = 2.0 * c1;
+        unfold_pair_with(y, c1, one, other, |y, m| (real(y, m), -imaginary(y, m)));
     }
 }
 
 fn unfold_pair_with(
     y: &[Complex64],
-    first: Complex64,
+    c1: Complex64,
     one: &mut [f64],
     other: &mut [f64],
     terms: impl Fn(Complex64, Complex64) -> (Complex64, Complex64),
 ) {
-    let mut last = first;
+    let mut last = c1;
     let even = terms(y[0], y[0]).0;
     (one[0], one[1]) = (even.re, last.re);
     (other[0], other[1]) = (even.im, last.im);

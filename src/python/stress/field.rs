@@ -20,8 +20,8 @@ const DISPLACEMENTS: [&str; 3] = ["ux", "uy", "uz"];
 /// Names of the axes of a field, in their order.
 const AXES: [&str; 3] = ["z", "x", "y"];
 
-/// Fields of a stress by their names. Arrays have all three axes; those of which one coordinate was `given`, as a
-/// number, are left out of "axes".
+/// Fields of a stress by their names. Arrays have all three axes; `is_number` says along which axes the
+/// coordinate was a number: such an axis has length 1 and is left out of "axes".
 pub(super) fn fields(
     py: Python<'_>,
     stress: Stress,

@@ -306,3 +306,11 @@ def test_a_line_scan_of_an_instrument_is_a_profile(tmp_path: Path) -> None:
     (tmp_path / "a.001").write_bytes(nanoscope(48))
     with pytest.raises(ValueError, match=r"holds no profile: .* HeightMap.read reads a map"):
         nacre.SampledProfile.read(tmp_path / "a.001")
+
+
+@MARK("count", ["inf", "-inf", "nan"])
+def test_counts_in_a_head_that_are_not_finite_count_for_nothing(count: str, tmp_path: Path) -> None:
+    heights = np.random.default_rng(3).random((4, 5)).round(4)
+    text = f"# columns: {count}\n# rows: {count}\n" + table(*heights.T)
+    read = nacre.HeightMap.read(written(tmp_path / "a.txt", text), unit="um", spacing=1e-6)
+    assert sorted(read.heights.shape) == [4, 5]
