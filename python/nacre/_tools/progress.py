@@ -10,8 +10,8 @@ from datetime import timedelta
 from importlib.util import find_spec
 from threading import Event, Thread, current_thread, main_thread
 
+from nacre._tools import threads
 from nacre._tools.extras import extra
-from nacre._tools.threads import CAN_START
 
 _open_bars: list[str] = []
 """Work of which a bar may be there."""
@@ -49,7 +49,7 @@ def case_progress(progress: bool | None, total: int, stored: int) -> Iterator[Ca
     console = Console(stderr=True)
     # Without ipywidgets, rich would show a warning and an empty line in a notebook.
     notebook = console.is_jupyter and find_spec("ipywidgets") is not None
-    if not (CAN_START and (console.is_terminal or notebook)):
+    if not (threads.CAN_START and (console.is_terminal or notebook)):
         lines = _Lines(total, stored, at_once=bool(progress))
         yield lines.advance
         lines.end()
@@ -75,7 +75,7 @@ def lasting(what: str, progress: object = None) -> Iterator[Callable[..., object
     no thread.
     """
     callback = check_progress(progress)
-    watched = CAN_START and ("ipykernel" in sys.modules or sys.stderr.isatty())
+    watched = threads.CAN_START and ("ipykernel" in sys.modules or sys.stderr.isatty())
     outermost = not _open_bars and current_thread() is main_thread()
     if callback is not None or not (watched and outermost) or find_spec("rich") is None:
         yield callback

@@ -262,6 +262,8 @@ def test_where_no_thread_can_be_started_no_bit_changes(monkeypatch: Patch) -> No
         return study, quiet(BEARING.solve, force=(1e3, 0.0, None), cells=(40, 24)).loads
 
     study, loads = solved()
+    monkeypatch.setitem(sys.modules, "ipykernel", threads)  # as in a notebook, where bars are shown
+    monkeypatch.setattr("nacre._tools.progress.SOON", 0.0)
     monkeypatch.setattr(threads, "CAN_START", False)
     monkeypatch.setattr(threading.Thread, "start", refused)
     alone, alone_loads = solved()
