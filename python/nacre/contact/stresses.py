@@ -37,14 +37,18 @@ Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
 Extreme = tuple[str, str, float, float, float, float, float, float]
 """Cells of a row of the table of extremes, as `EXTREMES` names them."""
+PLACE = (
+    Quantity("x", "x of the place", "m"),
+    Quantity("y", "y of the place", "m"),
+    Quantity("z", "depth of the place", "m"),
+)
+"""Columns of the place of an extreme."""
 EXTREMES = (
     Quantity("part", "layer or interface"),
     Quantity("quantity", "name of the extreme"),
     Quantity("value", "largest value", "Pa"),
     Quantity("uncertainty", "error due to the size of the cells, estimated", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
+    *PLACE,
     Quantity("safety_factor", "yield stress or strength over the value"),
 )
 """Columns of the table of a stress summary."""

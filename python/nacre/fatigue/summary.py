@@ -18,7 +18,7 @@ from nacre._tools.typing import ByLayer, Direction, Member, Real, Side, among
 from nacre._tools.units import printable, written
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution, check_unyielded
-from nacre.contact.stresses import check_limits
+from nacre.contact.stresses import PLACE, check_limits
 from nacre.fatigue.criteria import CRITERIA, Criterion, Rule
 from nacre.fatigue.history import Rolling, States, refined
 from nacre.results import display, files, values
@@ -46,9 +46,7 @@ FATIGUE = (
     Quantity("part", "layer or interface"),
     Quantity("quantity", "name of the value"),
     Quantity("value", "value", "Pa"),
-    Quantity("x", "x of the place", "m"),
-    Quantity("y", "y of the place", "m"),
-    Quantity("z", "depth of the place", "m"),
+    *PLACE,
     Quantity("safety_factor", "yield stress or limit over the value"),
 )
 """Columns of the table of a summary of fatigue."""

@@ -95,9 +95,9 @@ class Shown(Fields):
         """Return the picture in a notebook."""
         return None
 
-    def _file_rows(self) -> Iterable[Iterable[object]]:
-        """Return the rows of the table in a ``.csv``, the heading first."""
-        raise NotImplementedError
+    def _file_rows(self) -> Iterable[Iterable[object]] | None:
+        """Return the rows of the table in a ``.csv``, the heading first; None without a table."""
+        return None
 
     def _comments(self) -> dict[str, object]:
         """Return what stands above the table of a ``.csv``."""
@@ -136,7 +136,8 @@ class Shown(Fields):
         """Return the verdict, if there is one, the numbers, and the table."""
         with self._units():
             rows, table = [*self._rows(), *self._remarks()], self._table()
-            lines = [*self._sentences(), ""] if self._sentences() else []
+            sentences = self._sentences()
+            lines = [*sentences, ""] if sentences else []
             warnings = [f"warning: {text}" for text in self._warnings]
         if rows:
             lines += [display.text(rows, ()), *warnings, *([""] if table else [])]
@@ -194,8 +195,9 @@ class Shown(Fields):
 
     def _writers(self) -> dict[str, Callable[[Path], object]]:
         """Return the writers of all files but the report, by their endings."""
-        rows, result = self._file_rows(), self
-        writers = files.tabular(result, rows, **self._comments())  # type: ignore[arg-type]
+        rows, result, writers = self._file_rows(), self, {}
+        if rows is not None:
+            writers = files.tabular(result, rows, **self._comments())  # type: ignore[arg-type]
         plot = getattr(self, "plot", None)
         return writers | (files.pictures(lambda: files.first_axes(plot())) if plot else {})
 
