@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -17,7 +16,7 @@ from nacre._tools.typing import Field
 from nacre.bearing import BearingSolution, PairSolution
 from nacre.bearing.kinds import RollerBearing
 from nacre.case import Case, CaseError, toml
-from nacre.case.results import DEPTH_OPTIONS, last_of, report_of, results_of
+from nacre.case.results import DEPTH_OPTIONS, last_of, rated, report_of, results_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import depth_charts
@@ -57,6 +56,7 @@ EVERY = 3
 CONTACT_ROWS = {"load", "approach", "tilt", "peak_pressure", "contact_extent", "contact_area"}
 BEARING_ROWS = {"displacement", "tilt", "largest_load", "peak_pressure", "edge_pressure", "loaded"}
 BEARING_ROWS |= {"first_bearing", "second_bearing"}
+FILM_ROWS = {"central", "minimum", "film_ratio"}
 """Numbers that the page shows."""
 INDENT_ROWS = {
     "load": "largest load",
@@ -233,11 +233,12 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     draft = {"model": "iso16281", "cells": None} if stage == "draft" else {}
     keywords = arguments | draft | {"progress": wanted, "check": False}
     solution = _converged(bearing.solve(**keywords), "equilibrium")
-    rows, life = _selected(solution, BEARING_ROWS), case.life()
-    if life is not None:
-        rated = solution.life(**life)
-        solution = replace(solution, _life=rated)
-        rows += [*rated._rows(), *rated._remarks()]
+    # A film belongs to solved contacts, which a draft has not.
+    results = rated(case, solution, has_film=stage != "draft")
+    solution, rows = results["bearing"], _selected(solution, BEARING_ROWS)
+    if (life := results.get("life")) is not None:
+        rows += [*life._rows(), *life._remarks()]
+    rows += _selected(results.get("film"), FILM_ROWS)
     is_tilted = any(arguments.get("tilt") or ())
     if isinstance(solution, PairSolution):
         pictures = [_figure(member._ring_chart()) for member in solution.bearings]

@@ -22,8 +22,11 @@ SCALES: dict[str, Callable[[float], float]] = {
     "°": math.radians,
 }
 """Numbers of a case by those in units that no system has: rad/s, slopes and radians."""
-LIMITS = ("yield_stress", "strength", "shear_yield")
-"""Keys of materials that may be empty."""
+LIMITS = {"stress": ("yield_stress", "strength"), "fatigue": ("shear_yield",)}
+"""Limits of materials, which may be empty, by the tables of a case that take them."""
+
+EMPTY = {"required_distance", *LIMITS["stress"], *LIMITS["fatigue"]}
+"""Keys that may be empty, besides those of bonds."""
 
 
 class FieldError(ValueError):
@@ -140,7 +143,7 @@ def field_of(
         label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
         unit=System(units).unit(unit)[1],
         help=UNIT.sub("", text) if helps is None else helps.get(quantity, ""),
-        may_be_empty=names[-1] in LIMITS,
+        may_be_empty=names[-1] in EMPTY or "bond_strength" in names,
         is_count="integer" in (nodes[0].get("type"), nodes[0].get("items", {}).get("type")),
     )._replace(**own)
     default = one.typed(entry_at(data, path), units)

@@ -109,7 +109,8 @@ def test_numbers_are_those_of_the_command_line(name: str, tmp_path: Path, capsys
     assert value == pytest.approx(expected, rel=1e-4)
     if stage == "stress":
         steel = numbers["stress"]["layers"][1]
-        assert f"{steel['yield_safety_factor']:.3g} times" in parts["verdict"]["words"]
+        assert f"{steel['yield_safety_factor']:.3g}" in str(parts["verdict"])
+        assert numbers["verdict"]["stress"] == parts["verdict"]
 
 
 @pytest.mark.parametrize(
@@ -182,7 +183,7 @@ def test_an_empty_limit_says_what_is_needed() -> None:
     case = cards()["line"].case(empty)
     verdict = answer(case, "stress")["parts"]["verdict"]
     assert verdict["level"] == "unknown"
-    assert any("needs to bear" in line for line in (verdict["words"], *verdict["lines"]))
+    assert sum("no limit is given" in line for line in (verdict["words"], *verdict["lines"])) == 3
 
 
 def test_lines_have_grids_that_hold_them() -> None:
