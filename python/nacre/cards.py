@@ -229,7 +229,8 @@ def numbers_of(limits: Limits | None, name: str) -> ByLayer | None:
         return {
             k: v for k, v in numbers.items() if v is not None or not isinstance(limits[k], Card)
         }
-    return [*map(number, limits)] if isinstance(limits, list | tuple) else limits
+    plain: Any = [*map(number, limits)] if isinstance(limits, list | tuple) else limits
+    return plain  # type: ignore[no-any-return]
 
 
 def names_of(limits: Limits | None, body: object) -> tuple[str | None, ...] | None:
