@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -16,7 +17,7 @@ from nacre._tools.typing import Field
 from nacre.bearing import BearingSolution, PairSolution
 from nacre.bearing.kinds import RollerBearing
 from nacre.case import Case, CaseError, toml
-from nacre.case.results import DEPTH_OPTIONS, last_of, rated, report_of, results_of
+from nacre.case.results import DEPTH_OPTIONS, last_of, of_last, rated, report_of, results_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
 from nacre.contact.stresses import depth_charts
@@ -29,7 +30,7 @@ from nacre.results.charts import Axis, Chart, Curve, Look, Picture, section
 from nacre.results.report import Rows
 from nacre.results.rows import Row
 from nacre.results.svg import drawing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, verdict_on
 from nacre.results.verdict import measured as with_error
 
 Answer = dict[str, Any]
@@ -68,6 +69,8 @@ INDENT_ROWS = {
 """Numbers of an indentation that the page shows, of its largest depth."""
 EXTREMES = {"von_mises": "largest von Mises stress", "tension": "largest tension"}
 """Extremes of stresses that the page shows."""
+LEVELS = ("bad", "unknown", "fair", "good")
+"""Levels of verdicts, the worst first."""
 DIGITS = 5
 """Digits of the main number."""
 PRESSURE, DEPTH = Axis("pressure", "Pa"), Axis("depth", "m")
@@ -160,15 +163,16 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     pictures, warnings, verdict = [_pressures(coated=solution, bare=bare)], solution._warnings, None
     if stage == "stress":
         keywords = case.stress() or {}
+        options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
         try:
-            summary = solution.stress_summary(**keywords, progress=wanted)
+            results = of_last(case, solution, {"progress": wanted})
         except ValueError as error:
             verdict = Verdict("unknown", f"Cannot tell: {error}.")
         else:
-            verdict, warnings = summary.verdict(), [*warnings, *summary.warnings]
-            rows += _extremes(summary)
-            options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
-            if bare is not None:
+            verdict, summary = worst_of(map(verdict_on, results.values())), results.get("stress")
+            warnings = [*warnings, *(text for one in results.values() for text in one.warnings)]
+            rows += [] if summary is None else _extremes(summary)
+            if bare is not None and summary is not None:
                 sliding = {name: value for name, value in options.items() if name != "residual"}
                 beside += _extremes(bare.stress_summary(**sliding, progress=wanted))
             pictures.append("".join(map(_figure, depth_charts(solution, bare, **options))))
@@ -215,14 +219,17 @@ def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
         raise CaseError(f"no history was found: {error}") from error
     new, worn = (history.states[k].solution for k in (0, -1))
     pictures = [_pressures(worn=worn, new=new), _figure(history._depth_chart())]
+    history = replace(history, required_distance=case.required_distance())
+    results = {} if stage == "draft" else of_last(case, worn, {"progress": wanted})
+    verdict = worst_of(map(verdict_on, [history, *results.values()]))
     peak = ("last peak pressure", worn.peak_pressure, "Pa")
     following = "full" if stage == "draft" else None
     return _answer(
         peak,
         [*history._rows(), *history._remarks()],
         pictures,
-        history.warnings,
-        history.verdict(),
+        [*history.warnings, *(text for one in results.values() for text in one.warnings)],
+        verdict,
         following,
     )
 
@@ -309,6 +316,17 @@ def _answer(
     if verdict is not None:
         page["verdict"] = verdict._state()
     return {"parts": page, "next": following}
+
+
+def worst_of(verdicts: Iterable[Verdict | None]) -> Verdict | None:
+    """Return the worst verdict, with the sentences of the others below; None of none."""
+    first, *others = sorted(filter(None, verdicts), key=lambda one: LEVELS.index(one.level)) or [
+        None
+    ]
+    if first is None:
+        return None
+    lines = (line for verdict in others for line in verdict.sentences)
+    return replace(first, lines=tuple(dict.fromkeys([*first.lines, *lines])))
 
 
 def _selected(result: Any, keys: set[str]) -> list[Row]:

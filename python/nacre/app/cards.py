@@ -202,8 +202,6 @@ def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
         data = _with_entry(data, path, None)
     for path, value in entry.get("changes", {}).items():
         data = _with_entry(data, path, value)
-    for layer in data.get("body", {}).get("layers", ()):
-        layer["name"] = layer["material"]
     main = [field_of(data, helps=helps, **description) for description in entry["fields"]]
     for field in main:
         data = with_value(data, field, field.default)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nacre._tools.units import System, size_of
-from nacre.case.reference import UNIT, place
+from nacre.case.reference import UNIT, options, place
 from nacre.case.tables import unit_of
 from nacre.results.parameters import quantity_of
 
@@ -144,7 +144,10 @@ def field_of(
         unit=System(units).unit(unit)[1],
         help=UNIT.sub("", text) if helps is None else helps.get(quantity, ""),
         may_be_empty=names[-1] in EMPTY or "bond_strength" in names,
-        is_count="integer" in (nodes[0].get("type"), nodes[0].get("items", {}).get("type")),
+        is_count=any(
+            "integer" in (option.get("type"), option.get("items", {}).get("type"))
+            for option in options(nodes[0])
+        ),
     )._replace(**own)
     default = one.typed(entry_at(data, path), units)
     return one._replace(**({"default": default} | own))

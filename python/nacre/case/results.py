@@ -53,10 +53,10 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
     name = case.friction or "solve"
     with naming(case, name):
         results = {"solution": getattr(nacre, name)(**arguments, **options)}
-    return results | _of_last(case, last_of(results["solution"]), options)
+    return results | of_last(case, last_of(results["solution"]), options)
 
 
-def _of_last(case: Case, last: Any, options: Options) -> Results:
+def of_last(case: Case, last: Any, options: Options) -> Results:
     """Return the stresses and the fatigue of a contact that the case asks for."""
     results = {}
     if (keywords := case.stress()) is not None:
@@ -71,8 +71,8 @@ def _of_last(case: Case, last: Any, options: Options) -> Results:
 def _wear(case: Case, arguments: Options, options: Options) -> Results:
     with naming(case, "wear"):
         history = nacre.wear(**arguments, **options)
-        history = replace(history, required_distance=case.required_distance())
-    return {"wear": history} | _of_last(case, history.states[-1].solution, options)
+    history = replace(history, required_distance=case.required_distance())
+    return {"wear": history} | of_last(case, history.states[-1].solution, options)
 
 
 def _bearing(case: Case, arguments: Options, options: Options) -> Results:
