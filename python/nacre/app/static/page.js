@@ -186,6 +186,13 @@ document.addEventListener("change", ({ target }) => {
 });
 document.addEventListener("submit", (event) => event.preventDefault());
 all(".tab").forEach((tab) => tab.addEventListener("click", () => open(forms.find((other) => other.dataset.group === tab.dataset.group))));
+one("[data-testid=finer]").addEventListener("click", () => {
+  if (drafting) return;
+  clearTimeout(timer);
+  request?.abort();
+  show("busy", "computing …");
+  ask("finer");
+});
 one("[data-testid=report]").addEventListener("click", () => save("/report", "report", "text/html", "html"));
 one("[data-testid=case-file]").addEventListener("click", () => save("/answer", "case", "application/toml", "toml"));
 one("[data-testid=copy-link]").addEventListener("click", () =>
