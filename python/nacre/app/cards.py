@@ -41,8 +41,8 @@ IDLE = tuple(f".{key}" for keys in LIMITS.values() for key in keys)
 """Ends of the paths of limits, which act in some cases only."""
 BONDS = ("shear", "tension")
 """Limits of interfaces."""
-REQUIRED = "wear.required_distance"
-"""Limit of wear."""
+REQUIRED = {"wear": "wear.required_distance", "bearing": "bearing.life.required_life"}
+"""What has to be reached, by the table of the case."""
 MARGIN = 3.0
 """Width of the grid of a line contact over that of the contact on the softest of its materials."""
 
@@ -265,5 +265,4 @@ def _limits(data: Data) -> Iterator[str]:
         if table == "stress":
             for place in range(len(layers)):
                 yield from (f"{member}.layers[{place}].bond_strength.{key}" for key in BONDS)
-    if "wear" in data:
-        yield REQUIRED
+    yield from (path for table, path in REQUIRED.items() if table in data)

@@ -25,7 +25,7 @@ SCALES: dict[str, Callable[[float], float]] = {
 LIMITS = {"stress": ("yield_stress", "strength"), "fatigue": ("shear_yield",)}
 """Limits of materials, which may be empty, by the tables of a case that take them."""
 
-EMPTY = {"required_distance", *LIMITS["stress"], *LIMITS["fatigue"]}
+EMPTY = {"required_distance", "required_life", *LIMITS["stress"], *LIMITS["fatigue"]}
 """Keys that may be empty, besides those of bonds."""
 
 

@@ -228,6 +228,15 @@ def test_an_empty_limit_says_what_is_needed() -> None:
     assert sum("no limit is given" in line for line in (verdict["words"], *verdict["lines"])) == 3
 
 
+@pytest.mark.parametrize("name", ["bearing", "ball-bearing"])
+@pytest.mark.parametrize(("hours", "level"), [("1e6", "bad"), ("10", None), ("", "unknown")])
+def test_a_required_life_is_judged(name: str, hours: str, level: str | None) -> None:
+    case = cards()[name].case({"bearing.life.required_life": hours})
+    verdict = answer(case, "draft")["parts"]["verdict"]
+    assert (verdict["question"] is not None) == bool(hours)
+    assert level in (None, verdict["level"])
+
+
 def test_lines_have_grids_that_hold_them() -> None:
     for load in ("0.01", "100", "1e5"):
         reply = answer(cards()["line"].case({"solve.load": load}), "full")
