@@ -90,6 +90,25 @@ class BearingOptions(Group):
         )
 
 
+@dataclass(frozen=True)
+class Requirements(Group):
+    """What is required of a bearing, which its verdict judges."""
+
+    required_life: float | None = keyword()
+    static_safety: float | None = keyword()
+
+    def checked(self, speed: float) -> Requirements:
+        """Return the requirements with Python's numbers, or raise an error."""
+        if self.required_life is not None and speed == 0:
+            raise ValueError(
+                "required_life must be given with a speed, got none: there are no hours"
+            )
+        values = {name: getattr(self, name) for name in self.keywords()}
+        return Requirements(
+            **{k: None if value is None else above(k, value) for k, value in values.items()}
+        )
+
+
 class BearingKeywords(TypedDict, total=False):
     """Keywords of `solve`, as editors show them."""
 
@@ -107,6 +126,8 @@ class BearingKeywords(TypedDict, total=False):
     threads: int | None
     progress: Callable[[int, float], object] | None
     check: bool
+    required_life: float | None
+    static_safety: float | None
 
 
 def _positive(name: str, value: object) -> int:

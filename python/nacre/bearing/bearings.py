@@ -9,6 +9,7 @@ from nacre.bearing.arguments import (
     BearingKeywords,
     BearingOptions,
     Operation,
+    Requirements,
     RingConditions,
 )
 from nacre.bearing.geometry import Bearing
@@ -25,7 +26,7 @@ class Solvable(Bearing):
         """Dynamic load rating of ISO 281 [N], whatever the capacity is."""
         return rating(self)
 
-    @grouped(RingConditions, Operation, BearingOptions)
+    @grouped(RingConditions, Operation, BearingOptions, Requirements)
     def solve(self, **keywords: Unpack[BearingKeywords]) -> BearingSolution:
         """Load, tilt and pressure of every element under a load or displacement of the inner ring.
 
@@ -71,6 +72,10 @@ class Solvable(Bearing):
             returning False stops, and gives the unfinished solution.
         check : bool, optional
             Whether to raise an error if the tolerance was not met.
+        required_life : float, optional
+            Life that is required [h], which the verdict judges; it needs a speed.
+        static_safety : float, optional
+            Static safety s_0 that is required; by default 1.5 of rollers and 1 of balls, ISO 76.
 
         Returns
         -------
@@ -96,4 +101,5 @@ class Solvable(Bearing):
         1929
         """
         ring, operation = RingConditions.of(keywords), Operation.of(keywords)
-        return solve_bearing(self, ring, operation, BearingOptions.of(keywords))
+        options, needs = BearingOptions.of(keywords), Requirements.of(keywords)
+        return solve_bearing(self, ring, operation, options, needs)

@@ -24,6 +24,7 @@ from nacre.bearing.arguments import (
     BearingKeywords,
     BearingOptions,
     Operation,
+    Requirements,
     RingConditions,
 )
 from nacre.bearing.balls import AngularContactBall
@@ -63,7 +64,7 @@ from nacre.results.quantities import AXIS, frozen, quantity
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
-from nacre.results.values import encode, refusing
+from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -205,7 +206,7 @@ class Pair:
         """Both bearings."""
         return self.first, self.second
 
-    @grouped(RingConditions, Operation, BearingOptions)
+    @grouped(RingConditions, Operation, BearingOptions, Requirements)
     def solve(self, **keywords: Unpack[BearingKeywords]) -> PairSolution:
         """Equilibrium of the shaft and of all elements of both bearings.
 
@@ -246,6 +247,10 @@ class Pair:
             returning False stops, and gives the unfinished solution.
         check : bool, optional
             Whether to raise an error if the tolerance was not met.
+        required_life : float, optional
+            Life of both that is required [h], which the verdict judges; it needs a speed.
+        static_safety : float, optional
+            Static safety s_0 that is required of each; by default 1.5 of rollers and 1 of balls.
 
         Returns
         -------
@@ -273,7 +278,8 @@ class Pair:
         [2000, 2000]
         """
         ring, operation = RingConditions.of(keywords), Operation.of(keywords)
-        return solve_pair(self, ring, operation, BearingOptions.of(keywords))
+        options, needs = BearingOptions.of(keywords), Requirements.of(keywords)
+        return solve_pair(self, ring, operation, options, needs)
 
     def _arguments(self) -> dict[str, object]:
         """Return what makes the pair again, for files."""
@@ -305,7 +311,8 @@ def _settings(pair: Pair, options: BearingOptions) -> Array:
     settings = np.array([_touching(bearing) for bearing in pair.bearings])
     if pair.preload_force:
         axial = RingConditions((None, None, pair.preload_force), None, None, None)
-        alone = [solve_bearing(bearing, axial, STANDSTILL, options) for bearing in pair.bearings]
+        still = STANDSTILL, options, Requirements()
+        alone = [solve_bearing(bearing, axial, *still) for bearing in pair.bearings]
         return np.array([solution.displacement[2] for solution in alone])
     settings += (pair.preload_distance or 0.0) / 2
     if (pair.preload_distance or 0.0) > 0 and pair.first != pair.second:
@@ -396,11 +403,16 @@ def _check_tandem(pair: Pair, solutions: Iterable[BearingSolution], loaded: bool
 
 
 def solve_pair(
-    pair: Pair, conditions: RingConditions, operation: Operation, options: BearingOptions
+    pair: Pair,
+    conditions: RingConditions,
+    operation: Operation,
+    options: BearingOptions,
+    needs: Requirements,
 ) -> PairSolution:
     """Return the solution of what a user asked of a pair."""
     for bearing in pair.bearings:
         operation, options = operation.checked(bearing), options.checked(bearing)
+    needs = needs.checked(operation.speed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", core.NacreWarning)
         limit = max(PRELOAD_STEPS, options.max_iterations)
@@ -409,7 +421,7 @@ def solve_pair(
     problem, state, ending = _equilibrium(pair, conditions, operation, options, settings)
     equilibria = zip(pair.bearings, _problems(problem, state), strict=True)
     first, second = (
-        solution_of(bearing, operation, options, local, equilibrium, ending)
+        solution_of(bearing, operation, options, needs, local, equilibrium, ending)
         for bearing, (local, equilibrium) in equilibria
     )
     if ending[1] == "converged":
@@ -420,6 +432,7 @@ def solve_pair(
         for name, solution in zip(NAMES, (first, second), strict=True)
         for text in solution.report.warnings
     )
+    kinds = (*(first.report.warning_kinds or ()), *(second.report.warning_kinds or ()))
     solution = PairSolution(
         pair=pair,
         displacement=tuple(state.ring[:3].tolist()),
@@ -429,7 +442,13 @@ def solve_pair(
         first=first,
         second=second,
         tangent=(state.tangent + state.tangent.T) / 2,
-        report=BearingReport(ending[1], ending[0], state.balance, notes),  # type: ignore[arg-type]
+        report=BearingReport(
+            ending[1],  # type: ignore[arg-type]
+            ending[0],
+            state.balance,
+            notes,
+            warning_kinds=kinds,
+        ),
     )
     issue(solution, options)
     return solution
@@ -474,7 +493,10 @@ class PairLife(TableResult):
     required_life: float | None = None
     """Life that is required [h], which decides the verdict; None without."""
 
-    _LATER = ("reliability", "modification_factor", "required_life")
+    uncertainty: float | None = None
+    """Estimated error, as a share of the life, as that of a single bearing."""
+
+    _LATER = ("reliability", "modification_factor", "required_life", "uncertainty")
     _of: ClassVar[str] = "both bearings, "
 
     @classmethod
@@ -525,6 +547,7 @@ class PairSolution(Equilibrium):
 
     _TITLE = "pair of bearings"
     _DERIVED = ("_life",)
+    _LATER = ("life",)
 
     pair: Pair
     """Pair that was solved."""
@@ -553,6 +576,11 @@ class PairSolution(Equilibrium):
     def bearings(self) -> tuple[BearingSolution, BearingSolution]:
         """Solutions of both bearings."""
         return self.first, self.second
+
+    @property
+    def required_life(self) -> float | None:
+        """Life of both that is required [h]; None without."""
+        return self.first.required_life
 
     @property
     def verdict(self) -> Verdict:
@@ -659,7 +687,7 @@ class PairSolution(Equilibrium):
         """
         if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
-        hours_required = modification.pop("required_life", None)
+        hours_required = modification.pop("required_life", None) or self.required_life
         first, second = (
             solution.life(edge, rotating=rotating, **modification) for solution in self.bearings
         )
@@ -668,6 +696,9 @@ class PairSolution(Equilibrium):
         shortest = float(lives.min())
         shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
         both = float((shares**slope).sum()) ** (-1 / slope)
+        # Each error counts by the share of failures that are those of the bearing.
+        errors = np.array([first.uncertainty, second.uncertainty], dtype=np.float64)
+        error = float(np.average(errors, weights=shares**slope))
         hours = both * min(first.hours, second.hours)
         shorter = min(first, second, key=lambda one: one.revolutions)
         life = PairLife(
@@ -678,6 +709,7 @@ class PairSolution(Equilibrium):
             model=first.model,
             reliability=first.reliability,
             modification_factor=shorter.modification_factor,
+            uncertainty=None if math.isnan(error) else error,
         )
         return required(life, hours_required)
 
@@ -777,7 +809,12 @@ class PairSolution(Equilibrium):
         state = {name: list(getattr(self, name)) for name in VECTORS}
         results = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
         pair = {name: encode(value) for name, value in self.pair._arguments().items()}
-        return {"pair": pair, **state, **results, "tangent": self.tangent.tolist()}
+        life = encode(self._life)
+        return {"pair": pair, **state, **results, "tangent": self.tangent.tolist(), "life": life}
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [*super()._names(), "life"]
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -793,6 +830,7 @@ class PairSolution(Equilibrium):
                 **vectors,
                 tangent=np.array(state["tangent"], dtype=np.float64),
                 report=BearingReport._restored(dict(state["report"])),
+                _life=decode(state["life"]),
             )
             solution._check()
             return solution

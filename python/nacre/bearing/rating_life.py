@@ -76,7 +76,7 @@ class BearingLife(TableResult):
     _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
-        *("viscosity_ratio", "contamination_factor", "required_life"),
+        *("viscosity_ratio", "contamination_factor", "required_life", "uncertainty"),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
@@ -110,6 +110,11 @@ class BearingLife(TableResult):
     """Model in words."""
     required_life: float | None = None
     """Life that is required [h], which decides the verdict; None without."""
+    uncertainty: float | None = None
+    """Estimated error, as a share of the life, due to the cells of solved contacts.
+
+    It is 0 of the standard's contacts, which are formulas, and None where it is not known.
+    """
 
     _of: ClassVar[str] = ""
 
@@ -154,6 +159,8 @@ class _Rate(NamedTuple):
     reference: ReferenceLife
     cycles: float
     """Share of the time, times the speed [rad/s]."""
+    least: float | None
+    """Share of the life that is left with its error; None where that is not known."""
     factor: float
     """Factor a_ISO, 1 without lubrication."""
     kappa: float | None
@@ -171,11 +178,33 @@ class _Terms(NamedTuple):
         """Return the life under the load of a solution, for a share of the time."""
         bearing, cycles = solution.bearing, share * abs(speed)
         reference = reference_of(solution, self.edge, self.rotating)
+        least = _least(solution, self.edge, reference.load_power)
         if self.limit is None:
-            return _Rate(reference, cycles, 1.0, None)
-        load = reference.equivalent_load
-        factor = self.lubrication.factor(bearing, speed, self.limit, load)
-        return _Rate(reference, cycles, factor, self.lubrication.kappa(bearing, speed))
+            return _Rate(reference, cycles, least, 1.0, None)
+        limit, load = self.limit, reference.equivalent_load
+        factor = self.lubrication.factor(bearing, speed, limit, load)
+        if least:  # the load is then larger, and a_ISO smaller
+            more = equivalent_load(bearing, least) / equivalent_load(bearing, 1.0)
+            least *= self.lubrication.factor(bearing, speed, limit, load * more) / factor
+        return _Rate(reference, cycles, least, factor, self.lubrication.kappa(bearing, speed))
+
+
+def _least(solution: BearingSolution, edge: Edge, power: float) -> float | None:
+    """Return the share of a reference life that is left with its error; None if not known.
+
+    With ``L ∝ Q^-p`` the share of the error is ``δL/L = p δQ/Q``. p is 3 of balls and 4 of the
+    laminae of rollers: `ReferenceLife.load_power`, which is not the exponent 10/3 of the equivalent
+    load. Loads err by `BearingReport.load_error`; those with factors from the pressure also by the
+    share by which the peak pressure does, as these factors are pressures over Hertz's.
+    """
+    report, errors = solution.report, []
+    if solution.model == "solved":
+        errors.append(report.load_error)
+    if edge == "pressure":
+        peak = (report.discretisation or {}).get("peak_pressure")
+        errors.append(peak if peak is None else peak / solution.peak_pressure)
+    shares = [share for share in errors if share is not None]
+    return max(0.0, 1 - power * sum(shares)) if len(shares) == len(errors) else None
 
 
 def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> ReferenceLife:
@@ -325,7 +354,12 @@ def _life_of_spectrum(
     turned, is_known = sum(rate.cycles for rate in rates), terms.lubrication.is_known
     shares = [rate.cycles / turned for rate in rates] if turned else [1.0]
     l10 = _harmonic(shares, [rate.reference.l10 for rate in rates])
-    modified = _harmonic(shares, [rate.reference.l10 * rate.factor for rate in rates])
+    lives = [rate.reference.l10 * rate.factor for rate in rates]
+    modified, uncertainty = _harmonic(shares, lives), None
+    rests = [rate.least for rate in rates if rate.least is not None]
+    if len(rests) == len(rates):
+        left = [rest * life for rest, life in zip(rests, lives, strict=True)]
+        uncertainty = 1 - _harmonic(shares, left) / modified if math.isfinite(modified) else 0.0
     revolutions = reliability[1] * modified * 1e6
     return BearingLife(
         revolutions=revolutions,
@@ -344,6 +378,7 @@ def _life_of_spectrum(
         fatigue_load_limit=terms.limit,
         simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,
         model=words,
+        uncertainty=uncertainty,
     )
 
 

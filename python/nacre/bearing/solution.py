@@ -39,7 +39,7 @@ from nacre.results.report import (
 )
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.values import encode, refusing
+from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -73,6 +73,8 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": ("mrad", 1e3)}
 """Units in which angles are printed, and how many there are in a radian."""
+ASKED = ("life", "film")
+"""What was asked for of a solution, which its verdict has, in its state."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
@@ -129,8 +131,15 @@ class BearingReport(Result):
     are solved again on half the cells, under the same loads and moments. A pressure without a
     limit, as at sharp ends, has none, `None`; a warning says so.
     """
+    load_error: float | None = None
+    """Error of loads due to the size of the cells, estimated, as a share that a life feels.
 
-    _LATER = ("discretisation",)
+    None of the standard's contacts, which are formulas, and where it is not known.
+    """
+    warning_kinds: tuple[str, ...] | None = None
+    """Kinds of the warnings, those of contacts as in theirs; None of old files."""
+
+    _LATER = ("discretisation", "load_error", "warning_kinds")
 
     @property
     def converged(self) -> bool:
@@ -213,7 +222,7 @@ class BearingSolution(Equilibrium):
     """
 
     _TITLE = "bearing"
-    _LATER = ("rotating", "loaded_directions")
+    _LATER = ("rotating", "loaded_directions", "required_life", "static_safety", "life", "film")
 
     bearing: Bearing
     """Bearing that was solved."""
@@ -268,6 +277,10 @@ class BearingSolution(Equilibrium):
     """Cells of each grid; None for the standard's contacts."""
     report: BearingReport
     """Report: how the solution came about."""
+    required_life: float | None = None
+    """Life that is required [h], which the verdict judges; None without."""
+    static_safety: float | None = None
+    """Static safety that is required; None where it is the usual one."""
     _contacts: dict[tuple[int, int], Solution] = field(default_factory=dict, repr=False)
     """Contacts that are known, by element and ring."""
     _life: BearingLife | None = field(default=None, repr=False)
@@ -486,7 +499,8 @@ class BearingSolution(Equilibrium):
             along x, y and z [N] and the speed [rad/s]. Shares sum to 1. Each load is solved with
             moments, tilts and displacements of this solution, and lives add up by Miner's rule.
         required_life : float, optional
-            Life that is required [h], which decides the verdict; it needs a speed.
+            Life that is required [h], which decides the verdict; it needs a speed. By default that
+            of `solve`.
 
         Returns
         -------
@@ -526,7 +540,7 @@ class BearingSolution(Equilibrium):
         life = life_of(
             self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
         )
-        return required(life, required_life)
+        return required(life, self.required_life if required_life is None else required_life)
 
     def static_load(self) -> StaticLoad:
         """Rate the bearing at rest by ISO 76: rating, equivalent static load and safety factor.
@@ -762,7 +776,7 @@ class BearingSolution(Equilibrium):
     @classmethod
     def _names(cls) -> list[str]:
         words = ["bearing", "model", "rotation", "speed", "rotating", "loaded_directions", *VECTORS]
-        return [*words, *ARRAYS, "cells", "report"]
+        return [*words, *ARRAYS, "cells", "report", "required_life", "static_safety", *ASKED]
 
     def _state(self) -> dict[str, object]:
         state = {name: getattr(self, name) for name in ("model", "rotation", "speed", "rotating")}
@@ -771,8 +785,9 @@ class BearingSolution(Equilibrium):
         state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
         state["loaded_directions"] = self.loaded_directions and list(self.loaded_directions)
         cells = None if self.cells is None else list(self.cells)
-        report = self.report._state()
-        return state | {"bearing": encode(self.bearing), "cells": cells, "report": report}
+        state |= {"required_life": self.required_life, "static_safety": self.static_safety}
+        state |= {"bearing": encode(self.bearing), "cells": cells, "report": self.report._state()}
+        return state | {name: encode(getattr(self, f"_{name}")) for name in ASKED}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -792,8 +807,9 @@ class BearingSolution(Equilibrium):
                 if state[name] is not None:
                     fields[name] = np.array(state[name], dtype=np.float64)
             fields["cells"] = None if state["cells"] is None else tuple(state["cells"])
-            report = BearingReport._restored(dict(state["report"]))
-            solution = cls(**fields | {"report": report})
+            fields["report"] = BearingReport._restored(dict(state["report"]))
+            fields |= {f"_{name}": decode(fields.pop(name, None)) for name in ASKED}
+            solution = cls(**fields)
             solution._check()
             return solution
 

@@ -14,20 +14,27 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
-from nacre.bearing.arguments import BearingOptions, Model, Operation, RingConditions
+from nacre.bearing.arguments import (
+    BearingOptions,
+    Model,
+    Operation,
+    Requirements,
+    RingConditions,
+)
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
     STANDARD,
     Hertzian,
     Law,
+    Reaction,
     Slices,
     Solved,
     binned,
 )
 from nacre.bearing.equilibrium import Problem, State
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing
-from nacre.bearing.iso import hertz_pressures
+from nacre.bearing.iso import edge_factors, hertz_pressures
 from nacre.bearing.kinds import BallBearing, RollerBearing
 from nacre.bearing.solution import BearingReport, BearingSolution, carrying, edge_pressure
 from nacre.contact.solution import Solution
@@ -241,11 +248,16 @@ def issue(solution: BearingSolution | PairSolution, options: BearingOptions) -> 
 
 
 def solve_bearing(
-    bearing: Bearing, ring: RingConditions, operation: Operation, options: BearingOptions
+    bearing: Bearing,
+    ring: RingConditions,
+    operation: Operation,
+    options: BearingOptions,
+    needs: Requirements,
 ) -> BearingSolution:
     """Return the solution of what a user asked of a bearing."""
     loads, moved, free = _conditions(bearing, ring)
     operation, options = operation.checked(bearing), options.checked(bearing)
+    needs = needs.checked(operation.speed)
     angles = element_angles(bearing, operation.rotation)
     kinematics, guess = bearing.motion(angles), bearing.law(options.model)
     centrifugal = centrifugal_force(bearing, operation)
@@ -258,7 +270,7 @@ def solve_bearing(
         lambda problem, state, tolerance: check_sides(bearing, problem, state, tolerance),
         options,
     )
-    solution = solution_of(bearing, operation, options, problem, state, ending)
+    solution = solution_of(bearing, operation, options, needs, problem, state, ending)
     issue(solution, options)
     return solution
 
@@ -267,6 +279,7 @@ def solution_of(
     bearing: Bearing,
     operation: Operation,
     options: BearingOptions,
+    needs: Requirements,
     problem: Problem,
     state: State,
     ending: tuple[int, str],
@@ -281,14 +294,15 @@ def solution_of(
     normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
     total = state.wanting + problem.loads
     loaded = {key: contact for key, contact in contacts.items() if carrying(loads)[key]}
-    notes = (
+    notes = [
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
         *_notes(bearing, options.model, loaded),
-    )
-    errors = None
+    ]
+    kinds, texts = map(tuple, zip(*notes, strict=True)) if notes else ((), ())
+    errors, load_error = None, None
     if isinstance(problem.law, Solved):
-        errors = _discretisation(problem.law, contacts, peaks, edges)
+        errors, load_error = _discretisation(problem.law, state.reaction, peaks, edges)
     return BearingSolution(
         bearing=bearing,
         model=options.model,
@@ -313,7 +327,17 @@ def solution_of(
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
         cells=None if sizes is None else options.cells,
-        report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
+        report=BearingReport(
+            ending[1],  # type: ignore[arg-type]
+            ending[0],
+            state.balance,
+            texts,
+            errors,
+            load_error,
+            kinds,
+        ),
+        required_life=needs.required_life,
+        static_safety=needs.static_safety,
         _contacts=dict(contacts),
     )
 
@@ -342,13 +366,18 @@ def _contact_fields(
 
 
 def _discretisation(
-    law: Solved, contacts: Mapping[tuple[int, int], Solution], peaks: Array, edges: Array
-) -> dict[str, float | None]:
-    """Return the errors of peak and edge pressure due to the size of the cells [Pa].
+    law: Solved, reaction: Reaction, peaks: Array, edges: Array
+) -> tuple[dict[str, float | None], float | None]:
+    """Return the errors due to the size of the cells: of peak and edge pressure [Pa], and of loads.
 
     Both contacts of the elements with the largest pressures are solved on half the cells under the
     same load and moment. None where the pressure has no limit, or half the cells do not carry them.
+
+    The share by which loads err has two parts. An approach that errs by Δδ changes the load Q of a
+    contact by K Δδ/Q at most, with its stiffness K: less where a force is given, since all contacts
+    err alike. And laminae share the load otherwise, by the change of its mean in a life.
     """
+    contacts, load_error = reaction.contacts, 0.0
     bearing = law.bearing
     pressures = [peaks, edges] if isinstance(bearing, RollerBearing) else [peaks]
     names = ("peak_pressure", "edge_pressure")
@@ -357,34 +386,46 @@ def _discretisation(
     for key in [key for key in contacts if key[0] in heaviest]:
         coarse = law.coarse_contact(key[1], contacts[key])
         if coarse is None:
-            return dict.fromkeys(errors)
+            return dict.fromkeys(errors), None
+        moved = abs(coarse.approach - contacts[key].approach)
+        change = float(reaction.stiffness[key][0, 0]) * moved / contacts[key].load
         singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)
         values = [coarse.peak_pressure]
         if isinstance(bearing, RollerBearing):
-            values.append(float(edge_pressure(binned(bearing, coarse)[1])))
+            loads, pressures_of_laminae = binned(bearing, coarse)
+            values.append(float(edge_pressure(pressures_of_laminae)))
+            change += abs(_mean_load(loads) / _mean_load(binned(bearing, contacts[key])[0]) - 1)
+        load_error = max(load_error, change / (2**UNKNOWN_RATE - 1))
         for name, value, field in zip(names, values, pressures, strict=False):
             known = errors[name]
             error = abs(value - float(field[key])) / (2**UNKNOWN_RATE - 1)
             errors[name] = None if singular or known is None else max(known, error)
-    return errors
+    return errors, load_error
 
 
-def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[str]:
-    """Yield warnings of tilts and pressures that no bearing has."""
+def _mean_load(loads: Array) -> float:
+    """Return the load of laminae that counts in a life, but for a factor: ISO/TS 16281."""
+    return float(((edge_factors(LAMINAE) * loads) ** 4.5).sum() ** (1 / 4.5))
+
+
+def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[tuple[str, str]]:
+    """Yield warnings of tilts and pressures that no bearing has, after their kinds."""
     steepest = float(np.abs(ring[3:]).max())
     if steepest > STEEPEST and not bearing.aligns:
         yield (
+            "steep tilt",
             f"the tilt of the ring, a slope, is {steepest:.4g}: far above those of bearings, "
-            "2' are 5.8e-4"
+            "2' are 5.8e-4",
         )
     if (peak := float(peaks.max())) > HIGHEST:
         yield (
+            "high pressure",
             f"the peak pressure is {peak / 1e9:.4g} GPa: above {HIGHEST / 1e9:g} GPa, contacts "
-            "are neither elastic nor small"
+            "are neither elastic nor small",
         )
 
 
-def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterable[str]:
+def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterable[tuple[str, str]]:
     """Yield a warning where contacts of balls reach beyond the shoulders of the rings."""
     if not isinstance(bearing, BallBearing):
         return
@@ -397,23 +438,25 @@ def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterabl
         angle = max(reached, default=0.0)
         if angle > shoulder:
             yield (
+                "cut off",
                 f"contacts with the {ring} ring reach {math.degrees(angle):.3g} degrees from the "
                 f"bottom of the groove, beyond its shoulder at {math.degrees(shoulder):.3g}, where "
                 "they are cut off: their pressure and the life are wrong; shoulder_height says how "
-                "high it is"
+                "high it is",
             )
 
 
 def _notes(
     bearing: Bearing, model: Model, contacts: Mapping[tuple[int, int], Solution]
-) -> Iterable[str]:
+) -> Iterable[tuple[str, str]]:
     """Yield warnings: those of contacts by kind, and what the standard's contacts leave out."""
     if model == "iso16281":
         if bearing.layered:
-            yield "layers are not counted: the contacts of ISO/TS 16281 are bare"
+            yield "bare", "layers are not counted: the contacts of ISO/TS 16281 are bare"
         softer = np.abs(np.array(bearing.modulus) / STANDARD - 1)
         if isinstance(bearing, RollerBearing) and softer.max() > 0.05:
-            yield "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
+            text = "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
+            yield "other moduli", text
         return
     texts: dict[str, str] = {}
     kinds: Counter[str] = Counter()
@@ -423,4 +466,4 @@ def _notes(
             texts.setdefault(kind, text)
         kinds.update(dict.fromkeys(report.warning_kinds, 1))  # some are said of both axes
     for kind, number in kinds.items():
-        yield f"{number} of {len(contacts)} contacts: {texts[kind]}"
+        yield kind, f"{number} of {len(contacts)} contacts: {texts[kind]}"
