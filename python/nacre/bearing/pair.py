@@ -34,7 +34,7 @@ from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
-from nacre.bearing.rating_life import required
+from nacre.bearing.rating_life import LATER, required
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
@@ -57,7 +57,7 @@ from nacre.bearing.solving import (
     solve_bearing,
     solved_contacts,
 )
-from nacre.bearing.verdict import life_verdict, pair_verdict
+from nacre.bearing.verdict import bearing_verdict, life_verdict
 from nacre.results import display, files
 from nacre.results.charts import Picture
 from nacre.results.quantities import AXIS, frozen, quantity
@@ -65,7 +65,7 @@ from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 from nacre.results.values import decode, encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked, merged
 
 if TYPE_CHECKING:
     import xarray
@@ -495,18 +495,22 @@ class PairLife(TableResult):
 
     uncertainty: float | None = None
     """Estimated error, as a share of the life, as that of a single bearing."""
+    doubt: str | None = None
+    """What leaves the verdict unknown; None without."""
+    caution: str | None = None
+    """What leaves the verdict fair at best; None without."""
 
-    _LATER = ("reliability", "modification_factor", "required_life", "uncertainty")
+    _LATER = ("reliability", "modification_factor", "required_life", *LATER)
     _of: ClassVar[str] = "both bearings, "
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         return super()._restored(state | {"reliability": state.get("reliability") or 0.9})
 
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict: how long both live; bad below `required_life`, good from 1.5 of it."""
-        return life_verdict(self)
+    @asked
+    def verdict(self, required_life: float | None = None) -> Verdict:
+        """Verdict: how long both live; `BearingLife.verdict` says more."""
+        return life_verdict(required(self, required_life))
 
     def _rows(self) -> list[Row]:
         rows = []
@@ -582,10 +586,27 @@ class PairSolution(Equilibrium):
         """Life of both that is required [h]; None without."""
         return self.first.required_life
 
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict: the life of both, and those on both bearings, of which the worst decides."""
-        return pair_verdict(self._life or self.life(), dict(zip(NAMES, self.bearings, strict=True)))
+    @asked
+    def verdict(
+        self, required_life: float | None = None, static_safety: float | None = None
+    ) -> Verdict:
+        """Verdict: life of both, loads and pressures of each; `BearingSolution.verdict` says more.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life of both that is required [h], by default that of `solve`.
+        static_safety : float, optional
+            Static safety that is required of each, by default that of `solve`.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life and no static safety is required.
+        """
+        life = required(self._life or self.life(), required_life)
+        parts = {f"of the {k} bearing": s for k, s in zip(NAMES, self.bearings, strict=True)}
+        return bearing_verdict(parts, life, self.first._safety(static_safety))
 
     @property
     def peak_pressure(self) -> float:
@@ -710,6 +731,8 @@ class PairSolution(Equilibrium):
             reliability=first.reliability,
             modification_factor=shorter.modification_factor,
             uncertainty=None if math.isnan(error) else error,
+            doubt=merged(first.doubt, second.doubt),
+            caution=merged(first.caution, second.caution),
         )
         return required(life, hours_required)
 
@@ -769,7 +792,8 @@ class PairSolution(Equilibrium):
         return self._heavier._notebook_picture()
 
     def _comments(self) -> dict[str, object]:
-        return {"model": self.first.model, **self._vector_texts(), **self._numbered_warnings()}
+        numbers = {"model": self.first.model, **self._vector_texts()}
+        return super()._comments() | numbers | self._numbered_warnings()
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
         (heads, *first), (_, *second) = (solution._file_rows() for solution in self.bearings)

@@ -28,12 +28,12 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
-from nacre.bearing.verdict import life_verdict
+from nacre.bearing.verdict import doubts_and_cautions, life_verdict
 from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows
 from nacre.results.rows import Row
 from nacre.results.shown import TableResult
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     from nacre.bearing.pair import PairLife
@@ -47,6 +47,8 @@ EDGES = {
 """Words for the factors of a life."""
 BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
+LATER = ("uncertainty", "doubt", "caution")
+"""Fields of lives that older files do not have."""
 ROUNDED = 1e-3
 """Largest difference of a sum of shares and 1: thirds with three digits are as good."""
 
@@ -76,7 +78,7 @@ class BearingLife(TableResult):
     _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
-        *("viscosity_ratio", "contamination_factor", "required_life", "uncertainty"),
+        *("viscosity_ratio", "contamination_factor", "required_life", *LATER),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
@@ -115,6 +117,10 @@ class BearingLife(TableResult):
 
     It is 0 of the standard's contacts, which are formulas, and None where it is not known.
     """
+    doubt: str | None = None
+    """What leaves the verdict unknown; None without."""
+    caution: str | None = None
+    """What leaves the verdict fair at best; None without."""
 
     _of: ClassVar[str] = ""
 
@@ -126,10 +132,21 @@ class BearingLife(TableResult):
             fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
         return super()._restored(fields)
 
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict: how long the bearing lives; bad below `required_life`, good from 1.5 of it."""
-        return life_verdict(self)
+    @asked
+    def verdict(self, required_life: float | None = None) -> Verdict:
+        """Verdict: how long the bearing lives; bad below the required life, good from 1.5 of it.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life that is required [h], by default that of the life.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life is required.
+        """
+        return life_verdict(required(self, required_life))
 
     def _rows(self) -> list[Row]:
         if math.isinf(self.l10):
@@ -319,7 +336,9 @@ def life_of(
         words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
-    return _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+    life = _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+    doubt, caution = doubts_and_cautions(solution, life)
+    return replace(life, doubt=doubt or None, caution=caution or None)
 
 
 Life = TypeVar("Life", "BearingLife", "PairLife")

@@ -16,7 +16,7 @@ from nacre._tools.typing import among
 from nacre._tools.units import rounded, symbol
 from nacre.bearing.arguments import Model, Operation
 from nacre.bearing.contact_laws import LAMINAE
-from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
+from nacre.bearing.geometry import RINGS, Bearing, Ring, above, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
 from nacre.bearing.kinds import RollerBearing
 from nacre.bearing.modified import Lubrication
@@ -40,7 +40,7 @@ from nacre.results.report import (
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     import xarray
@@ -137,7 +137,10 @@ class BearingReport(Result):
     None of the standard's contacts, which are formulas, and where it is not known.
     """
     warning_kinds: tuple[str, ...] | None = None
-    """Kinds of the warnings, those of contacts as in theirs; None of old files."""
+    """Kinds of the warnings, those of contacts as in theirs; None of old files.
+
+    It is "slight" where these contacts carry less than 1 % of the largest load each.
+    """
 
     _LATER = ("discretisation", "load_error", "warning_kinds")
 
@@ -323,15 +326,52 @@ class BearingSolution(Equilibrium):
         """Speed of the elements about the axis [rad/s], that of the bearing."""
         return self.bearing.cage_speed(self.speed, self.rotating)
 
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict: life, and the largest pressure against that of the static rating of ISO 76.
+    @asked
+    def verdict(
+        self, required_life: float | None = None, static_safety: float | None = None
+    ) -> Verdict:
+        """Verdict: life, static safety, and peak pressure against that of the static rating.
 
-        It is bad above that pressure, which is 4000 MPa of rollers and 4200 MPa of balls, fair
-        where less than 1.5 times below it or where the largest pressure is at an edge. Without a
-        required life, which a case file gives, it is unknown; `life` judges one.
+        It is bad where the life is shorter than the required one, the static safety less, or the
+        pressure above 4000 MPa of rollers and 4200 MPa of balls: ISO 76. From 1.5 of each, less its
+        error, it is good; fair with edge stress, and with tilts, loads and films beyond the usual.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life that is required [h], by default that of `solve`, or of the life of a case.
+        static_safety : float, optional
+            Static safety that is required, by default that of `solve`, else 1.5 of rollers and 1 of
+            balls.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life and no static safety is required.
+
+        Raises
+        ------
+        ValueError
+            If a limit is not above 0, or a life is required of a bearing at rest.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(
+        ...     force=(1000.0, 0.0, None), speed=100.0, model="iso16281", required_life=20e3
+        ... )
+        >>> solution.verdict().level, solution.verdict(required_life=40e3).level
+        ('good', 'bad')
         """
-        return bearing_verdict(self)
+        life = required(self._life or self.life(), required_life)
+        return bearing_verdict({"": self}, life, self._safety(static_safety))
+
+    def _safety(self, static_safety: float | None) -> float | None:
+        """Return the static safety that is required, if any, checked."""
+        if static_safety is None:
+            return self.static_safety
+        return above("static_safety", static_safety)
 
     def stiffness(self) -> Array:
         """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
@@ -610,9 +650,7 @@ class BearingSolution(Equilibrium):
     def _comments(self) -> dict[str, object]:
         errors = self.report.discretisation or {}
         error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        verdict = " ".join(self.verdict.sentences)
-        return {
-            "verdict": verdict,
+        return super()._comments() | {
             "model": self.model,
             **self._vector_texts(),
             **error_columns,

@@ -38,7 +38,7 @@ from nacre.bearing.iso import edge_factors, hertz_pressures
 from nacre.bearing.kinds import BallBearing, RollerBearing
 from nacre.bearing.solution import BearingReport, BearingSolution, carrying, edge_pressure
 from nacre.contact.solution import Solution
-from nacre.results.verdict import SINGULAR
+from nacre.results.verdict import SINGULAR, SLIGHT
 
 if TYPE_CHECKING:
     from nacre.bearing.pair import PairSolution
@@ -413,13 +413,13 @@ def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[tuple[
     steepest = float(np.abs(ring[3:]).max())
     if steepest > STEEPEST and not bearing.aligns:
         yield (
-            "steep tilt",
+            "far above those of bearings",
             f"the tilt of the ring, a slope, is {steepest:.4g}: far above those of bearings, "
             "2' are 5.8e-4",
         )
     if (peak := float(peaks.max())) > HIGHEST:
         yield (
-            "high pressure",
+            "contacts are neither elastic nor small",
             f"the peak pressure is {peak / 1e9:.4g} GPa: above {HIGHEST / 1e9:g} GPa, contacts "
             "are neither elastic nor small",
         )
@@ -438,7 +438,7 @@ def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterabl
         angle = max(reached, default=0.0)
         if angle > shoulder:
             yield (
-                "cut off",
+                "they are cut off",
                 f"contacts with the {ring} ring reach {math.degrees(angle):.3g} degrees from the "
                 f"bottom of the groove, beyond its shoulder at {math.degrees(shoulder):.3g}, where "
                 "they are cut off: their pressure and the life are wrong; shoulder_height says how "
@@ -452,18 +452,27 @@ def _notes(
     """Yield warnings: those of contacts by kind, and what the standard's contacts leave out."""
     if model == "iso16281":
         if bearing.layered:
-            yield "bare", "layers are not counted: the contacts of ISO/TS 16281 are bare"
+            yield (
+                "layers are not counted",
+                "layers are not counted: the contacts of ISO/TS 16281 are bare",
+            )
         softer = np.abs(np.array(bearing.modulus) / STANDARD - 1)
         if isinstance(bearing, RollerBearing) and softer.max() > 0.05:
             text = "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
-            yield "other moduli", text
+            yield "moduli are not counted", text
         return
     texts: dict[str, str] = {}
     kinds: Counter[str] = Counter()
+    counted: set[str] = set()
+    least = SLIGHT * max((contact.load for contact in contacts.values()), default=0.0)
     for contact in contacts.values():
         report = contact.report
         for kind, text in zip(report.warning_kinds, report.warnings, strict=True):
             texts.setdefault(kind, text)
         kinds.update(dict.fromkeys(report.warning_kinds, 1))  # some are said of both axes
+        counted |= {*report.warning_kinds} if contact.load >= least else set()
     for kind, number in kinds.items():
-        yield kind, f"{number} of {len(contacts)} contacts: {texts[kind]}"
+        yield (
+            kind if kind in counted else "slight",
+            f"{number} of {len(contacts)} contacts: {texts[kind]}",
+        )
