@@ -88,7 +88,7 @@ def bearing_verdict(
 def doubts_and_cautions(solution: BearingSolution, life: BearingLife) -> tuple[str, str]:
     """Return what leaves the life of a solution unknown, and what fair at best: "" for nothing."""
     report, bearing = solution.report, solution.bearing
-    notices = [*(report.warnings if report.warning_kinds is None else report.warning_kinds)]
+    notices = [*(report.warning_kinds or report.warnings)]
     notices += [BARE] if bearing.layered else []
     notices += [] if _is_steel(bearing) else [NOT_STEEL]
     notices += ["above half of the rating"] if life.equivalent_load > life.capacity / 2 > 0 else []
@@ -169,11 +169,13 @@ def _alone(life: BearingLife | PairLife, turns: bool, limit: float | None) -> st
         return ""
     lives = {name: getattr(life, name) for name in ("first", "second")}
     hours = life.hours / life.revolutions if turns else math.nan
-    words = [
-        f"{name} bearing {_duration(number * hours, limit) if turns else _revolutions(number)}"
+    words = {
+        name: _duration(number * hours, limit) if turns else _revolutions(number)
         for name, number in sorted(lives.items(), key=lambda row: row[1])
-    ]
-    return f"; {words[0]}, {words[1]}"
+    }
+    if len({*words.values()}) == 1:
+        return f"; each bearing {words['first']}"
+    return "".join(f"{mark} {k} bearing {words[k]}" for mark, k in zip(";,", words, strict=True))
 
 
 def _revolutions(number: float) -> str:
@@ -207,40 +209,50 @@ def _static_demands(
     and its factor is that of the load under which it grows to it: ``Q ∝ p^n`` with n of 3 of balls
     and of 2 of rollers.
     """
-    peak, standards, errors = (
-        solution.peak_pressure,
-        solution.bearing.standards,
-        solution.report.discretisation,
-    )
-    # The contacts of the standard are formulas.
-    is_formula = solution.model == "iso16281"
-    error = 0.0 if is_formula else (errors or {}).get("peak_pressure")
+    peak, report, standards = solution.peak_pressure, solution.report, solution.bearing.standards
+    known = 0.0 if solution.model == "iso16281" else None  # these contacts are formulas
+    share = known if report.load_error is None else report.load_error
+    error = known if report.discretisation is None else report.discretisation.get("peak_pressure")
+    pressure = Demand("peak pressure", part, peak, error)
     if not is_known:
-        yield Demand("peak pressure", part, peak, error)
+        yield pressure
+    if not is_known or not peak > 0:
         return
-    if not peak > 0:
-        return
-    required = standards.static_safety if static_safety is None else static_safety
-    origin = "ISO 76" if static_safety is None else "given"
-    safety = solution.static_load().safety
-    share = 0.0 if is_formula else solution.report.load_error
-    demand = Demand(
-        "static safety", part, safety, share and share * safety, None, required, origin, "", True
+    usual = standards.static_safety
+    required, origin = (usual, "ISO 76") if static_safety is None else (static_safety, "given")
+    value = solution.static_load().safety
+    safety = Demand(
+        "static safety",
+        part,
+        value,
+        share and share * value,
+        limit=required,
+        origin=origin,
+        unit="",
+        at_least=True,
     )
-    outcome = ": too low" if demand.outcome == 0 else ""
-    words = f"{demand.name[0].upper()}{demand.name[1:]} {plain(safety, DIGITS)}"
-    yield demand._replace(
-        sentence=f"{words}, {plain(required, DIGITS)} required ({origin}){outcome}."
-    )
+    outcome = ": too low" if safety.outcome == 0 else ""
+    words = f"{_capitalised(safety)} {plain(value, DIGITS)}, {plain(required, DIGITS)} required"
+    yield safety._replace(sentence=f"{words} ({origin}){outcome}.")
     limit, power = standards.static_pressure, solution.bearing.width_power
-    factor = (limit / peak) ** power
-    deviation = error and power * factor * error / peak
-    demand = Demand(
-        "peak pressure", part, factor, deviation, None, min(1.0, required), "ISO 76", "", True
+    value = (limit / peak) ** power
+    bound = f"limit {beside(peak, limit)} (ISO 76) at {plain(value, DIGITS)} times the load"
+    pressure = pressure._replace(
+        value=value,
+        error=error and power * value * error / peak,
+        limit=min(1.0, required),
+        origin="ISO 76",
+        unit="",
+        at_least=True,
     )
-    outcome = ": too high" if demand.outcome == 0 else ""
-    words = f"{demand.name[0].upper()}{demand.name[1:]} {measured(peak, error)}"
-    yield demand._replace(sentence=f"{words}, limit {beside(peak, limit)} (ISO 76){outcome}.")
+    outcome = ": too high" if pressure.outcome == 0 else ""
+    words = f"{_capitalised(pressure)} {measured(peak, error)}"
+    yield pressure._replace(sentence=f"{words}, {bound}{outcome}.")
+
+
+def _capitalised(demand: Demand) -> str:
+    """Return quantity and part as a sentence begins."""
+    return demand.name[0].upper() + demand.name[1:]
 
 
 def _edge(solution: BearingSolution, part: str) -> tuple[list[str], bool]:
