@@ -412,7 +412,7 @@ class WearHistory(Shown, Result):
         *at, _ = display.without_rounding([*event.position, max(solution.grid.size)])
         axes = "y" if solution.grid.is_line else "xy"
         place = ", ".join(f"{axis} = {number(at['xy'.index(axis)], 'm')}" for axis in axes)
-        return f"{name[0].upper()}{name[1:]} of the {event.body} is through first, at {place}."
+        return f"First worn through: {name} of the {event.body}, at {place}."
 
     @property
     def _thickness(self) -> str:
