@@ -864,4 +864,6 @@ class PairSolution(Equilibrium):
         for name in NAMES:
             if getattr(self, name).bearing != getattr(self.pair, name):
                 raise ValueError(f"{name} must be a solution of that bearing of the pair")
+        if not isinstance(self._life, PairLife | None):
+            raise ValueError(f"life must be a PairLife or None, got {self._life!r}")
         self._check_vectors()

@@ -402,6 +402,8 @@ def _life_of_spectrum(
 
 
 def _harmonic(shares: Sequence[float], lives: Sequence[float]) -> float:
-    """Return the mean of lives by Miner's rule; infinite where all are."""
+    """Return the mean of lives by Miner's rule; infinite where all are, and 0 where one is."""
+    if min(lives) == 0:
+        return 0.0
     used = sum(share / life for share, life in zip(shares, lives, strict=True))
     return 1 / used if used > 0 else math.inf

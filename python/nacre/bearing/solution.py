@@ -73,8 +73,8 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": ("mrad", 1e3)}
 """Units in which angles are printed, and how many there are in a radian."""
-ASKED = ("life", "film")
-"""What was asked for of a solution, which its verdict has, in its state."""
+ASKED = {"life": "BearingLife", "film": "Film"}
+"""What was asked for of a solution, which its verdict has, by names in its state, and classes."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
@@ -855,6 +855,9 @@ class BearingSolution(Equilibrium):
         """Raise a `ValueError` unless all fields fit each other."""
         if not isinstance(self.bearing, Bearing):
             raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
+        for name, kind in ASKED.items():
+            if type(asked := getattr(self, f"_{name}")).__name__ not in (kind, "NoneType"):
+                raise ValueError(f"{name} must be a {kind} or None, got {asked!r}")
         if self.rotating not in RINGS:
             raise ValueError(f'rotating must be "inner" or "outer", got {self.rotating!r}')
         if self.model not in ("solved", "iso16281"):

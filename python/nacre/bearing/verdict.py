@@ -45,11 +45,12 @@ BARE, NOT_STEEL = "layers are not counted", "rings are not of steel"
 
 def life_verdict(life: BearingLife | PairLife) -> Verdict:
     """Return the verdict on a life, which the required one decides."""
+    doubts = _doubts(life)
     return judged(
-        [_life_demand(life)],
-        doubts=_doubts(life),
+        [_life_demand(life)] if _is_known(doubts) else [],
+        doubts=doubts,
         cautions=split(life.caution),
-        unasked=UNASKED if life.required_life is None else None,
+        unasked=UNASKED if life.required_life is None and _is_known(doubts) else None,
         question=_question(life, None),
     )
 
@@ -63,7 +64,7 @@ def bearing_verdict(
     """Return the verdict on a bearing or on both of a pair, by words for parts."""
     doubts, cautions = _doubts(life), split(life.caution)
     notes: list[str] = []
-    is_known = reasons([NOT_STEEL], "unknown")[0] not in doubts
+    is_known = _is_known(doubts)
     demands = [_life_demand(life)] if is_known else []
     for part, bearing in parts.items():
         demands += _static_demands(bearing, part, static_safety, is_known)
@@ -98,6 +99,11 @@ def doubts_and_cautions(solution: BearingSolution, life: BearingLife) -> tuple[s
     unfinished = [] if report.converged else [UNCONVERGED]
     doubts = [*unfinished, *reasons(notices, "unknown")]
     return MARK.join(doubts), MARK.join(reasons(notices, "fair"))
+
+
+def _is_known(doubts: Sequence[str]) -> bool:
+    """Return whether lives and limits of ISO are those of a bearing with these doubts."""
+    return set(doubts).isdisjoint(reasons([NOT_STEEL], "unknown"))
 
 
 def _is_steel(bearing: Bearing) -> bool:
@@ -157,8 +163,10 @@ def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) ->
     needed = ""
     if demand.limit is not None:
         outcome = "too short" if demand.value < demand.limit else "long enough"
-        if demand.outcome == 1:
-            outcome = f"{outcome} as it stands" if demand.error is None else "about as long"
+        if demand.error is None:
+            outcome += " as it stands"
+        elif demand.outcome == 1:
+            outcome = "about as long"
         needed = f", {plain(demand.limit, DIGITS)} h required: {outcome}"
     return f"Lives {duration}{error} ({name}; {basis}){needed}{_alone(life, turns, demand.limit)}."
 

@@ -172,7 +172,7 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     added = {name: result for name, result in results.items() if result is not solution}
     if as_json:
         left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
-        left += ASKED  # they have names of their own
+        left += (*ASKED,)  # they have names of their own
         with shown_in(case_file.units):
             state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}

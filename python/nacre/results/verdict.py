@@ -90,7 +90,7 @@ TEXTS: dict[str, Doubt] = {
     "of the catalogue, ": Doubt("fair", "a rating differs from that of the catalogue"),
     "are estimates from the ratings": Doubt("fair", "the elements are estimates from the ratings"),
     "the fatigue load limit is C_0/8.2": Doubt(None, "the simple limit of ISO 281 is taken"),
-    "the ratio is ": Doubt(None, "the ratio of lives is 0 or infinite"),
+    "is above the fatigue limit": Doubt(None, "the ratio of lives is 0 or infinite"),
     "the formula is for the piezoviscous-elastic one": Doubt(
         "fair", "the film's formula is for another regime", leaves_model=True
     ),
