@@ -9,7 +9,6 @@ from nacre.bearing.arguments import (
     BearingKeywords,
     BearingOptions,
     Operation,
-    Requirements,
     RingConditions,
 )
 from nacre.bearing.geometry import Bearing
@@ -26,7 +25,7 @@ class Solvable(Bearing):
         """Dynamic load rating of ISO 281 [N], whatever the capacity is."""
         return rating(self)
 
-    @grouped(RingConditions, Operation, BearingOptions, Requirements)
+    @grouped(RingConditions, Operation, BearingOptions)
     def solve(self, **keywords: Unpack[BearingKeywords]) -> BearingSolution:
         """Load, tilt and pressure of every element under a load or displacement of the inner ring.
 
@@ -101,5 +100,4 @@ class Solvable(Bearing):
         1929
         """
         ring, operation = RingConditions.of(keywords), Operation.of(keywords)
-        options, needs = BearingOptions.of(keywords), Requirements.of(keywords)
-        return solve_bearing(self, ring, operation, options, needs)
+        return solve_bearing(self, ring, operation, BearingOptions.of(keywords))

@@ -24,7 +24,6 @@ from nacre.bearing.arguments import (
     BearingKeywords,
     BearingOptions,
     Operation,
-    Requirements,
     RingConditions,
 )
 from nacre.bearing.balls import AngularContactBall
@@ -206,7 +205,7 @@ class Pair:
         """Both bearings."""
         return self.first, self.second
 
-    @grouped(RingConditions, Operation, BearingOptions, Requirements)
+    @grouped(RingConditions, Operation, BearingOptions)
     def solve(self, **keywords: Unpack[BearingKeywords]) -> PairSolution:
         """Equilibrium of the shaft and of all elements of both bearings.
 
@@ -278,8 +277,7 @@ class Pair:
         [2000, 2000]
         """
         ring, operation = RingConditions.of(keywords), Operation.of(keywords)
-        options, needs = BearingOptions.of(keywords), Requirements.of(keywords)
-        return solve_pair(self, ring, operation, options, needs)
+        return solve_pair(self, ring, operation, BearingOptions.of(keywords))
 
     def _arguments(self) -> dict[str, object]:
         """Return what makes the pair again, for files."""
@@ -311,8 +309,7 @@ def _settings(pair: Pair, options: BearingOptions) -> Array:
     settings = np.array([_touching(bearing) for bearing in pair.bearings])
     if pair.preload_force:
         axial = RingConditions((None, None, pair.preload_force), None, None, None)
-        still = STANDSTILL, options, Requirements()
-        alone = [solve_bearing(bearing, axial, *still) for bearing in pair.bearings]
+        alone = [solve_bearing(bearing, axial, STANDSTILL, options) for bearing in pair.bearings]
         return np.array([solution.displacement[2] for solution in alone])
     settings += (pair.preload_distance or 0.0) / 2
     if (pair.preload_distance or 0.0) > 0 and pair.first != pair.second:
@@ -403,16 +400,11 @@ def _check_tandem(pair: Pair, solutions: Iterable[BearingSolution], loaded: bool
 
 
 def solve_pair(
-    pair: Pair,
-    conditions: RingConditions,
-    operation: Operation,
-    options: BearingOptions,
-    needs: Requirements,
+    pair: Pair, conditions: RingConditions, operation: Operation, options: BearingOptions
 ) -> PairSolution:
     """Return the solution of what a user asked of a pair."""
     for bearing in pair.bearings:
         operation, options = operation.checked(bearing), options.checked(bearing)
-    needs = needs.checked(operation.speed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", core.NacreWarning)
         limit = max(PRELOAD_STEPS, options.max_iterations)
@@ -421,7 +413,7 @@ def solve_pair(
     problem, state, ending = _equilibrium(pair, conditions, operation, options, settings)
     equilibria = zip(pair.bearings, _problems(problem, state), strict=True)
     first, second = (
-        solution_of(bearing, operation, options, needs, local, equilibrium, ending)
+        solution_of(bearing, operation, options, local, equilibrium, ending)
         for bearing, (local, equilibrium) in equilibria
     )
     if ending[1] == "converged":
@@ -432,7 +424,6 @@ def solve_pair(
         for name, solution in zip(NAMES, (first, second), strict=True)
         for text in solution.report.warnings
     )
-    kinds = (*(first.report.warning_kinds or ()), *(second.report.warning_kinds or ()))
     solution = PairSolution(
         pair=pair,
         displacement=tuple(state.ring[:3].tolist()),
@@ -442,13 +433,7 @@ def solve_pair(
         first=first,
         second=second,
         tangent=(state.tangent + state.tangent.T) / 2,
-        report=BearingReport(
-            ending[1],  # type: ignore[arg-type]
-            ending[0],
-            state.balance,
-            notes,
-            warning_kinds=kinds,
-        ),
+        report=BearingReport(ending[1], ending[0], state.balance, notes),  # type: ignore[arg-type]
     )
     issue(solution, options)
     return solution

@@ -214,14 +214,12 @@ def _least(solution: BearingSolution, edge: Edge, power: float) -> float | None:
     load. Loads err by `BearingReport.load_error`; those with factors from the pressure also by the
     share by which the peak pressure does, as these factors are pressures over Hertz's.
     """
-    report, errors = solution.report, []
-    if solution.model == "solved":
-        errors.append(report.load_error)
-    if edge == "pressure":
-        peak = (report.discretisation or {}).get("peak_pressure")
-        errors.append(peak if peak is None else peak / solution.peak_pressure)
-    shares = [share for share in errors if share is not None]
-    return max(0.0, 1 - power * sum(shares)) if len(shares) == len(errors) else None
+    report = solution.report
+    error = 0.0 if solution.model == "iso16281" else report.load_error
+    peak = (report.discretisation or {}).get("peak_pressure") if edge == "pressure" else 0.0
+    if error is None or peak is None:
+        return None
+    return max(0.0, 1 - power * (error + peak / (solution.peak_pressure or 1.0)))
 
 
 def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> ReferenceLife:
@@ -375,9 +373,8 @@ def _life_of_spectrum(
     l10 = _harmonic(shares, [rate.reference.l10 for rate in rates])
     lives = [rate.reference.l10 * rate.factor for rate in rates]
     modified, uncertainty = _harmonic(shares, lives), None
-    rests = [rate.least for rate in rates if rate.least is not None]
-    if len(rests) == len(rates):
-        left = [rest * life for rest, life in zip(rests, lives, strict=True)]
+    if all(rate.least is not None for rate in rates):
+        left = [life * (rate.least or 0.0) for rate, life in zip(rates, lives, strict=True)]
         uncertainty = 1 - _harmonic(shares, left) / modified if math.isfinite(modified) else 0.0
     revolutions = reliability[1] * modified * 1e6
     return BearingLife(

@@ -136,13 +136,11 @@ class BearingReport(Result):
 
     None of the standard's contacts, which are formulas, and where it is not known.
     """
-    warning_kinds: tuple[str, ...] | None = None
-    """Kinds of the warnings, those of contacts as in theirs; None of old files.
-
-    It is "slight" where these contacts carry less than 1 % of the largest load each.
+    contact_kinds: tuple[str, ...] | None = None
+    """Kinds of warnings of contacts that carry 1 % of the largest load or more; None of old files.
     """
 
-    _LATER = ("discretisation", "load_error", "warning_kinds")
+    _LATER = ("discretisation", "load_error", "contact_kinds")
 
     @property
     def converged(self) -> bool:

@@ -14,13 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
-from nacre.bearing.arguments import (
-    BearingOptions,
-    Model,
-    Operation,
-    Requirements,
-    RingConditions,
-)
+from nacre.bearing.arguments import BearingOptions, Model, Operation, RingConditions
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import (
     LAMINAE,
@@ -248,16 +242,11 @@ def issue(solution: BearingSolution | PairSolution, options: BearingOptions) -> 
 
 
 def solve_bearing(
-    bearing: Bearing,
-    ring: RingConditions,
-    operation: Operation,
-    options: BearingOptions,
-    needs: Requirements,
+    bearing: Bearing, ring: RingConditions, operation: Operation, options: BearingOptions
 ) -> BearingSolution:
     """Return the solution of what a user asked of a bearing."""
     loads, moved, free = _conditions(bearing, ring)
     operation, options = operation.checked(bearing), options.checked(bearing)
-    needs = needs.checked(operation.speed)
     angles = element_angles(bearing, operation.rotation)
     kinematics, guess = bearing.motion(angles), bearing.law(options.model)
     centrifugal = centrifugal_force(bearing, operation)
@@ -270,7 +259,7 @@ def solve_bearing(
         lambda problem, state, tolerance: check_sides(bearing, problem, state, tolerance),
         options,
     )
-    solution = solution_of(bearing, operation, options, needs, problem, state, ending)
+    solution = solution_of(bearing, operation, options, problem, state, ending)
     issue(solution, options)
     return solution
 
@@ -279,7 +268,6 @@ def solution_of(
     bearing: Bearing,
     operation: Operation,
     options: BearingOptions,
-    needs: Requirements,
     problem: Problem,
     state: State,
     ending: tuple[int, str],
@@ -294,15 +282,16 @@ def solution_of(
     normals = kinematics.angles(kinematics.ring_motion(state.ring), state.own)
     total = state.wanting + problem.loads
     loaded = {key: contact for key, contact in contacts.items() if carrying(loads)[key]}
-    notes = [
+    notes = (
         *_implausible(bearing, state.ring, peaks),
         *_beyond_shoulders(bearing, normals, peaks),
         *_notes(bearing, options.model, loaded),
-    ]
-    kinds, texts = map(tuple, zip(*notes, strict=True)) if notes else ((), ())
+    )
     errors, load_error = None, None
     if isinstance(problem.law, Solved):
         errors, load_error = _discretisation(problem.law, state.reaction, peaks, edges)
+    noted = [one.report.warning_kinds for one in loaded.values() if one.load > SLIGHT * loads.max()]
+    ended = *ending[::-1], state.balance, notes, errors, load_error
     return BearingSolution(
         bearing=bearing,
         model=options.model,
@@ -327,17 +316,9 @@ def solution_of(
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
         cells=None if sizes is None else options.cells,
-        report=BearingReport(
-            ending[1],  # type: ignore[arg-type]
-            ending[0],
-            state.balance,
-            texts,
-            errors,
-            load_error,
-            kinds,
-        ),
-        required_life=needs.required_life,
-        static_safety=needs.static_safety,
+        report=BearingReport(*ended, tuple(sorted(set().union(*noted)))),  # type: ignore[arg-type]
+        required_life=operation.required_life,
+        static_safety=operation.static_safety,
         _contacts=dict(contacts),
     )
 
@@ -408,24 +389,22 @@ def _mean_load(loads: Array) -> float:
     return float(((edge_factors(LAMINAE) * loads) ** 4.5).sum() ** (1 / 4.5))
 
 
-def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[tuple[str, str]]:
-    """Yield warnings of tilts and pressures that no bearing has, after their kinds."""
+def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[str]:
+    """Yield warnings of tilts and pressures that no bearing has."""
     steepest = float(np.abs(ring[3:]).max())
     if steepest > STEEPEST and not bearing.aligns:
         yield (
-            "far above those of bearings",
             f"the tilt of the ring, a slope, is {steepest:.4g}: far above those of bearings, "
-            "2' are 5.8e-4",
+            "2' are 5.8e-4"
         )
     if (peak := float(peaks.max())) > HIGHEST:
         yield (
-            "contacts are neither elastic nor small",
             f"the peak pressure is {peak / 1e9:.4g} GPa: above {HIGHEST / 1e9:g} GPa, contacts "
-            "are neither elastic nor small",
+            "are neither elastic nor small"
         )
 
 
-def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterable[tuple[str, str]]:
+def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterable[str]:
     """Yield a warning where contacts of balls reach beyond the shoulders of the rings."""
     if not isinstance(bearing, BallBearing):
         return
@@ -438,41 +417,30 @@ def _beyond_shoulders(bearing: Bearing, normals: Array, peaks: Array) -> Iterabl
         angle = max(reached, default=0.0)
         if angle > shoulder:
             yield (
-                "they are cut off",
                 f"contacts with the {ring} ring reach {math.degrees(angle):.3g} degrees from the "
                 f"bottom of the groove, beyond its shoulder at {math.degrees(shoulder):.3g}, where "
                 "they are cut off: their pressure and the life are wrong; shoulder_height says how "
-                "high it is",
+                "high it is"
             )
 
 
 def _notes(
     bearing: Bearing, model: Model, contacts: Mapping[tuple[int, int], Solution]
-) -> Iterable[tuple[str, str]]:
+) -> Iterable[str]:
     """Yield warnings: those of contacts by kind, and what the standard's contacts leave out."""
     if model == "iso16281":
         if bearing.layered:
-            yield (
-                "layers are not counted",
-                "layers are not counted: the contacts of ISO/TS 16281 are bare",
-            )
+            yield "layers are not counted: the contacts of ISO/TS 16281 are bare"
         softer = np.abs(np.array(bearing.modulus) / STANDARD - 1)
         if isinstance(bearing, RollerBearing) and softer.max() > 0.05:
-            text = "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
-            yield "moduli are not counted", text
+            yield "moduli are not counted: the laminae of ISO/TS 16281 are those of steel"
         return
     texts: dict[str, str] = {}
     kinds: Counter[str] = Counter()
-    counted: set[str] = set()
-    least = SLIGHT * max((contact.load for contact in contacts.values()), default=0.0)
     for contact in contacts.values():
         report = contact.report
         for kind, text in zip(report.warning_kinds, report.warnings, strict=True):
             texts.setdefault(kind, text)
         kinds.update(dict.fromkeys(report.warning_kinds, 1))  # some are said of both axes
-        counted |= {*report.warning_kinds} if contact.load >= least else set()
     for kind, number in kinds.items():
-        yield (
-            kind if kind in counted else "slight",
-            f"{number} of {len(contacts)} contacts: {texts[kind]}",
-        )
+        yield f"{number} of {len(contacts)} contacts: {texts[kind]}"

@@ -89,7 +89,7 @@ def bearing_verdict(
 def doubts_and_cautions(solution: BearingSolution, life: BearingLife) -> tuple[str, str]:
     """Return what leaves the life of a solution unknown, and what fair at best: "" for nothing."""
     report, bearing = solution.report, solution.bearing
-    notices = [*(report.warning_kinds or report.warnings)]
+    notices = [*report.warnings, *(report.contact_kinds or ())]
     notices += [BARE] if bearing.layered else []
     notices += [] if _is_steel(bearing) else [NOT_STEEL]
     notices += ["above half of the rating"] if life.equivalent_load > life.capacity / 2 > 0 else []
@@ -133,17 +133,9 @@ def _life_demand(life: BearingLife | PairLife) -> Demand:
     turns = math.isfinite(life.hours)
     value = life.hours if turns else life.revolutions
     error = life.uncertainty
-    demand = Demand(
-        "life",
-        "of both bearings" if life._of else "",
-        value,
-        error and error * value,
-        limit=life.required_life,
-        unit="h",
-        at_least=True,
-        leads=True,
-    )
-    return demand._replace(sentence=_life_sentence(life, demand, turns))
+    part, limit = "of both bearings" if life._of else "", life.required_life
+    demand = Demand("life", part, value, error and error * value, None, limit, "given", "h", True)
+    return demand._replace(sentence=_life_sentence(life, demand, turns), leads=True)
 
 
 def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) -> str:
@@ -154,11 +146,10 @@ def _life_sentence(life: BearingLife | PairLife, demand: Demand, turns: bool) ->
     name = f"L{plain(100 * (1 - life.reliability), DIGITS)}{'m' if is_modified else 'r'}"
     model = "ISO 281, with a_ISO" if is_modified else "ISO/TS 16281, without lubrication"
     basis = f"{life._of}{plain(100 * life.reliability, DIGITS)} %, {model}"
-    revolutions, duration = _revolutions(life.revolutions), _revolutions(life.revolutions)
+    duration = _revolutions(life.revolutions)
     if turns:
         rate = plain(life.revolutions / life.hours / MINUTES, DIGITS)
-        name, basis = f"{name} {revolutions} at {rate}/min", basis
-        duration = _duration(life.hours, demand.limit)
+        name, duration = f"{name} {duration} at {rate}/min", _duration(life.hours, demand.limit)
     error = "" if duration.startswith(">") else with_error(demand.value, demand.error)
     needed = ""
     if demand.limit is not None:
@@ -229,30 +220,20 @@ def _static_demands(
     usual = standards.static_safety
     required, origin = (usual, "ISO 76") if static_safety is None else (static_safety, "given")
     value = solution.static_load().safety
-    safety = Demand(
-        "static safety",
-        part,
-        value,
-        share and share * value,
-        limit=required,
-        origin=origin,
-        unit="",
-        at_least=True,
-    )
+    error_of_safety = share and share * value
+    kept = required, origin, "", True
+    safety = Demand("static safety", part, value, error_of_safety, None, *kept)
     outcome = ": too low" if safety.outcome == 0 else ""
     words = f"{_capitalised(safety)} {plain(value, DIGITS)}, {plain(required, DIGITS)} required"
     yield safety._replace(sentence=f"{words} ({origin}){outcome}.")
     limit, power = standards.static_pressure, solution.bearing.width_power
     value = (limit / peak) ** power
     bound = f"limit {beside(peak, limit)} (ISO 76) at {plain(value, DIGITS)} times the load"
-    pressure = pressure._replace(
-        value=value,
-        error=error and power * value * error / peak,
-        limit=min(1.0, required),
-        origin="ISO 76",
-        unit="",
-        at_least=True,
+    deviation, kept = (
+        error and power * value * error / peak,
+        (min(1.0, required), "ISO 76", "", True),
     )
+    pressure = Demand(pressure.quantity, part, value, deviation, None, *kept)
     outcome = ": too high" if pressure.outcome == 0 else ""
     words = f"{_capitalised(pressure)} {measured(peak, error)}"
     yield pressure._replace(sentence=f"{words}, {bound}{outcome}.")
@@ -270,10 +251,8 @@ def _edge(solution: BearingSolution, part: str) -> tuple[list[str], bool]:
         return [], False
     error = (solution.report.discretisation or {}).get("edge_pressure")
     is_edged = edge + (error or 0.0) >= peak
-    words = "edge stress" if is_edged else "no edge stress"
-    name = f"Edge {part}".rstrip()
-    share = plain(edge / peak, DIGITS)
-    return [f"{name} {measured(edge, error)}, {share} of the peak: {words}."], is_edged
+    words = f"{plain(edge / peak, DIGITS)} of the peak: {'' if is_edged else 'no '}edge stress"
+    return [f"{f'Edge {part}'.rstrip()} {measured(edge, error)}, {words}."], is_edged
 
 
 def _film_cautions(solution: BearingSolution) -> Sequence[str]:

@@ -108,7 +108,6 @@ TEXTS: dict[str, Doubt] = {
     "what follows errs by": Doubt(None, "what follows the first layer that is through"),
     "thinner layers count to first order": Doubt("fair", "layers are thinner to first order"),
     "nothing is worn": Doubt("unknown", "the cycles wear nothing"),
-    "the contact is": Doubt("fair", "the contact is large for the bodies", leaves_model=True),
 }
 """What other warnings mean for verdicts, by words that their text has."""
 OUTSIDE = {doubt.reason for doubt in (*KINDS.values(), *TEXTS.values()) if doubt.leaves_model}
