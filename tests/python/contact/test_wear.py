@@ -48,7 +48,7 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert history.distance[-1] == life.distance
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
     assert history.verdict().words.startswith("Through after ")
-    assert history.verdict().lines[0] == "First worn through: DLC of the body, at y = 0 m."
+    assert history.verdict().lines[0].startswith("First worn through: DLC of the body, at y = ")
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
         further = worn(sliding=1.2 * life.distance, steps=3, scheme="euler")
     assert further.life is not None
@@ -58,8 +58,9 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert further.life.uncertainty is not None
     assert life.uncertainty < 1e-2 * life.distance
     assert 0 < late < further.life.uncertainty + life.uncertainty < 20 * late
-    share = 100 * further.life.uncertainty / further.life.distance
-    assert f" ± {share:.2g} %." in further.verdict().words
+    assert further.report.thickness_error is not None
+    share = further.life.uncertainty / further.life.distance + further.report.thickness_error
+    assert f" ± {100 * share:.2g} %." in further.verdict().words
     assert further.distance[-1] > further.life.distance
 
 
@@ -393,8 +394,9 @@ def test_the_verdict_on_bodies_without_layers_is_unknown() -> None:
 def test_a_history_in_which_no_layer_is_through_lasts_at_least_its_distance(
     required: float, level: str
 ) -> None:
-    verdict = worn().verdict(required_distance=required)
-    assert (verdict.level, verdict.factor) == (level, pytest.approx(100.0 / required))
+    verdict = worn(steps="auto").verdict(required_distance=required)
+    assert verdict.level == level
+    assert verdict.factor == pytest.approx(100.0 / required)
     assert verdict.words.startswith(f"No layer is through after 100 m, {required:g} m required: ")
     assert " of 2 µm worn at most." in verdict.words
 
@@ -415,7 +417,7 @@ def test_a_history_that_ends_too_early_tells_nothing_of_a_longer_distance() -> N
 
 
 @pytest.mark.parametrize(
-    ("factor", "level"), [(0.9, "bad"), (1.1, "fair"), (1.49, "fair"), (1.52, "good")]
+    ("factor", "level"), [(0.9, "bad"), (1.1, "fair"), (1.49, "fair"), (1.6, "good")]
 )
 def test_the_distance_to_wear_through_is_judged_with_its_error(factor: float, level: str) -> None:
     history = worn(sliding=5e4, steps="auto", until="through")
@@ -424,7 +426,8 @@ def test_the_distance_to_wear_through_is_judged_with_its_error(factor: float, le
     assert life.uncertainty is not None
     assert life.uncertainty < 0.01 * life.distance
     verdict = history.verdict(required_distance=life.distance / factor)
-    assert (verdict.level, verdict.factor) == (level, pytest.approx(factor))
+    assert verdict.level == level
+    assert verdict.factor == pytest.approx(factor)
     assert verdict.words.endswith(" required: too soon." if factor < 1 else " required.")
 
 
