@@ -32,6 +32,7 @@ from nacre.bearing.iso import edge_factors, hertz_pressures
 from nacre.bearing.kinds import BallBearing, RollerBearing
 from nacre.bearing.solution import BearingReport, BearingSolution, carrying, edge_pressure
 from nacre.contact.solution import Solution
+from nacre.contact.stresses import kinds_of
 from nacre.results.verdict import SINGULAR, SLIGHT
 
 if TYPE_CHECKING:
@@ -290,7 +291,7 @@ def solution_of(
     errors, load_error = None, None
     if isinstance(problem.law, Solved):
         errors, load_error = _discretisation(problem.law, state.reaction, peaks, edges)
-    noted = [one.report.warning_kinds for one in loaded.values() if one.load > SLIGHT * loads.max()]
+    noted = [kinds_of(one) for one in loaded.values() if one.load > SLIGHT * loads.max()]
     ended = *ending[::-1], state.balance, notes, errors, load_error
     return BearingSolution(
         bearing=bearing,
