@@ -1227,15 +1227,15 @@ def doubt_of(solution: Stressed) -> str | None:
     normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
-    return joined(_kinds(normal), "unknown")
+    return joined(kinds_of(normal), "unknown")
 
 
 def caution_of(solution: Stressed) -> str | None:
     """Return what leaves a verdict on a solution fair at best, or None."""
-    return joined(_kinds(solution._normal), "fair")
+    return joined(kinds_of(solution._normal), "fair")
 
 
-def _kinds(normal: Solution) -> Iterator[str]:
+def kinds_of(normal: Solution) -> Iterator[str]:
     """Yield the kinds of the warnings of a contact, that of flat bodies by its size."""
     for warning in cast(list[dict[str, Any]], normal.report._data["warnings"]):
         is_flat = warning["kind"] != "large contact" or warning["figure"] <= LARGEST_CONTACT
