@@ -168,7 +168,7 @@ def answer(
 
 def finer(case: Case) -> Case:
     """Return a case on finer cells, with stresses of a small error."""
-    data = copy.deepcopy(case.data)
+    data: dict[str, Any] = copy.deepcopy(case.data)
     grid = data.get("grid", {})
     for key in grid.keys() & {"shape", "cells"}:
         grid[key] = (FINER * np.array(grid[key])).tolist()
@@ -368,11 +368,10 @@ def _share_of_peak(contact: Contact) -> str:
 
 def worst_of(verdicts: Iterable[Verdict | None]) -> Verdict | None:
     """Return the worst verdict, with the sentences of the others below; None of none."""
-    first, *others = sorted(filter(None, verdicts), key=lambda one: LEVELS.index(one.level)) or [
-        None
-    ]
-    if first is None:
+    ranked = sorted(filter(None, verdicts), key=lambda verdict: LEVELS.index(verdict.level))
+    if not ranked:
         return None
+    first, *others = ranked
     lines = (line for verdict in others for line in verdict.sentences)
     return replace(first, lines=tuple(dict.fromkeys([*first.lines, *lines])))
 

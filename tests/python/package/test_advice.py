@@ -84,7 +84,8 @@ def known() -> set[str]:
 
 
 def test_every_name_in_a_message_exists() -> None:
-    names, unknown = known() | OTHERS, {}
+    names = known() | OTHERS
+    unknown: dict[str, str] = {}
     for text in messages():
         words = re.sub(r"\"[^\"]*\"|\{[^}]*\}", "", text)
         if " " not in words.strip() or "<" in words or "='" in words or "charset" in words:

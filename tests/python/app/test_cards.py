@@ -10,11 +10,12 @@ from typing import Any
 
 import pytest
 
+import nacre
 from nacre.app.answer import Answer, answer
 from nacre.app.cards import Card, cards, own_card
 from nacre.app.fields import Field, FieldError
 from nacre.app.page import files
-from nacre.case import templates
+from nacre.case import Case, templates
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 
@@ -31,13 +32,20 @@ CARDS = list(cards())
 def last_parts(card: Card, values: dict[str, str]) -> Answer:
     """Return the parts of the last answer on few cells, or an error in a sentence."""
     case = card.case(values)
-    if case.kind == "contact" and "grid" not in case.data and "solve.max_cells" not in values:
-        case.data["solve"]["max_cells"] = 4096
+    data: dict[str, Any] = case.data
+    if case.kind == "contact" and "grid" not in data and "solve.max_cells" not in values:
+        data["solve"]["max_cells"] = 4096
     if case.kind == "bearing":
-        case.data["bearing"]["solve"].setdefault("cells", [40, 8])
-    case = type(case)(case.data, case.name)
-    reply = answer(case, LAST[case.kind], measured=card.measured)
-    return reply.get("parts", reply)
+        data["bearing"]["solve"].setdefault("cells", [40, 8])
+    reply = answer(Case(data, case.name), LAST[case.kind], measured=card.measured)
+    parts: Answer = reply.get("parts", reply)
+    return parts
+
+
+def material_of(case: Case, name: str) -> object:
+    """Return the entry of a material of a case."""
+    materials: Any = case.data["materials"]
+    return materials[name]
 
 
 def others(field: Field) -> list[str]:
@@ -112,9 +120,7 @@ def chosen(card: Card, material: str, numbers: dict[str, float | None]) -> dict[
 
 @pytest.mark.parametrize("name", CARDS)
 def test_menus_offer_materials_of_their_kind(name: str) -> None:
-    import nacre
-
-    kinds = {}
+    kinds: dict[str, set[str]] = {}
     for material, entry, _ in menu_entries(name):
         kinds.setdefault(material, set()).add(nacre.materials[entry].kind)
     for material, offered in kinds.items():
@@ -135,7 +141,7 @@ def test_every_entry_is_accepted_and_no_worse_than_its_numbers(name: str) -> Non
             path: f"{float(text) * (1 + 1e-7):.9g}" if text else "" for path, text in values.items()
         }
         by_hand = last_parts(card, typed)
-        if case.data["materials"][material] == entry:
+        if material_of(case, material) == entry:
             assert "(given)" not in str(by_name["verdict"]) or "(given)" in str(by_hand["verdict"])
         levels = [LEVELS.index(parts["verdict"]["level"]) for parts in (by_name, by_hand)]
         assert levels[0] >= levels[1], (material, entry)
@@ -154,7 +160,7 @@ def test_a_chosen_card_is_named_in_case_and_verdict() -> None:
     card = cards()["contact"]
     entries = {entry: numbers for material, entry, numbers in menu_entries("contact")}
     values = chosen(card, "steel", entries["440C"])
-    assert card.case(values).data["materials"]["steel"] == "440C"
+    assert material_of(card.case(values), "steel") == "440C"
     assert "(card 440C)" in str(last_parts(card, values)["verdict"])
     typed = values | {"materials.steel.yield_stress": "1900"}
     assert "(given)" in str(last_parts(card, typed)["verdict"])
@@ -166,7 +172,7 @@ def test_a_card_of_a_case_file_becomes_fields(tmp_path: Path) -> None:
     path.write_text(re.sub(r"steel = .*", 'steel = "440C"', text), encoding="utf-8")
     card = own_card(path)
     assert card.by_path["materials.steel.yield_stress"].default == 1896.0
-    assert card.case({}).data["materials"]["steel"] == "440C"
+    assert material_of(card.case({}), "steel") == "440C"
     assert "(card 440C)" in str(last_parts(card, {})["verdict"])
 
 
