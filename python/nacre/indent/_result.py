@@ -6,6 +6,7 @@ import math
 import operator
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -14,6 +15,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import written
+from nacre.indent._addressed import System
 from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
 from nacre.indent._residuals import ROUNDING
 from nacre.indent._verdict import fit_verdict
@@ -39,6 +41,9 @@ Array = npt.NDArray[np.float64]
 
 UNFIT = "the model does not fit the data"
 """Reason why no parameter is identifiable where the residuals are no noise."""
+
+ASSUMED = 0.01
+"""Standard error that is assumed of moduli, thicknesses and tips that are held, as a share."""
 
 MOST_RATES = 6
 """Most numbers on which a table says that an estimate depends."""
@@ -110,6 +115,34 @@ class Fit(Shown, Result):
     """How the residuals show that the model does not describe the data, and what to free, with
     errors and intervals wider and linear; what makes the contacts doubtful. Each was also issued as
     a `NacreWarning`."""
+    known: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Value and standard error of what is held, as far as they were given."""
+
+    _LATER = ("known",)
+
+    @property
+    def error_sources(self) -> dict[str, dict[str, float]]:
+        """Standard error of each free parameter by its source: "noise", and each number held.
+
+        Errors of numbers that are held are those of `known`, and 1 % of every other modulus,
+        thickness and number of the tip but an exponent. NaN where a slope is not known.
+        """
+        held = System.of(self.body, self.tip, self.counterbody, self.adhesion).held(self.free)
+        shares = {path: ASSUMED for path in held if path not in self.known and _is_assumed(path)}
+        for path, (value, error) in self.known.items():
+            shares[path] = error if path.endswith(".poisson") else error / value
+        sources = {}
+        for name in self.free:
+            rate = 1.0 if name.endswith(".poisson") else self.estimates[name]
+            slopes = self.sensitivity.get(name, {})
+            moves = {p: abs(slopes.get(p, math.nan) * rate) * share for p, share in shares.items()}
+            sources[name] = {"noise": self.standard_errors[name]} | moves
+        return sources
+
+    @property
+    def uncertainty(self) -> dict[str, float]:
+        """Standard error of each free parameter: of the noise, and of what is held, together."""
+        return {name: math.hypot(*by.values()) for name, by in self.error_sources.items()}
 
     @property
     def identifiable(self) -> dict[str, bool]:
@@ -312,6 +345,8 @@ class Fit(Shown, Result):
         with refusing("Fit"):
             for name in ("body", "tip", "counterbody", "adhesion"):
                 state[name] = decode(state[name])
+            pairs = (state["known"] or {}).items()
+            state["known"] = {key: (float(value), float(error)) for key, (value, error) in pairs}
             for name in ("estimates", "standard_errors"):
                 state[name] = {key: float(value) for key, value in state[name].items()}
             for name in ("chi2", "sigma", "floor", "condition"):
@@ -359,6 +394,12 @@ class Fit(Shown, Result):
             and isinstance(self.is_profiled, bool)
             and holds(self.body, self.tip, self.counterbody, self.adhesion)
         )
+
+
+def _is_assumed(path: str) -> bool:
+    """Return whether an error of what is held is assumed where none is given."""
+    last = path.rpartition(".")[2]
+    return last in ("young", "thickness") or (path.startswith("tip.") and last != "exponent")
 
 
 def _step(parameter: str) -> str:
