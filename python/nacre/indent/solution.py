@@ -140,7 +140,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """
 
     _TITLE = "indentation of a coated body"
-    _LATER = ("warnings",)
+    _LATER = ("warnings", "tolerance")
 
     body: core.HalfSpace
     """Body that is indented."""
@@ -175,6 +175,8 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     Each was also issued as a `nacre.NacreWarning`.
     """
+    tolerance: float | None = None
+    """Largest error of the modulus of the film that is tolerated, as a part of it, if given."""
 
     @classmethod
     def _of(
@@ -185,6 +187,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         branch: Branch,
         control: Control,
         stacklevel: int = 4,
+        tolerance: float | None = None,
     ) -> Self:
         """Return contacts of the compiled module, and issue their warnings."""
         messages = states.warnings()
@@ -204,6 +207,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
             stiffness=states.number("stiffness"),
             outer_radius=states.number("outer_radius"),
             warnings=tuple(messages),
+            tolerance=tolerance,
             indentation=test,
             _states=states,
         )
@@ -335,13 +339,15 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"]
+        names = ("given", "branch", "control", *NUMBERS, "pull_off", "warnings", "tolerance")
+        return [*ARGUMENTS, *names]
 
     def _state(self) -> dict[str, object]:
         state = {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
-        return state | {"pull_off": self._pulled, "warnings": list(self.warnings)}
+        state |= {"pull_off": self._pulled, "warnings": list(self.warnings)}
+        return state | {"tolerance": self.tolerance}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -352,6 +358,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
                 values = np.array(state[name], dtype=np.float64)
                 state[name] = values if values.ndim else float(values)
             state["warnings"] = tuple(state["warnings"] or ())
+            state["tolerance"] = checked_tolerance(state["tolerance"])
             pulled, central = state.pop("pull_off"), state.pop("central_pressure")
             solution = cls(**state)
             solution.__dict__["central_pressure"] = central
@@ -384,6 +391,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     def _inputs(self) -> Rows:
         inputs = {name: getattr(self, name) for name in ARGUMENTS}
         inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
+        inputs |= {} if self.tolerance is None else {"tolerance": self.tolerance}
         return input_rows(inputs | {"counterbody": self.counterbody or "rigid"})
 
     def _report_rows(self) -> Rows:
@@ -677,13 +685,14 @@ class Indentation:
         branch: Branch,
         control: Control,
         progress: PointProgress | None = None,
+        tolerance: float | None = None,
     ) -> IndentSolution:
         check_progress(progress)
         values: dict[str, Any] = {str(name): one for name, one in numbers.items()}
         states = self._planned.at(branch, **values, progress=progress)
         # What was given is the value that is not None.
         name = next(name for name, value in numbers.items() if value is not None)
-        return IndentSolution._of(self, states, name, branch, control)
+        return IndentSolution._of(self, states, name, branch, control, tolerance=tolerance)
 
     def curve(self, *, approach: Vector, wrt: Sequence[str] = ()) -> IndentCurve:
         """Compute loads at approaches with their derivatives, by interpolation in the radius.
@@ -790,6 +799,7 @@ def solve(
     radius: npt.ArrayLike | None = None,
     branch: Branch = "stable",
     control: Control = "load",
+    tolerance: float | None = None,
     progress: PointProgress | None = None,
 ) -> IndentSolution:
     """Solve an indentation to a result that can be saved, and that studies take outputs from.
@@ -810,6 +820,8 @@ def solve(
         Branch of the curve where adhesion gives two contacts the same load or approach.
     control : {"load", "approach"}
         What is held while the tip is pulled off.
+    tolerance : float, optional
+        Largest error of the modulus of the film, as a part of it, by which its verdict judges.
     progress : callable, optional
         Function that is called with the number of finished contacts and of all contacts. Its result
         is ignored.
@@ -843,5 +855,9 @@ def solve(
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
     return test._at(
-        {"load": load, "approach": approach, "radius": radius}, branch, control, progress
+        {"load": load, "approach": approach, "radius": radius},
+        branch,
+        control,
+        progress,
+        checked_tolerance(tolerance),
     )
