@@ -165,7 +165,7 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
         except ValueError as error:
             verdict = Verdict("unknown", f"Cannot tell: {error}.")
         else:
-            verdict, warnings = summary.verdict, [*warnings, *summary.warnings]
+            verdict, warnings = summary.verdict(), [*warnings, *summary.warnings]
             rows += _extremes(summary)
             options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
             if bare is not None:
@@ -222,7 +222,7 @@ def _wear(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
         [*history._rows(), *history._remarks()],
         pictures,
         history.warnings,
-        history.verdict,
+        history.verdict(),
         following,
     )
 
@@ -252,7 +252,7 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     is_compared = is_tilted and isinstance(bearing, RollerBearing)
     following = NEXT.get(stage) if stage == "draft" or is_compared else None
     peak = ("peak pressure", solution.peak_pressure, "Pa")
-    return _answer(peak, rows, pictures, solution.report.warnings, solution.verdict, following)
+    return _answer(peak, rows, pictures, solution.report.warnings, solution.verdict(), following)
 
 
 def _indentation(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answer:
@@ -306,8 +306,7 @@ def _answer(
     }
     page |= {f"picture-{number}": picture for number, picture in enumerate(pictures, start=1)}
     if verdict is not None:
-        level, words, lines = verdict.level, verdict.words, verdict.lines
-        page["verdict"] = {"level": level, "words": words, "lines": lines}
+        page["verdict"] = verdict._state()
     return {"parts": page, "next": following}
 
 

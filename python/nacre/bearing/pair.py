@@ -64,7 +64,7 @@ from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
 from nacre.results.values import encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     import xarray
@@ -481,7 +481,7 @@ class PairLife(TableResult):
     def _restored(cls, state: dict[str, Any]) -> Self:
         return super()._restored(state | {"reliability": state.get("reliability") or 0.9})
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
         """Verdict: how long both live; bad below `required_life`, good from 1.5 of it."""
         return life_verdict(self)
@@ -554,7 +554,7 @@ class PairSolution(Equilibrium):
         """Solutions of both bearings."""
         return self.first, self.second
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
         """Verdict: the life of both, and those on both bearings, of which the worst decides."""
         return pair_verdict(self._life or self.life(), dict(zip(NAMES, self.bearings, strict=True)))

@@ -33,7 +33,7 @@ from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows
 from nacre.results.rows import Row
 from nacre.results.shown import TableResult
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     from nacre.bearing.pair import PairLife
@@ -121,7 +121,7 @@ class BearingLife(TableResult):
             fields |= {"hours": math.inf, "reliability": 0.9, "reliability_factor": 1.0}
         return super()._restored(fields)
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
         """Verdict: how long the bearing lives; bad below `required_life`, good from 1.5 of it."""
         return life_verdict(self)

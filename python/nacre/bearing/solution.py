@@ -40,7 +40,7 @@ from nacre.results.report import (
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     import xarray
@@ -310,7 +310,7 @@ class BearingSolution(Equilibrium):
         """Speed of the elements about the axis [rad/s], that of the bearing."""
         return self.bearing.cage_speed(self.speed, self.rotating)
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
         """Verdict: life, and the largest pressure against that of the static rating of ISO 76.
 
@@ -596,7 +596,7 @@ class BearingSolution(Equilibrium):
     def _comments(self) -> dict[str, object]:
         errors = self.report.discretisation or {}
         error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        verdict = " ".join(self.verdict.sentences)
+        verdict = " ".join(self.verdict().sentences)
         return {
             "verdict": verdict,
             "model": self.model,

@@ -14,15 +14,14 @@ from nacre.results.verdict import (
     DIGITS,
     MARGIN,
     NO_LIMIT,
+    TEXTS,
     UNCONVERGED,
     Demand,
     Level,
     Verdict,
     beside,
-    level_of,
+    factor_text,
     measured,
-    outcome_of,
-    times,
 )
 
 if TYPE_CHECKING:
@@ -45,13 +44,6 @@ NOT_STEEL = (
     "Cannot tell: lives and limits of ISO are those of bearing steel, and these bodies are not."
 )
 UNASKED = "No life is required: life(required_life=...) judges it."
-WARNINGS: dict[str, Level] = {
-    "they are cut off": "unknown",  # the pressure and the life are wrong
-    "moduli are not counted": "unknown",  # the loads are those of steel
-    "contacts are neither elastic nor small": "unknown",  # above 6 GPa
-    "the contact is": "fair",  # wide or long for the bodies
-}
-"""Words of warnings of bearings, with the level that they leave at most."""
 
 
 def life_verdict(life: BearingLife | PairLife) -> Verdict:
@@ -81,7 +73,13 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     errors = solution.report.discretisation
     peak, edge = (
         # The contacts of the standard are formulas.
-        Demand("", "", getattr(solution, name), 0.0 if errors is None else errors.get(name))
+        Demand(
+            "",
+            "",
+            getattr(solution, name),
+            0.0 if errors is None else errors.get(name),
+            limit=bearing.standards.static_pressure,
+        )
         for name in ("peak_pressure", "edge_pressure")
     )
     if not peak.value > 0:
@@ -90,7 +88,7 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
         pressure = f"Peak pressure {measured(peak.value, peak.error)}."
         return Verdict("unknown", NOT_STEEL, (pressure, *bare), None, "peak pressure", peak.share)
     factor = bearing.standards.static_pressure / peak.value
-    level, pressure = level_of(factor, peak.share), _static_comparison(peak, factor)
+    level, pressure = peak.level, _static_comparison(peak, factor)
     sentences = [pressure, lives] if level == "bad" else [lives, pressure]
     has_edge_stress = edge.value + (edge.error or 0.0) >= peak.value
     if not math.isnan(edge.value):
@@ -102,11 +100,11 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     cautions = _cautions(solution, life)
     levels = [level, asked]
     levels += ["fair"] if has_edge_stress or bare or cautions else []
-    warned = {
+    warned: dict[str, Level] = {
         text: level
         for text in solution.report.warnings
-        for words, level in WARNINGS.items()
-        if words in text
+        for words, doubt in TEXTS.items()
+        if words in text and (level := doubt.level) is not None
     }
     levels += warned.values()
     doubts = [f"Cannot tell: {text}." for text, most in warned.items() if most == "unknown"]
@@ -190,7 +188,10 @@ def _lives(life: BearingLife | PairLife, needed: str = "") -> str:
 
 def _static_comparison(peak: Demand, factor: float) -> str:
     """Return the largest pressure against that of the static rating."""
-    limit, ratio = f"the {beside(peak.value, factor * peak.value)} of ISO 76", times(factor)
+    limit, ratio = (
+        f"the {beside(peak.value, factor * peak.value)} of ISO 76",
+        f"{factor_text(factor)} times",
+    )
     comparisons = f"above {limit} ({ratio})", f"about {limit} ({ratio})", f"{ratio} below {limit}"
-    comparison = comparisons[outcome_of(factor, peak.share)]
+    comparison = comparisons[peak.outcome]
     return f"Peak pressure {measured(peak.value, peak.error)}, {comparison}."

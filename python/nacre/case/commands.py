@@ -28,6 +28,7 @@ from nacre.results.display import SLIGHT, aligned, column, shown_in
 from nacre.results.quantities import ERROR
 from nacre.results.shown import TableResult
 from nacre.results.values import result_class
+from nacre.results.verdict import verdict_on
 from nacre.studies import default_threads
 from nacre.studies.outputs import check_direction
 from nacre.studies.report import save_report
@@ -224,10 +225,8 @@ def _in_units(state: dict[str, Any], added: dict[str, TableResult], units: str) 
 
 def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     """Return the verdicts on results, by the names of these; some have none."""
-    judged = {
-        name: result.verdict for name, result in results.items() if hasattr(result, "verdict")
-    }
-    verdicts = {name: verdict._state() for name, verdict in judged.items()}
+    known = {name: verdict_on(result) for name, result in results.items()}
+    verdicts = {name: verdict._state() for name, verdict in known.items() if verdict is not None}
     return {"verdict": verdicts} if verdicts else {}
 
 

@@ -24,7 +24,7 @@ from nacre.results.quantities import Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.verdict import SLIGHT, UNCONVERGED, Demand, Verdict, doubts_of, judged
+from nacre.results.verdict import SLIGHT, UNCONVERGED, Demand, Verdict, asked, joined, judged, split
 
 if TYPE_CHECKING:
     import xarray
@@ -66,10 +66,9 @@ DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
 that of the cells, which takes 0.2 s; most cells of a grid for it."""
 DEEPEST = 1.25
 """Its depth over the width of the contact."""
-WORDS = {"von_mises": "von Mises", "tension": "tension"}
+WORDS = {"von_mises": "von Mises stress", "tension": "tension"}
 """Words for these extremes."""
-MISES = "von Mises stress"
-"""The same where no limit is given."""
+UNASKED = "Give a yield stress, a strength or a bond strength to judge them."
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
@@ -525,15 +524,27 @@ class StressSummary(Shown, Warned, Result):
         fields = core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True))
         return cls._from_fields(fields, **contact)
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
-        """Verdict: the part with the smallest safety factor, and what parts without a limit need.
+        """Verdict: the smallest safety factor decides; the limits are those of the summary.
 
-        Where no yield stress and no strength is given, layers need the largest tension, and the
-        substrate the largest von Mises stress.
+        Of parts without a limit it has the largest tension, of the substrate the largest von Mises
+        stress.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown without any limit.
         """
-        doubt = self.doubt if self.finished else UNFINISHED
-        return judged(_demands(self), doubt, caution=self.caution)
+        demands, doubts = [*_demands(self)], split(self.doubt)
+        is_limited = any(demand.limit is not None for demand in demands)
+        return judged(
+            demands,
+            doubts=doubts if self.finished else [*doubts, UNFINISHED],
+            cautions=split(self.caution),
+            unasked=UNASKED if demands and not is_limited else None,
+            question="Do the largest stresses keep the limits?" if is_limited else None,
+        )
 
     def to_xarray(self) -> xarray.Dataset:
         """Dataset of the table, a row for each extreme; needs ``nacre-contact[files]``.
@@ -957,7 +968,7 @@ class Stressed:
         Returns
         -------
         Verdict
-            That of the summary, `StressSummary.verdict`; printing it shows its sentences.
+            Verdict of the summary, `StressSummary.verdict`; printing it shows its sentences.
 
         Raises
         ------
@@ -983,7 +994,7 @@ class Stressed:
             threads=threads,
             progress=progress,
         )
-        return summary.verdict
+        return summary.verdict()
 
     def _sliding(
         self, friction: float, direction: Direction | None, body: Member
@@ -1207,12 +1218,12 @@ def doubt_of(solution: Stressed) -> str | None:
     normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
-    return doubts_of(normal.report.warning_kinds, "unknown")
+    return joined(normal.report.warning_kinds, "unknown")
 
 
 def caution_of(solution: Stressed) -> str | None:
     """Return what leaves a verdict on a solution fair at best, or None."""
-    return doubts_of(solution._normal.report.warning_kinds, "fair")
+    return joined(solution._normal.report.warning_kinds, "fair")
 
 
 def _doubts_of(solution: Stressed) -> dict[str, Any]:
@@ -1254,31 +1265,35 @@ def _shear_and_tension(strength: object) -> tuple[object, object]:
 
 
 def _demands(summary: StressSummary) -> Iterator[Demand]:
-    """Yield the stresses that layers and interfaces have to bear, with their limits."""
+    """Yield the stresses of layers and interfaces, with their limits."""
     noise = SLIGHT * max((layer.von_mises[0] for layer in summary.layers), default=0.0)
     for layer in summary.layers:
-        peaks = {name: _demand(layer, name, words) for name, words in WORDS.items()}
-        limited = [one for one in peaks.values() if one.factor is not None]
+        peaks = {name: _demand(summary, layer, name, words) for name, words in WORDS.items()}
+        limited = [demand for demand in peaks.values() if demand.limit is not None]
         pulled = layer.tension[0] > noise and layer.depths[1] < np.inf
-        need = peaks["tension"] if pulled else peaks["von_mises"]._replace(quantity=MISES)
+        need = peaks["tension" if pulled else "von_mises"]
         yield from limited
         # The yield stress of a brittle coat says nothing of its tension.
-        if need.value > noise and need.factor is None and (pulled or not limited):
+        if need.value > noise and need.limit is None and (pulled or not limited):
             yield need
     for face in summary.interfaces:
         bond = (summary.bond_strength or {face.interface: None})[face.interface]
         for k, name in enumerate(("shear", "tension")):
-            one = _demand(face, name, name)
-            if one.value > noise:
-                yield one if bond is None else one._replace(factor=bond[k] / one.value)
+            demand = _demand(summary, face, name, name)
+            if demand.value > noise:
+                yield demand if bond is None else demand._replace(limit=bond[k])
 
 
-def _demand(part: LayerStress | InterfaceStress, name: str, words: str) -> Demand:
+def _demand(
+    summary: StressSummary, place: LayerStress | InterfaceStress, name: str, words: str
+) -> Demand:
     """Return an extreme as a demand."""
-    value, (_, _, depth) = getattr(part, name)
-    factor = getattr(part, FACTORS.get(name, ""), None)
-    place = display.part(part).removeprefix("the ")
-    return Demand(place, words, value, part.uncertainty.get(name), depth, factor)
+    value, (_, _, depth) = getattr(place, name)
+    factor = getattr(place, FACTORS.get(name, ""), None)
+    limit = None if factor is None else factor * value if value > 0 else np.inf
+    part = display.part_in_words(place, summary.layers)
+    sentence = None if limit != np.inf else f"{words[0].upper()}{words[1:]} {part}: none."
+    return Demand(words, part, value, place.uncertainty.get(name), depth, limit, sentence=sentence)
 
 
 def _peak_rows(summary: StressSummary) -> list[list[str]]:

@@ -30,7 +30,16 @@ from nacre.results.report import Rows, Table, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 from nacre.results.tables import heading
-from nacre.results.verdict import MARGIN, Level, Verdict, level_of, number
+from nacre.results.verdict import (
+    Demand,
+    Verdict,
+    asked,
+    beside,
+    judged,
+    number,
+    reasons,
+    with_error,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -47,7 +56,8 @@ MODEL = (
 )
 MOST_SECTIONS = 8
 """Sections of a chart of worn depths; of more states some are left out."""
-UNASKED = "No distance is required: verdict_for(distance) judges it."
+UNASKED = "Give a required distance to judge it."
+RATE = "The error of the wear rate is not counted: measured rates scatter by some 50 %."
 THICKNESSES: dict[str, str] = {
     "frozen": "as thick as before",
     "first order": "thinner to first order in the depth",
@@ -289,21 +299,15 @@ class WearHistory(Shown, Result):
         """What limits the validity, and was warned of."""
         return self.report.warnings
 
-    @property
-    def verdict(self) -> Verdict:
+    @asked
+    def verdict(self, required_distance: float | None = None) -> Verdict:
         """Verdict: whether a layer is through, after which distance and where.
-
-        It is unknown: `verdict_for` judges a distance that is required.
-        """
-        return self._judged(None)
-
-    def verdict_for(self, required: float) -> Verdict:
-        """Return the verdict on a distance after which no layer may be through.
 
         Parameters
         ----------
-        required : float
-            Distance [m], cycles or passes, above 0.
+        required_distance : float, optional
+            Distance [m], cycles or passes, after which no layer may be through. Without it, the
+            verdict is unknown.
 
         Returns
         -------
@@ -320,42 +324,95 @@ class WearHistory(Shown, Result):
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
         >>> body = nacre.HalfSpace(steel, [nacre.Layer(steel, 2e-6)])
         >>> history = nacre.wear(nacre.Sphere(5e-3), body, load=10.0, rate=1e-16, sliding=1.0)
-        >>> history.verdict_for(0.5).level
+        >>> history.verdict(required_distance=0.5).level
         'good'
         """
-        distance = core.real("required", required)
-        if not 0 < distance < math.inf:
-            raise ValueError(f"required must be above 0 and finite, got {distance:g}")
-        return self._judged(distance)
+        limit = None
+        if required_distance is not None:
+            limit = core.real("required_distance", required_distance)
+            if not 0 < limit < math.inf:
+                raise ValueError(f"required_distance must be above 0 and finite, got {limit:g}")
+        demand, doubts = self._lasting(limit), []
+        if not (self.life or self.deepest[-1].max() > 0):
+            doubts.append("nothing has worn")
+        if demand is not None and limit is not None and demand.limit is None:
+            doubts.append("the history ends before the required distance")
+        if not self.report.converged:
+            doubts.append("the history was stopped")
+        elif any(state.rings for state in self.states):
+            doubts.append("the steps are too long, and ring")
+        asked_for = None if limit is None or demand is None else travelled(limit, self.unit)
+        worn = number(float(self.deepest[-1].max()), "m")
+        bare = f"Worn after {travelled(float(self.distance[-1]), self.unit)}: {worn} at most."
+        return judged(
+            [demand or Demand("depth", "", 0.0, sentence=bare, leads=True)],
+            doubts=[*doubts, *reasons(self.warnings, "unknown")] if asked_for else doubts[:1],
+            notes=[] if self.life is None else [self._place_of(self.life), RATE],
+            cautions=reasons(self.warnings, "fair") if asked_for else (),
+            unasked=None if asked_for or demand is None else UNASKED,
+            question=asked_for and f"Does every layer last {asked_for}?",
+        )
 
-    def _judged(self, required: float | None) -> Verdict:
-        """Return the verdict, on a required distance where there is one."""
-        reached, life = float(self.distance[-1]), self.life
-        needed = "" if required is None else f", {travelled(required, self.unit)} required"
-        report, worn = self.states[0].solution.report, float(self.deepest[-1].max())
-        has_layers = any(map(layer_names, (report.body, report.counterbody)))
-        lines = () if required is not None or not has_layers else (UNASKED,)
-        level: Level = "unknown"
-        if life is None:
-            end = travelled(reached, self.unit)
-            words = f"{'No layer is through' if has_layers else 'Worn'} after {end}{needed}"
-            words += f": {number(worn, 'm')} {'worn ' if has_layers else ''}at most."
-            if not worn > 0:
-                return Verdict("unknown", f"Cannot tell: nothing has worn after {end}.", lines)
-            rings = any(state.rings for state in self.states)
-            if required is not None and has_layers and self.report.converged and not rings:
-                level = "good" if reached >= MARGIN * required else "fair"
-                level = level if reached >= required else "unknown"
-            return Verdict(level, words, lines)
-        axes = "y" if self.states[0].solution.grid.is_line else "xy"
-        places = [f"{axis} = {number(life.position['xy'.index(axis)], 'm')}" for axis in axes]
-        when = f"after {life._travelled(self.unit)}" if life.distance > 0 else "from the start"
-        words = f"{life.layer} of the {life.body}: through {when} at {', '.join(places)}{needed}."
-        if required is None:
-            return Verdict("unknown", words, lines, None, life.layer, None)
-        factor = life.distance / required
-        share = None if not factor or life.uncertainty is None else life.uncertainty / life.distance
-        return Verdict(level_of(factor, share), words, lines, factor, life.layer, share)
+    def _lasting(self, limit: float | None) -> Demand | None:
+        """Return the distance that the layers last, with its limit, or None without layers.
+
+        A history in which no layer is through tells of no longer distance.
+        """
+        report, life = self.states[0].solution.report, self.life
+        bodies = {"body": report.body, "counterbody": report.counterbody}
+        layers = {
+            name: body.layers
+            for name, body in bodies.items()
+            if isinstance(body, core.HalfSpace) and body.layers
+        }
+        if not layers:
+            return None
+        needed = "" if limit is None else f", {travelled(limit, self.unit)} required"
+        if life is not None:
+            when, soon = "from the start", ": too soon" if limit and life.distance < limit else ""
+            if life.distance > 0:
+                share = with_error(life.distance, life.uncertainty)
+                when = f"after {travelled(life.distance, self.unit)}{share}"
+            sentence = f"Through {when}{needed}{soon}."
+            error = life.uncertainty if life.distance > 0 else 0.0  # that is certain
+            return Demand(
+                "distance",
+                "",
+                life.distance,
+                error,
+                None,
+                limit,
+                "given",
+                self.unit,
+                True,
+                sentence,
+                True,
+            )
+        reached, deepest = (
+            float(self.distance[-1]),
+            dict(zip(bodies, self.deepest[-1], strict=True)),
+        )
+        body = max(layers, key=lambda name: deepest[name] / layers[name][0].thickness)
+        worn = beside(layers[body][0].thickness, deepest[body], "m").rpartition(" ")[0]
+        sentence = (
+            f"No layer is through after {travelled(reached, self.unit)}{needed}: "
+            f"{worn} of {number(layers[body][0].thickness, 'm')} worn at most."
+        )
+        known = None if limit is not None and reached < limit else limit
+        return Demand(
+            "distance", "", reached, 0.0, None, known, "given", self.unit, True, sentence, True
+        )
+
+    def _place_of(self, event: WearThrough) -> str:
+        """Return which layer is through, and where."""
+        solution = self.states[0].solution
+        layers = getattr(solution.report, event.body).layers
+        name = display.layer_in_words(event.number, layers[event.number].name, len(layers))
+        # Beside the size of the grid, a coordinate may be rounding.
+        *at, _ = display.without_rounding([*event.position, max(solution.grid.size)])
+        axes = "y" if solution.grid.is_line else "xy"
+        place = ", ".join(f"{axis} = {number(at['xy'.index(axis)], 'm')}" for axis in axes)
+        return f"{name[0].upper()}{name[1:]} of the {event.body} is through first, at {place}."
 
     @property
     def _thickness(self) -> str:
@@ -553,7 +610,7 @@ class WearHistory(Shown, Result):
         return [heads, *(list(row) for row in zip(*(c.tolist() for c in columns), strict=True))]
 
     def _comments(self) -> dict[str, object]:
-        return {"verdict": self.verdict.words}
+        return {"verdict": self.verdict().words}
 
     def _inputs(self) -> Rows:
         return [remark(name, self._input(name, text)) for name, text in self.inputs.items()]
@@ -632,7 +689,7 @@ class WearHistory(Shown, Result):
 
     def __repr__(self) -> str:
         """Return the verdict in a line."""
-        return f"<WearHistory of {len(self.states)} states: {self.verdict.words}>"
+        return f"<WearHistory of {len(self.states)} states: {self.verdict().words}>"
 
 
 PACKED = "packed"

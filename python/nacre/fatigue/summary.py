@@ -28,7 +28,7 @@ from nacre.results.quantities import PROFILE, Quantity, frozen, quantity
 from nacre.results.report import Rows, Table, table
 from nacre.results.rows import remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.verdict import Demand, Verdict, judged, outcome_of, times
+from nacre.results.verdict import SLIGHT, Demand, Verdict, asked, factor_text, judged, split
 
 if TYPE_CHECKING:
     import xarray
@@ -75,8 +75,7 @@ ESTIMATE = (
     "shakedown is an estimate: in a point contact, residual stresses along x and y that depend on "
     "the depth alone are not all that are in equilibrium"
 )
-SHAKES = ("Does not shake down", "Cannot tell", "Shakes down")
-"""Outcomes of the shakedown of a layer, in place of those of a limit of strength."""
+UNASKED = "Give a yield stress in shear or a limit of a criterion to judge it."
 PLASTICITY = "shakedown of a perfectly plastic material, without hardening, in steady rolling"
 
 
@@ -283,28 +282,64 @@ class FatigueSummary(Shown, Warned, Result):
             return NotImplemented
         return self._state() == other._state()
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
-        """Verdict: the smallest safety factor of shakedown and criteria, and what else is needed.
+        """Verdict: the smallest safety factor of shakedown and criteria decides.
 
-        First yield alone is no failure, as residual stresses may end it.
+        First yield alone does not fail, as residual stresses may end it.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown without any limit.
         """
-        shaken = [layer for layer in self.layers if _surely_shakes_down(layer)]
-        notes = [_yields(layer) for layer in shaken if self.doubt is None]
+        demands, doubts, cautions = [*self._demands()], split(self.doubt), split(self.caution)
+        notes = [] if doubts or cautions else [*self._yields()]
         if self.is_estimate:
             notes.append(f"{ESTIMATE[0].upper()}{ESTIMATE[1:]}.")
-        return judged(self._demands(), self.doubt, notes, self.caution)
+        is_limited = any(demand.limit is not None for demand in demands)
+        return judged(
+            demands,
+            doubts=doubts,
+            cautions=cautions,
+            notes=notes,
+            unasked=UNASKED if demands and not is_limited else None,
+            question="Does the body shake down, and bear all cycles?" if is_limited else None,
+        )
 
     def _demands(self) -> Iterator[Demand]:
         """Yield what layers and interfaces need, with the limits."""
         for layer in self.layers:
-            demands = {name: _demand(layer, name) for name in ("shakedown", *layer.criteria)}
-            limited = [one for one in demands.values() if one.factor is not None]
+            demands = {name: self._demand(layer, name) for name in ("shakedown", *layer.criteria)}
+            limited = [demand for demand in demands.values() if demand.limit is not None]
             need = demands["shakedown"]
             yield from limited or ([need] if need.value > 0 else [])
         for face in self.interfaces:
-            if face.shear_range > NOISE * self.peak_pressure:
-                yield Demand(display.part(face), "shear range", face.shear_range, depth=face.depth)
+            if face.shear_range > SLIGHT * self.peak_pressure:
+                part = display.part_in_words(face, self.layers)
+                yield Demand("range of shear", part, face.shear_range, depth=face.depth)
+
+    def _demand(self, layer: LayerFatigue, name: str) -> Demand:
+        """Return a value of a layer as a demand."""
+        value, (_, _, depth) = layer._peaks()[name]
+        words = next((row.label for row in PROFILE if row.name == name), f"{name}'s stress")
+        part, factor = display.part_in_words(layer, self.layers), layer.safety_factors.get(name)
+        limit = None if factor is None else factor * value if value > 0 else np.inf
+        sentence = None if limit != np.inf else f"{words[0].upper()}{words[1:]} {part}: none."
+        return Demand(
+            words, part, value, layer.uncertainty.get(name), depth, limit, sentence=sentence
+        )
+
+    def _yields(self) -> Iterator[str]:
+        """Yield whether a layer that surely shakes down ever yields."""
+        for layer in self.layers:
+            demand = self._demand(layer, "shakedown")
+            if demand.outcome == 2:
+                factor = layer.safety_factors["first_yield"]
+                part = demand.part.removeprefix("of ")
+                yields = "never yields" if factor >= 1 else "yields at first"
+                words = f"{part} shakes down and {yields} (safety factor {factor_text(factor)})."
+                yield words[0].upper() + words[1:]
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw what each depth needs; needs ``nacre-contact[plot]``.
@@ -436,35 +471,6 @@ class FatigueSummary(Shown, Warned, Result):
             f"<FatigueSummary of {len(self.layers)} layers and {len(self.interfaces)} interfaces, "
             f"criteria {names}>"
         )
-
-
-def _demand(layer: LayerFatigue, name: str) -> Demand:
-    """Return a value of a layer as a demand."""
-    value, (_, _, depth) = layer._peaks()[name]
-    words = next((row.label for row in PROFILE if row.name == name), name)
-    part = display.part(layer).removeprefix("the ")
-    demand = Demand(
-        part, words, value, layer.uncertainty.get(name), depth, layer.safety_factors.get(name)
-    )
-    if name == "shakedown":
-        return demand._replace(outcomes=SHAKES, need="no limit given, needs")
-    return demand
-
-
-def _surely_shakes_down(layer: LayerFatigue) -> bool:
-    """Return whether a layer shakes down whatever the error of what it needs."""
-    factor, error = layer.safety_factors.get("shakedown"), layer.uncertainty.get("shakedown")
-    if factor is None or error is None:
-        return False
-    return outcome_of(factor, error / layer.shakedown[0]) == 2
-
-
-def _yields(layer: LayerFatigue) -> str:
-    """Return whether a layer that shakes down ever yields."""
-    shaken, first = (layer.safety_factors[name] for name in ("shakedown", "first_yield"))
-    part = display.part(layer).removeprefix("the ")
-    yields = "never yields" if first >= 1 else "yields at first"
-    return f"{part}: shakes down ({times(shaken)} below the limit), {yields} ({times(first)})."
 
 
 def read_fields(

@@ -31,7 +31,7 @@ from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
     import xarray
@@ -154,7 +154,7 @@ class Fit(Shown, Result):
         """Whether the data tell all free parameters."""
         return not self.reasons
 
-    @property
+    @asked
     def verdict(self) -> Verdict:
         """Verdict: each free parameter with its standard error, the least certain one first.
 

@@ -45,6 +45,7 @@ NOISE = 1e-9
 """Share of its largest possible value below which a position or a moment is printed as 0."""
 SLIGHT = 1e-8
 """Share of a vector below which a component is printed as 0."""
+ORDINALS = ("first", "second", "third", "fourth", "fifth")
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
 _units: ContextVar[str | None] = ContextVar(
@@ -245,6 +246,22 @@ def part(place: InLayer | AtInterface) -> str:
     if place.depths[1] == np.inf:
         return "the substrate"
     return layer_name(place.layer, place.name)
+
+
+def part_in_words(place: InLayer | AtInterface, layers: Sequence[InLayer]) -> str:
+    """Return a part of a body as the end of a phrase, such as "of the coating" or "below DLC"."""
+    number = place.interface if isinstance(place, AtInterface) else place.layer
+    if layers[number].depths[1] == np.inf:
+        return "of the substrate"
+    name = layer_in_words(number, layers[number].name, len(layers) - 1)
+    return f"{'below' if isinstance(place, AtInterface) else 'of'} {name}"
+
+
+def layer_in_words(number: int, name: str | None, count: int) -> str:
+    """Return a layer by its name, or by its place among some layers."""
+    if name is not None or count == 1:
+        return name or "the coating"
+    return f"the {ORDINALS[number]} layer" if number < len(ORDINALS) else f"layer {number + 1}"
 
 
 def layer_name(number: int, name: str | None) -> str:

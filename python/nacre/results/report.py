@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeGuard
+from typing import Any, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -27,9 +27,7 @@ from nacre.results.parameters import VALUES
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
 from nacre.results.values import encode
-
-if TYPE_CHECKING:
-    from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, verdict_on
 
 Array = npt.NDArray[np.float64]
 Rows = Sequence[Row]
@@ -139,10 +137,10 @@ def verdicts(results: Sequence[Reported]) -> Iterator[Verdict]:
 
     One that has to be computed stands only where there is no other.
     """
-    members = list(filter(None, (getattr(result, "verdict", None) for result in results)))
-    properties = {verdict.words: verdict for verdict in reversed(members) if not callable(verdict)}
-    yield from reversed(properties.values())
-    for compute in members if not properties else ():
+    known = list(filter(None, map(verdict_on, results)))
+    yield from reversed({verdict.words: verdict for verdict in reversed(known)}.values())
+    members = (getattr(result, "verdict", None) for result in results)
+    for compute in () if known else filter(None, members):
         with suppress(ValueError):  # of contacts whose stresses are not known
             yield compute()
 

@@ -18,7 +18,7 @@ from nacre.results.quantities import AXIS, Quantity
 from nacre.results.report import Rows, Sections, Table
 from nacre.results.rows import Row, remark
 from nacre.results.tables import heading
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import verdict_on
 
 if TYPE_CHECKING:
     import xarray
@@ -88,8 +88,8 @@ class Shown(Fields):
 
     def _sentences(self) -> tuple[str, ...]:
         """Return the sentences of the verdict, if there is one."""
-        verdict = getattr(self, "verdict", None)
-        return verdict.sentences if isinstance(verdict, Verdict) else ()
+        verdict = verdict_on(self)
+        return () if verdict is None else verdict.sentences
 
     def _notebook_picture(self) -> bytes | None:
         """Return the picture in a notebook."""

@@ -2,47 +2,159 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import functools
+import math
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from nacre._tools.units import plain, printable
 from nacre.results import display
 from nacre.results.base import Result
 
 Level = Literal["good", "fair", "bad", "unknown"]
+Method = TypeVar("Method", bound=Callable[..., Any])
 
 MARGIN = 1.5
-"""Limit over value from which a verdict is good."""
+"""Safety factor, less its error, from which a verdict is good."""
 DIGITS = 3
 """Digits of the numbers in a verdict."""
 MOST_PARTS = 2 * display.LAYER_ROWS
 """Largest number of layers and interfaces without a limit that get a sentence each."""
 SLIGHT = 0.01
 """Share of the largest stress below which another is no demand."""
+MARK = "; "
+"""What stands between reasons."""
+MILLION = 1e6
+"""Hours from which lives are not told apart."""
 SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
 """Warnings of contacts whose pressure has no limit on ever finer cells."""
 NO_LIMIT = "the pressure at an edge has no limit, and grows as the cells shrink"
 UNCONVERGED = "the solution has not converged"
 COARSE = "the cells do not resolve the contact"
 UNKNOWN_ERROR = "the error of the value that decides is not known"
-KINDS: dict[str, tuple[Level | None, str]] = {
-    **dict.fromkeys(sorted(SINGULAR), ("unknown", NO_LIMIT)),
-    "coarse": ("unknown", COARSE),
-    "coarse spots": ("unknown", COARSE),
-    "outside grid": ("unknown", "the largest stresses may lie beyond the grid"),
-    "unknown stations": ("unknown", "the errors of the sections along the roller are not known"),
-    "coated end": ("fair", "the ends of the layers are left out"),
-    "endless crown": ("fair", "a crown reaches beyond the body"),
-    "large contact": ("fair", "the contact is large for flat bodies"),
-    "large motion": ("fair", "the motion is large for cells that stay where they are"),
-    "no estimate": (None, "a missing error counts where it decides"),
-    "peak error": ("fair", "the cells leave a large error of the peak pressure"),
-    "stations": ("fair", "the sections along the roller leave a large error"),
+
+
+class Doubt(NamedTuple):
+    """What a warning means for a verdict."""
+
+    level: Level | None
+    """Level that it leaves at most; None leaves any."""
+    reason: str
+    leaves_model: bool = False
+    """Whether the result is outside the model."""
+
+
+KINDS: dict[str, Doubt] = {
+    **dict.fromkeys(sorted(SINGULAR), Doubt("unknown", NO_LIMIT, leaves_model=True)),
+    "coarse": Doubt("unknown", COARSE),
+    "coarse spots": Doubt("unknown", COARSE),
+    "outside grid": Doubt("unknown", "the largest stresses may lie beyond the grid"),
+    "unknown stations": Doubt(
+        "unknown", "the errors of the sections along the roller are not known"
+    ),
+    "coated end": Doubt("fair", "the ends of the layers are left out", leaves_model=True),
+    "endless crown": Doubt("fair", "a crown reaches beyond the body", leaves_model=True),
+    "large contact": Doubt("fair", "the contact is large for flat bodies", leaves_model=True),
+    "large motion": Doubt(
+        "fair", "the motion is large for cells that stay where they are", leaves_model=True
+    ),
+    "no estimate": Doubt(None, "a missing error counts where it decides"),
+    "peak error": Doubt("fair", "the cells leave a large error of the peak pressure"),
+    "stations": Doubt("fair", "the sections along the roller leave a large error"),
 }
-"""Level that a kind of warning of a contact leaves at most, None for any, with the reason."""
-UNSURE = "As it stands"
-"""Outcome of what holds in a result that is in doubt."""
+"""What warnings of contacts mean for verdicts, by their kind."""
+TEXTS: dict[str, Doubt] = {
+    "they are cut off": Doubt("unknown", "the pressure and the life are wrong", leaves_model=True),
+    "moduli are not counted": Doubt("unknown", "the loads are those of steel", leaves_model=True),
+    "contacts are neither elastic nor small": Doubt(
+        "unknown", "the pressure is too high for elastic bodies", leaves_model=True
+    ),
+    "errs by some": Doubt("fair", "the steps or the thinner layers leave a large error"),
+    "nothing presses any more": Doubt("unknown", "nothing presses any more at this approach"),
+    "did not settle": Doubt("fair", "the distance of a layer that is through did not settle"),
+    "wear of a surface does not do": Doubt(
+        "unknown", "more is worn off than the contact is wide", leaves_model=True
+    ),
+    "what follows errs by": Doubt(None, "what follows the first layer that is through"),
+    "thinner layers count to first order": Doubt("fair", "layers are thinner to first order"),
+    "nothing is worn": Doubt("unknown", "the cycles wear nothing"),
+    "the contact is": Doubt("fair", "the contact is large for the bodies", leaves_model=True),
+}
+"""What other warnings mean for verdicts, by words that their text has."""
+OUTSIDE = {doubt.reason for doubt in (*KINDS.values(), *TEXTS.values()) if doubt.leaves_model}
+"""Reasons that lie outside the model."""
+
+
+def doubts_about(notices: Iterable[str]) -> Iterator[Doubt]:
+    """Yield what warnings mean, contacts' by their kind and others by their text."""
+    for notice in notices:
+        if notice in KINDS:
+            yield KINDS[notice]
+        else:
+            yield from (doubt for words, doubt in TEXTS.items() if words in notice)
+
+
+def reasons(notices: Iterable[str], level: Level) -> tuple[str, ...]:
+    """Return the reasons of warnings, by kind or text, that leave this level at most."""
+    doubts = (doubt for doubt in doubts_about(notices) if doubt.level == level)
+    return tuple(dict.fromkeys(doubt.reason for doubt in doubts))
+
+
+def joined(notices: Iterable[str], level: Level) -> str | None:
+    """Return the reasons in one text, as results keep them, or None without any."""
+    return MARK.join(reasons(notices, level)) or None
+
+
+def split(text: str | None) -> list[str]:
+    """Return the reasons of a text."""
+    return [] if text is None else text.split(MARK)
+
+
+if TYPE_CHECKING:
+
+    def asked(method: Method) -> Method:
+        """Return the method."""
+        return method
+
+else:
+
+    class asked:  # a decorator
+        """Method `verdict` of a result; its use as an attribute is deprecated."""
+
+        def __init__(self, method: Callable[..., Verdict]) -> None:
+            """Keep the method."""
+            self.method = method
+            functools.update_wrapper(self, method)
+
+        def __get__(self, result: object, owner: type) -> Callable[..., Verdict]:
+            """Return the method, bound to a result."""
+            return self.method if result is None else _Question(self.method, result)
+
+
+class _Question(functools.partial[Any]):
+    """Bound method `verdict`, which answers as the verdict itself where that is not called."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the verdict, with a warning."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        message = f"verdict is a method: write verdict().{name}"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(self(), name)
+
+    def __str__(self) -> str:
+        """Return the sentences."""
+        return str(self())
+
+    __repr__ = __str__
+
+
+def verdict_on(result: object) -> Verdict | None:
+    """Return the verdict on a result that knows all limits, None where it has to be asked."""
+    verdict = getattr(result, "verdict", None)
+    return verdict() if isinstance(verdict, _Question) else None
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,9 +169,9 @@ class Verdict(Result):
     >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=5.0, max_cells=4096)
     >>> verdict = solution.verdict(yield_stress={"substrate": 2.2e9})
     >>> print(verdict)
-    Holds, ... times: substrate, von Mises 789 MPa ± ... % at 20.8 µm, of 2200 MPa.
+    Safety factor 2.79 ± ... %: von Mises stress of the substrate, ... limit 2200 MPa (given).
     >>> verdict.level, verdict.decided_by
-    ('good', 'substrate, von Mises')
+    ('good', 'von Mises stress of the substrate')
     """
 
     level: Level
@@ -76,8 +188,12 @@ class Verdict(Result):
     """Estimated error of the factor, as a share of it; None where it is not known."""
     doubts: tuple[str, ...] | None = None
     """What leaves the level unknown or fair at most, apart from limits; None without."""
+    question: str | None = None
+    """Question that the verdict answers; None where nobody asked one."""
+    inside_model: bool | None = True
+    """Whether no warning says that the result is outside the model; None in older files."""
 
-    _LATER = ("doubts",)
+    _LATER = ("doubts", "question", "inside_model")
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -97,118 +213,166 @@ class Verdict(Result):
 
 
 class Demand(NamedTuple):
-    """Stress that a part has to bear, and its limit over that, where one is given."""
+    """Quantity of a part, and the limit that it must keep, where one is given."""
 
-    part: str
     quantity: str
+    part: str
+    """Part with its preposition, such as "of the substrate" or "below the coating"; may be ""."""
     value: float
     error: float | None = None
     """Estimated error; None where it is not known."""
     depth: float | None = None
-    factor: float | None = None
-    outcomes: tuple[str, str, str] = ("Fails", "Cannot tell", "Holds")
-    """Words where the factor is below 1, within its error of 1, and above."""
-    need: str = "no limit given, needs to bear"
-    """Words before the value where no limit is given."""
+    limit: float | None = None
+    origin: str = "given"
+    """Where the limit is from, such as "ISO 76"."""
+    unit: str = "Pa"
+    at_least: bool = False
+    """Whether the limit is the least value, as of lives and distances."""
+    sentence: str | None = None
+    """Sentence to say in place of that on the safety factor."""
+    leads: bool = False
+    """Whether the sentence comes first, unless another demand fails."""
+
+    @property
+    def name(self) -> str:
+        """Quantity and part."""
+        return f"{self.quantity} {self.part}".rstrip()
+
+    @property
+    def factor(self) -> float | None:
+        """Safety factor: how many times the value may grow, or shrink, to the limit."""
+        if self.limit is None:
+            return None
+        above, below = (self.value, self.limit) if self.at_least else (self.limit, self.value)
+        return above / below if below else math.inf
 
     @property
     def share(self) -> float | None:
         """Error as a share of the value."""
         return None if self.error is None or not self.value else self.error / abs(self.value)
 
+    @property
+    def outcome(self) -> int:
+        """0 of a limit that is broken, 2 of one that is kept, 1 where the error does not tell."""
+        if self.limit is None or self.error is None or abs(self.value - self.limit) < self.error:
+            return 1
+        return 2 if (self.value >= self.limit) == self.at_least or self.value == self.limit else 0
 
-def outcome_of(factor: float, share: float | None) -> int:
-    """Return 0 of a factor below 1, 2 of one above, and 1 where its error decides.
-
-    The error is a share of the value: with it the value reaches the limit from either side.
-    """
-    if abs(factor - 1) < (share or 0.0):
-        return 1
-    return 2 if factor >= 1 else 0
-
-
-def level_of(factor: float, share: float | None) -> Level:
-    """Return the level of a factor whose value has an error, which is a share of it."""
-    outcome = outcome_of(factor, share)
-    if outcome == 0:
-        return "bad"
-    if share is None:
-        return "unknown"
-    return "good" if outcome == 2 and factor >= MARGIN * (1 + share) else "fair"
-
-
-def doubts_of(kinds: Iterable[str], level: Level) -> str | None:
-    """Return the reasons why kinds of warnings leave this level at most, or None without any."""
-    reasons = dict.fromkeys(KINDS[kind][1] for kind in kinds if KINDS[kind][0] == level)
-    return "; ".join(reasons) or None
+    @property
+    def level(self) -> Level:
+        """Level of this demand alone."""
+        if self.limit is None or self.error is None:
+            return "unknown"
+        if self.outcome == 0:
+            return "bad"
+        if self.at_least:
+            has_margin = self.value - self.error >= MARGIN * self.limit
+        else:
+            has_margin = MARGIN * (self.value + self.error) <= self.limit
+        return "good" if self.outcome == 2 and has_margin else "fair"
 
 
 def judged(
     demands: Iterable[Demand],
-    doubt: str | None = None,
+    *,
+    doubts: Sequence[str] = (),
+    cautions: Sequence[str] = (),
     notes: Sequence[str] = (),
-    caution: str | None = None,
+    unasked: str | None = None,
+    question: str | None = None,
 ) -> Verdict:
-    """Return the verdict on parts: the worst outcome decides, of these the smallest factor.
+    """Return the verdict on demands: the worst outcome decides, of these the smallest factor.
 
-    With a `doubt` nothing holds; what fails does so nevertheless. With a `caution`, a part without
-    a limit, or one that holds by less than the margin with its error, it is fair at best.
+    What fails is bad whatever the doubts. Else it is unknown with a doubt, where no limit is given,
+    where the error of what decides is not known, or where nobody asked, which `unasked` says; fair
+    with a caution, with a demand that has no limit, or that holds by less than the margin with its
+    error; and good without all of these.
     """
-    needs, ranked = [], []
-    for one in demands:
-        if one.factor is None:
-            needs.append(one)
-        else:
-            ranked.append((outcome_of(one.factor, one.share), one.factor, one))
-    doubts = [] if doubt is None else [f"Cannot tell: {doubt}."]
-    notes = [*notes, *([] if caution is None else [f"With care: {caution}."])]
-    if not ranked:
-        words, *lines = [*doubts, *_needs(needs)] or ["Cannot tell: nothing is loaded."]
-        return Verdict("unknown", words, (*lines, *notes))
-    outcome, factor, worst = min(ranked, key=lambda row: row[:2])
-    level: Level = level_of(factor, worst.share) if doubt is None or outcome == 0 else "unknown"
-    if level == "unknown" and not doubts:
-        doubts = [f"Cannot tell: {UNKNOWN_ERROR}."]
-    others = [level_of(factor, one.share) for _, factor, one in ranked]
-    if level == "good" and (needs or caution is not None or set(others) != {"good"}):
-        level = "fair"
-    ordered = [worst, *(one for _, _, one in ranked if one is not worst)]
-    if level == "unknown":
-        ordered = [one._replace(outcomes=(one.outcomes[0], UNSURE, UNSURE)) for one in ordered]
-    sentences = [_sentence(one) for one in ordered]
-    sentences[level == "bad" : 0] = doubts
-    words, *lines = [*sentences, *_needs(needs), *notes]
-    decided_by = f"{worst.part}, {worst.quantity}"
-    reasons = tuple(one for one in (doubt, caution) if one is not None) or None
-    return Verdict(level, words, tuple(lines), factor, decided_by, worst.share, reasons)
-
-
-def _sentence(demand: Demand) -> str:
-    """Return the outcome of a demand with a limit: factor, part, value, place and limit."""
-    value, factor = demand.value, demand.factor
-    assert factor is not None  # has a limit
-    return (
-        f"{demand.outcomes[outcome_of(factor, demand.share)]}, {times(factor)}: "
-        f"{demand.part}, {demand.quantity} {measured(value, demand.error)}{_place(demand)}, "
-        f"of {beside(value, factor * value)}."
+    demands = [*demands]
+    needs = [demand for demand in demands if demand.limit is None]
+    limited = [demand for demand in demands if demand.limit is not None]
+    limited.sort(key=lambda demand: (demand.outcome, demand.factor or 0.0))
+    worst = limited[0] if limited else None
+    levels = {demand.level for demand in limited}
+    level: Level
+    if worst is not None and worst.level == "bad":
+        level = "bad"
+    elif worst is None or worst.level == "unknown" or doubts or unasked is not None:
+        level = "unknown"
+    else:
+        level = "fair" if needs or cautions or levels != {"good"} else "good"
+    doubtful = [*doubts]
+    if not doubts and worst is not None and worst.level == "unknown":
+        doubtful = [UNKNOWN_ERROR]
+    if not (limited or needs or doubts):
+        doubtful = ["nothing is loaded"]
+    is_open = level == "unknown" and bool(doubtful)
+    limited.sort(key=lambda demand: (demand.outcome != 0, not demand.leads))
+    leading = [demand.sentence for demand in needs if demand.leads and demand.sentence]
+    failing = [_sentence(demand, False) for demand in limited if demand.outcome == 0]
+    keeping = [_sentence(demand, is_open) for demand in limited if demand.outcome != 0]
+    sentences = [
+        *failing,
+        *([f"Cannot tell: {MARK.join(doubtful)}."] if doubtful else []),
+        *leading,
+        *keeping,
+        *_needs([demand for demand in needs if not demand.leads]),
+        *([f"With care: {MARK.join(cautions)}."] if cautions else []),
+        *notes,
+        *([] if unasked is None else [unasked]),
+    ]
+    return Verdict(
+        level,
+        sentences[0],
+        tuple(sentences[1:]),
+        worst and worst.factor,
+        worst and worst.name,
+        worst and worst.share,
+        (*doubts, *cautions) or None,
+        question,
+        OUTSIDE.isdisjoint((*doubts, *cautions)),
     )
+
+
+def _sentence(demand: Demand, is_open: bool) -> str:
+    """Return the outcome of a demand with a limit: factor, quantity, value, place and limit."""
+    if demand.sentence is not None:
+        return demand.sentence
+    value, limit = demand.value, demand.limit
+    assert limit is not None
+    assert demand.factor is not None
+    start = "As it stands, safety" if is_open and demand.outcome else "Safety"
+    outcomes = ", too small", "" if demand.error is None else ", may be below 1", ""
+    factor = factor_text(demand.factor) + with_error(value, demand.error)
+    return (
+        f"{start} factor {factor}{outcomes[demand.outcome]}: {demand.name}, "
+        f"{number(value, demand.unit)}{_place(demand)}, limit {beside(value, limit, demand.unit)} ({demand.origin})."
+    )
+
+
+def with_error(value: float, error: float | None) -> str:
+    """Return the error of a value after ±, as a share, where it is known."""
+    share = display.share(error or 0.0, value)
+    return f" ± {share.replace('< ', '').replace('>', 'over')}" if share else ""
 
 
 def _needs(demands: Sequence[Demand]) -> list[str]:
     """Return what parts without a limit need; of many, the largest of each quantity."""
-    if len({one.part for one in demands}) <= MOST_PARTS:
-        return [_need(one) for one in demands]
+    if len({demand.part for demand in demands}) <= MOST_PARTS:
+        return [_need(demand) for demand in demands]
     sentences = []
-    for quantity in dict.fromkeys(one.quantity for one in demands):
-        alike = [one for one in demands if one.quantity == quantity]
-        largest = max(alike, key=lambda one: one.value)
+    for quantity in dict.fromkeys(demand.quantity for demand in demands):
+        alike = [demand for demand in demands if demand.quantity == quantity]
+        largest = max(alike, key=lambda demand: demand.value)
         sentences.append(_need(largest, f", the largest of {len(alike)}"))
     return sentences
 
 
 def _need(demand: Demand, further: str = "") -> str:
-    value = measured(demand.value, demand.error)
-    return f"{demand.part}: {demand.need} {value} of {demand.quantity}{_place(demand)}{further}."
+    if demand.sentence is not None:
+        return demand.sentence
+    name, value = demand.name, measured(demand.value, demand.error, demand.unit)
+    return f"{name[0].upper()}{name[1:]}: {value}{_place(demand)}{further}; no limit is given."
 
 
 def _place(demand: Demand) -> str:
@@ -230,10 +394,9 @@ def beside(value: float, limit: float, unit: str = "Pa") -> str:
 
 def measured(value: float, error: float | None, unit: str = "Pa") -> str:
     """Return a number with its error, as a share, where that is known."""
-    share = display.share(error or 0.0, value).replace("< ", "").replace(">", "over")
-    return number(value, unit) + (f" ± {share}" if share else "")
+    return number(value, unit) + with_error(value, error)
 
 
-def times(factor: float) -> str:
-    """Return a factor in words; one below 1 is not rounded to 1."""
-    return f"{plain(factor if factor >= 1 else min(factor, 0.999), DIGITS)} times"
+def factor_text(factor: float) -> str:
+    """Return a safety factor in digits; one below 1 is not rounded to 1."""
+    return plain(factor if factor >= 1 else min(factor, 0.999), DIGITS)
