@@ -17,8 +17,9 @@ import nacre._core as core
 from nacre._tools.units import written
 from nacre.indent._addressed import System
 from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
+from nacre.indent._reading import checked_tolerance
 from nacre.indent._residuals import ROUNDING
-from nacre.indent._verdict import fit_verdict
+from nacre.indent._verdict import UNFIT, fit_verdict
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
@@ -38,9 +39,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
-
-UNFIT = "the model does not fit the data"
-"""Reason why no parameter is identifiable where the residuals are no noise."""
 
 ASSUMED = 0.01
 """Standard error that is assumed of moduli, thicknesses and tips that are held, as a share."""
@@ -139,6 +137,11 @@ class Fit(Shown, Result):
             sources[name] = {"noise": self.standard_errors[name]} | moves
         return sources
 
+    def _held_share(self, path: str) -> str:
+        """Return the error that counts of a number that is held, as a share of it, in words."""
+        value, error = self.known.get(path, (1.0, ASSUMED))
+        return f"{error:.2g}" if path.endswith(".poisson") else display.share(error, value)
+
     @property
     def uncertainty(self) -> dict[str, float]:
         """Standard error of each free parameter: of the noise, and of what is held, together."""
@@ -155,13 +158,29 @@ class Fit(Shown, Result):
         return not self.reasons
 
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: each free parameter with its standard error, the least certain one first.
+    def verdict(self, tolerance: float | None = None) -> Verdict:
+        """Verdict: each free parameter with its `uncertainty`, the least certain one first.
 
-        It is fair where all are known to 20 %, as errors of what is held fixed are not known, and
-        bad beyond, or where a parameter is not identifiable.
+        Parameters
+        ----------
+        tolerance : float, optional
+            Largest standard error of each free parameter that is tolerated, as a part of it, such
+            as 0.05. Without, the verdict is unknown.
+
+        Returns
+        -------
+        Verdict
+            Good where all errors are two thirds of the tolerance at most; bad where one is above
+            it. A parameter that is not identifiable, though it was asked for, has no smaller error
+            than the interval that does not close, and breaks any tolerance. Where the model does
+            not describe the data, errors are wider, and what keeps the tolerance is unknown.
+
+        Raises
+        ------
+        ValueError
+            If the tolerance is not above 0 and finite.
         """
-        return fit_verdict(self)
+        return fit_verdict(self, checked_tolerance(tolerance))
 
     def classical(self, curve: int = 0) -> list[Classical]:
         """Return what customary formulae would have said, with their bias against the fit.

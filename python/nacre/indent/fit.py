@@ -18,7 +18,8 @@ from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimate_at, interval, minimum, reasons, shifted_starts
 from nacre.indent._residuals import Examination, examine, likeliest_noise
-from nacre.indent._result import UNFIT, Fit
+from nacre.indent._result import Fit
+from nacre.indent._verdict import UNFIT
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
 
@@ -265,7 +266,9 @@ def _checked_known(
     held = system.held(free)
     for name in known:
         if name not in held:
-            raise ValueError(f"known must name parameters that are held, {list(held)}, got {name!r}")
+            raise ValueError(
+                f"known must name parameters that are held, {list(held)}, got {name!r}"
+            )
     numbers = {name: (float(value), float(error)) for name, (value, error) in known.items()}
     for name, (value, error) in numbers.items():
         if not (0 <= error < math.inf and (name != "tip.area" or value == 1)):

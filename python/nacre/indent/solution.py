@@ -19,7 +19,7 @@ from nacre._tools.groups import with_units
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import written
-from nacre.indent._reading import apparent_modulus, substrate_verdict
+from nacre.indent._reading import apparent_modulus, checked_tolerance, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Result, Warned
 from nacre.results.charts import Axis, Chart, Curve
@@ -28,7 +28,7 @@ from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked, judged
 
 if TYPE_CHECKING:
     import xarray
@@ -411,22 +411,25 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         caption = "Pressure over the distance from the axis."
         return [Chart(caption, [Curve(x, np.ravel(self.pressure(x)))], axes)]
 
+    @asked
     def verdict(self, tolerance: float | None = None) -> Verdict:
         """Return the verdict: whether the largest depth tells the modulus of the outermost layer.
 
         It compares with a bare half-space of the layer that bears the same load at the same depth,
-        without adhesion. Its `factor` is the modulus that is read so over the layer's.
+        without adhesion.
 
         Parameters
         ----------
         tolerance : float, optional
             Largest error of the modulus, as a part of it, such as 0.1: beyond it the verdict is
-            bad, and good up to two thirds of it. Without, the verdict is unknown.
+            bad, and good up to two thirds of it. Without, it is that of `solve`; without that, the
+            verdict is unknown.
 
         Returns
         -------
         Verdict
-            Verdict; unknown of a body without layers.
+            Verdict, whose `factor` is the tolerance over the error; unknown of a body without
+            layers.
 
         Raises
         ------
@@ -439,12 +442,18 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         >>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
         >>> tip = nacre.indent.Tip.sphere(5e-6)
         >>> verdict = nacre.indent.solve(body, tip, load=1e-3).verdict(tolerance=0.1)
-        >>> verdict.level, round(verdict.factor, 1), verdict.lines[0]
-        ('bad', 2.4, 'The error is below 10 % only up to 1.91 nm of depth.')
+        >>> verdict.level, verdict.lines[0]
+        ('bad', 'The error is below 10 % only up to 1.91 nm of depth.')
         """
-        if tolerance is not None and not 0 < core.real("tolerance", tolerance) < np.inf:
-            raise ValueError(f"tolerance must be above 0 and finite, got {tolerance:g}")
-        return substrate_verdict(apparent_modulus(self), tolerance)
+        tolerance = checked_tolerance(tolerance)
+        try:
+            reading = apparent_modulus(self)
+        except ValueError as error:  # as of a ring, or a tip that ends, where adhesion has none
+            return judged([], doubts=[f"without adhesion {error}"])
+        return substrate_verdict(reading, tolerance)
+
+    def _sentences(self) -> tuple[str, ...]:
+        return super()._sentences() if self.body.layers else ()
 
     def _notebook_picture(self) -> bytes | None:
         return display.drawn(self.plot)

@@ -80,7 +80,23 @@ TEXTS: dict[str, Doubt] = {
     "what follows errs by": Doubt(None, "what follows the first layer that is through"),
     "thinner layers count to first order": Doubt("fair", "layers are thinner to first order"),
     "nothing is worn": Doubt("unknown", "the cycles wear nothing"),
-    "the contact is": Doubt("fair", "the contact is large for the bodies", leaves_model=True),
+    "the contact is not small": Doubt(
+        "fair", "the contact is large for the bodies", leaves_model=True
+    ),
+    "too deep for its radius": Doubt(
+        "unknown", "the slopes are beyond the theory of small slopes", leaves_model=True
+    ),
+    "the model does not describe": Doubt(
+        "unknown", "the model does not describe the data", leaves_model=True
+    ),
+    "may be in a wrong unit": Doubt("unknown", "depth or force may be in a wrong unit"),
+    "unloading is mixed in": Doubt("unknown", "unloading is mixed in, or points are out of order"),
+    "in random order": Doubt(None, "the order of points matters to drift alone"),
+    "was left out, since it falls": Doubt(None, "the time of points matters to drift alone"),
+    "the power of the unloading": Doubt("unknown", "the unloading is not elastic"),
+    "the force at the largest depth": Doubt("fair", "the sample creeps, or the part is too deep"),
+    "after the force began to fall": Doubt("unknown", "the sample creeps while it is unloaded"),
+    "numbers of film and substrate": Doubt(None, "films are another question than bodies"),
 }
 """What other warnings mean for verdicts, by words that their text has."""
 OUTSIDE = {doubt.reason for doubt in (*KINDS.values(), *TEXTS.values()) if doubt.leaves_model}
