@@ -55,6 +55,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     columns: dict[str, object] = {
         "estimate": ("parameter", list(fit.estimates.values())),
         "standard_error": ("parameter", [fit.standard_errors[name] for name in names]),
+        "uncertainty": ("parameter", [fit.uncertainty.get(name, np.nan) for name in names]),
         "low": ("parameter", low),
         "high": ("parameter", high),
         "covariance": (both, fit.covariance),
@@ -83,6 +84,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
         warnings="\n".join(fit.warnings),
         reasons="\n".join(f"{name}: {text}" for name, text in fit.reasons.items()),
     )
+    fields["uncertainty"].attrs["long_name"] = "standard error with those of what is held"
     fields["low"].attrs["long_name"] = "lower end of the interval of 95 %"
     fields["high"].attrs["long_name"] = "upper end of the interval of 95 %"
     return fields
@@ -106,7 +108,8 @@ def contact_rows(solution: IndentSolution) -> Iterator[list[object]]:
 
 def parameter_rows(fit: Fit) -> Iterator[list[object]]:
     """Yield the rows of a table of parameters."""
-    yield ["parameter", "unit", "estimate", "standard error", "low", "high", "not identifiable"]
+    errors = ["standard error", "low", "high", "uncertainty"]
+    yield ["parameter", "unit", "estimate", *errors, "not identifiable"]
     for name, unit in zip(fit.estimates, _units(fit), strict=True):
         numbers = [fit.estimates[name], fit.standard_errors[name], *fit.intervals[name]]
-        yield [name, unit, *numbers, fit.reasons.get(name, "")]
+        yield [name, unit, *numbers, fit.uncertainty.get(name, ""), fit.reasons.get(name, "")]

@@ -81,7 +81,7 @@ def checked_tolerance(tolerance: float | None) -> float | None:
 
 def tolerated(tolerance: float | None) -> str:
     """Return a tolerance at the end of a phrase, if there is one."""
-    return "" if tolerance is None else f", {plain(100 * tolerance, DIGITS)} % tolerated"
+    return "" if tolerance is None else f", ± {plain(100 * tolerance, DIGITS)} % tolerated"
 
 
 def substrate_verdict(reading: Reading | None, tolerance: float | None = None) -> Verdict:

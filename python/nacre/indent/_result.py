@@ -234,9 +234,10 @@ class Fit(Shown, Result):
 
     def _report_rows(self) -> Rows:
         rows = []
-        for name, value, error, interval, verdict in self._table().rows:
-            text = f"{value} ± {error}; 95 %: {interval} {verdict}".rstrip()
-            estimate, deviation = self.estimates[name], self.standard_errors[name]
+        errors = self.standard_errors | self.uncertainty
+        for name, value, error, interval, whole, verdict in self._table().rows:
+            text = f"{value} ± {whole or error}; noise ± {error}, 95 %: {interval} {verdict}"
+            text, estimate, deviation = text.rstrip(), self.estimates[name], errors[name]
             rows.append(Row(name, name, text, estimate, unit_of(name), deviation))
         return rows
 
@@ -286,12 +287,13 @@ class Fit(Shown, Result):
 
     def _table(self) -> Printed:
         """Return the table of the estimates."""
-        rows = []
+        rows, totals = [], self.uncertainty
         for name in self.estimates:
             low, high = (self._with_unit(name, end) for end in self.intervals[name])
             error = self._with_unit(name, self.standard_errors[name], 2)
+            whole = self._with_unit(name, totals[name], 2) if name in totals else ""
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
-            rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
+            rows.append([name, self._value(name), error, f"{low} to {high}", whole, verdict])
         lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
         if self.noise == "absolute":
             noise = written(self.sigma, "N", 3)
@@ -313,7 +315,8 @@ class Fit(Shown, Result):
             lines.append("intervals are linear, and widened by what the residuals show")
         elif not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
-        return Printed(("parameter", "estimate", "±", "95 % interval", ""), rows, lines)
+        head = ("parameter", "estimate", "± noise", "95 % of noise", "± in all", "")
+        return Printed(head, rows, lines)
 
     def _sensitivities(self) -> list[str]:
         """Return lines on numbers of which 1 % matters beside the intervals, most first."""
