@@ -101,10 +101,10 @@ def bearing_verdict(solution: BearingSolution) -> Verdict:
     levels = [level, asked]
     levels += ["fair"] if has_edge_stress or bare or cautions else []
     warned: dict[str, Level] = {
-        text: level
+        text: most
         for text in solution.report.warnings
         for words, doubt in TEXTS.items()
-        if words in text and (level := doubt.level) is not None
+        if words in text and (most := doubt.level) is not None
     }
     levels += warned.values()
     doubts = [f"Cannot tell: {text}." for text, most in warned.items() if most == "unknown"]

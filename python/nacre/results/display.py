@@ -249,11 +249,11 @@ def part(place: InLayer | AtInterface) -> str:
 
 
 def part_in_words(place: InLayer | AtInterface, layers: Sequence[InLayer]) -> str:
-    """Return a part of a body as the end of a phrase, such as "of the coating" or "below DLC"."""
-    number = place.interface if isinstance(place, AtInterface) else place.layer
-    if layers[number].depths[1] == np.inf:
+    """Return a part of a body with its preposition, as "of the coating" or "below DLC"."""
+    layer = layers[place.interface] if isinstance(place, AtInterface) else place
+    if layer.depths[1] == np.inf:
         return "of the substrate"
-    name = layer_in_words(number, layers[number].name, len(layers) - 1)
+    name = layer_in_words(layer.layer, layer.name, len(layers) - 1)
     return f"{'below' if isinstance(place, AtInterface) else 'of'} {name}"
 
 

@@ -269,10 +269,12 @@ class Demand(NamedTuple):
 
     @property
     def outcome(self) -> int:
-        """0 of a limit that is broken, 2 of one that is kept, 1 where the error does not tell."""
-        if self.limit is None or self.error is None or abs(self.value - self.limit) < self.error:
+        """0 of a limit that is surely broken, 1 where the error does not tell, 2 of one kept."""
+        if self.limit is None or abs(self.value - self.limit) < (self.error or 0.0):
             return 1
-        return 2 if (self.value >= self.limit) == self.at_least or self.value == self.limit else 0
+        if (self.value >= self.limit) == self.at_least or self.value == self.limit:
+            return 2
+        return 1 if self.error is None else 0
 
     @property
     def level(self) -> Level:
@@ -358,11 +360,12 @@ def _sentence(demand: Demand, is_open: bool) -> str:
     assert limit is not None
     assert demand.factor is not None
     start = "As it stands, safety" if is_open and demand.outcome else "Safety"
-    outcomes = ", too small", "" if demand.error is None else ", may be below 1", ""
+    outcomes = ", too small", ", below 1" if demand.error is None else ", may be below 1", ""
     factor = factor_text(demand.factor) + with_error(value, demand.error)
     return (
         f"{start} factor {factor}{outcomes[demand.outcome]}: {demand.name}, "
-        f"{number(value, demand.unit)}{_place(demand)}, limit {beside(value, limit, demand.unit)} ({demand.origin})."
+        f"{number(value, demand.unit)}{_place(demand)}, "
+        f"limit {beside(value, limit, demand.unit)} ({demand.origin})."
     )
 
 
