@@ -29,52 +29,45 @@ WORDS = {"young": "modulus", "poisson": "Poisson's ratio"}
 def fit_verdict(fit: Fit, tolerance: float | None = None) -> Verdict:
     """Return the verdict on a fit: the least certain parameter decides."""
     owners, sources = dict(_owners(fit)), fit.error_sources
-    demands = [_demand(fit, name, sources[name], owners, tolerance) for name in fit.free]
+    totals = {name: math.hypot(*by_source.values()) for name, by_source in sources.items()}
+    demands = [
+        Demand(
+            *_words(name, owners),
+            *_share(fit, name, sources[name]["noise"], total),
+            limit=tolerance,
+            unit="",
+            sentence=_sentence(fit, name, sources[name], owners, tolerance),
+            leads=True,
+        )
+        for name, total in totals.items()
+    ]
     demands.sort(key=lambda demand: -demand.value)
-    is_known = all(map(math.isfinite, fit.uncertainty.values()))
-    held = dict.fromkeys(path for by in sources.values() for path in by if path != "noise")
+    is_known = not any(map(math.isnan, totals.values()))
+    held = dict.fromkeys(path for by_source in sources.values() for path in by_source)
+    assumed = [path for path in held if path != "noise" and path not in fit.known]
     return judged(
         demands,
         doubts=(*reasons(fit.warnings, "unknown"), *(() if is_known else (UNKNOWN_SLOPES,))),
         cautions=reasons(fit.warnings, "fair"),
-        notes=[_assumption([_words(path, owners) for path in held if path not in fit.known])],
+        notes=[_assumption([" ".join(_words(path, owners)) for path in assumed])],
         unasked=UNASKED if tolerance is None else None,
         question=None if tolerance is None else f"parameters{tolerated(tolerance)}",
     )
 
 
-def _demand(
-    fit: Fit,
-    name: str,
-    by_source: dict[str, float],
-    owners: dict[str, str],
-    tolerance: float | None,
-) -> Demand:
-    """Return the demand on the error of a parameter, a share of it that the tolerance limits.
+def _share(fit: Fit, name: str, noise: float, total: float) -> tuple[float, float | None]:
+    """Return the error of a parameter as a share of it, and the error of that.
 
     It is infinite where the curves do not tell the parameter.
     """
-    estimate, noise, total = (
-        fit.estimates[name],
-        by_source["noise"],
-        math.hypot(*by_source.values()),
-    )
-    is_told = name not in fit.reasons or fit.reasons[name] == UNFIT
-    share = total / abs(estimate) if is_told and estimate and total < math.inf else math.inf
-    # The standard deviation of the noise is known to its own over √(2 dof).
-    scatter = 0.0 if fit.is_sigma_known else noise**2 / (total * math.sqrt(2 * fit.dof))
-    error = scatter / abs(estimate) if share < math.inf else 0.0
-    quantity, _, part = _words(name, owners).partition(" of ")
-    return Demand(
-        quantity,
-        f"of {part}" if part else "",
-        share,
-        error,
-        limit=tolerance,
-        unit="",
-        sentence=_sentence(fit, name, by_source, owners, tolerance),
-        leads=True,
-    )
+    size = abs(fit.estimates[name])
+    if fit.reasons.get(name, UNFIT) != UNFIT or not size or total == math.inf:
+        return math.inf, 0.0
+    if math.isnan(total):
+        return noise / size, None
+    # A standard deviation of noise that is estimated is itself known to a part 1/√(2 dof).
+    scatter = 0.0 if fit.is_sigma_known or not total else noise**2 / total / math.sqrt(2 * fit.dof)
+    return total / size, scatter / size
 
 
 def _sentence(
@@ -85,11 +78,8 @@ def _sentence(
     tolerance: float | None,
 ) -> str:
     """Return a parameter with its error and the sources of that, or why the curves do not tell."""
-    estimate, total, words = (
-        fit.estimates[name],
-        math.hypot(*by_source.values()),
-        _words(name, owners),
-    )
+    estimate, total = fit.estimates[name], math.hypot(*by_source.values())
+    words = " ".join(_words(name, owners)).rstrip()
     start = f"{words[0].upper()}{words[1:]} {number(estimate, unit_of(name))}"
     if (reason := fit.reasons.get(name)) is not None:
         return f"{start}, not identified: {reason}."
@@ -97,7 +87,8 @@ def _sentence(
     largest = [path for path in ranked[:MOST_SOURCES] if by_source[path] >= TOLD * total]
     texts = []
     for path in dict.fromkeys(("noise", *largest)):
-        what = path if path == "noise" else f"{_words(path, owners)} ± {fit._held_share(path)}:"
+        of = " ".join(_words(path, owners))
+        what = path if path == "noise" else f"{of} ± {fit._held_share(path)}:"
         texts.append(f"{what} {display.share(by_source[path], estimate) or '0 %'}")
     error = with_error(estimate, total) if total < math.inf else ""
     return f"{start}{error} ({', '.join(texts)}){tolerated(tolerance)}."
@@ -115,12 +106,12 @@ def _assumption(assumed: list[str]) -> str:
     return f"Errors of 1 % are assumed of {names}: give the known ones. W{exact}"
 
 
-def _words(name: str, owners: dict[str, str]) -> str:
-    """Return a parameter in words; those of curves have the names that they are given by."""
+def _words(name: str, owners: dict[str, str]) -> tuple[str, str]:
+    """Return a parameter in words, and of what it is; those of curves have their own names."""
     place, _, last = name.replace(".material", "").rpartition(".")
     if place not in owners:
-        return name
-    return f"{WORDS.get(last, last.replace('_', ' '))} of {owners[place]}"
+        return name, ""
+    return WORDS.get(last, last.replace("_", " ")), f"of {owners[place]}"
 
 
 def _owners(fit: Fit) -> Iterator[tuple[str, str]]:

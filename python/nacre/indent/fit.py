@@ -269,7 +269,10 @@ def _checked_known(
             raise ValueError(
                 f"known must name parameters that are held, {list(held)}, got {name!r}"
             )
-    numbers = {name: (float(value), float(error)) for name, (value, error) in known.items()}
+    try:
+        numbers = {name: (float(value), float(error)) for name, (value, error) in known.items()}
+    except (TypeError, ValueError):
+        raise TypeError(f"known must hold pairs of value and error, got {known!r}") from None
     for name, (value, error) in numbers.items():
         if not (0 <= error < math.inf and (name != "tip.area" or value == 1)):
             raise ValueError(
