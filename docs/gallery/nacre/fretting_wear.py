@@ -51,4 +51,4 @@ left.legend(loc="lower center", fontsize=7)
 
 # %%
 # # The coat is 5 µm thick, and far from through:
-print(history.verdict)
+print(history.verdict())

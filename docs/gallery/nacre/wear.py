@@ -55,4 +55,4 @@ right.legend(loc="upper left", fontsize=8)
 
 # %%
 # # The verdict has the distance and the place.
-print(history.verdict)
+print(history.verdict())

@@ -69,6 +69,8 @@ DEEPEST = 1.25
 WORDS = {"von_mises": "von Mises stress", "tension": "tension"}
 """Words for these extremes."""
 UNASKED = "Give a yield stress, a strength or a bond strength to judge them."
+LARGEST_CONTACT = 0.5
+"""Half-width over radius of a contact beyond which nothing is judged for flat bodies."""
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
@@ -1218,12 +1220,19 @@ def doubt_of(solution: Stressed) -> str | None:
     normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
-    return joined(normal.report.warning_kinds, "unknown")
+    return joined(_kinds(normal), "unknown")
 
 
 def caution_of(solution: Stressed) -> str | None:
     """Return what leaves a verdict on a solution fair at best, or None."""
-    return joined(solution._normal.report.warning_kinds, "fair")
+    return joined(_kinds(solution._normal), "fair")
+
+
+def _kinds(normal: Solution) -> Iterator[str]:
+    """Yield the kinds of the warnings of a contact, that of flat bodies by its size."""
+    for warning in cast(list[dict[str, Any]], normal.report._data["warnings"]):
+        is_flat = warning["kind"] != "large contact" or warning["figure"] <= LARGEST_CONTACT
+        yield warning["kind"] if is_flat else "very large contact"
 
 
 def _doubts_of(solution: Stressed) -> dict[str, Any]:

@@ -56,6 +56,8 @@ MODEL = (
 )
 MOST_SECTIONS = 8
 """Sections of a chart of worn depths; of more states some are left out."""
+DISTANCE = Demand("distance", "", 0.0, 0.0, at_least=True, leads=True)
+"""Distance that the layers must last."""
 UNASKED = "Give a required distance to judge it."
 RATE = "The error of the wear rate is not counted: measured rates scatter by some 50 %."
 THICKNESSES: dict[str, str] = {
@@ -369,24 +371,19 @@ class WearHistory(Shown, Result):
             return None
         needed = "" if limit is None else f", {travelled(limit, self.unit)} required"
         if life is not None:
+            # Wear is proportional to the pressure, whose error by the thickness is the distance's.
+            error = life.uncertainty
+            if error is not None:
+                error += (self.report.thickness_error or 0.0) * life.distance
             when, soon = "from the start", ": too soon" if limit and life.distance < limit else ""
             if life.distance > 0:
-                share = with_error(life.distance, life.uncertainty)
+                share = with_error(life.distance, error)
                 when = f"after {travelled(life.distance, self.unit)}{share}"
+            else:
+                error = 0.0  # that is certain
             sentence = f"Through {when}{needed}{soon}."
-            error = life.uncertainty if life.distance > 0 else 0.0  # that is certain
-            return Demand(
-                "distance",
-                "",
-                life.distance,
-                error,
-                None,
-                limit,
-                "given",
-                self.unit,
-                True,
-                sentence,
-                True,
+            return DISTANCE._replace(
+                value=life.distance, error=error, limit=limit, unit=self.unit, sentence=sentence
             )
         reached, deepest = (
             float(self.distance[-1]),
@@ -398,10 +395,8 @@ class WearHistory(Shown, Result):
             f"No layer is through after {travelled(reached, self.unit)}{needed}: "
             f"{worn} of {number(layers[body][0].thickness, 'm')} worn at most."
         )
-        known = None if limit is not None and reached < limit else limit
-        return Demand(
-            "distance", "", reached, 0.0, None, known, "given", self.unit, True, sentence, True
-        )
+        limit = None if limit is not None and reached < limit else limit
+        return DISTANCE._replace(value=reached, limit=limit, unit=self.unit, sentence=sentence)
 
     def _place_of(self, event: WearThrough) -> str:
         """Return which layer is through, and where."""
@@ -412,7 +407,7 @@ class WearHistory(Shown, Result):
         *at, _ = display.without_rounding([*event.position, max(solution.grid.size)])
         axes = "y" if solution.grid.is_line else "xy"
         place = ", ".join(f"{axis} = {number(at['xy'.index(axis)], 'm')}" for axis in axes)
-        return f"{name[0].upper()}{name[1:]} of the {event.body} is through first, at {place}."
+        return f"First worn through: {name} of the {event.body}, at {place}."
 
     @property
     def _thickness(self) -> str:

@@ -322,7 +322,7 @@ class FatigueSummary(Shown, Warned, Result):
     def _demand(self, layer: LayerFatigue, name: str) -> Demand:
         """Return a value of a layer as a demand."""
         value, (_, _, depth) = layer._peaks()[name]
-        words = next((row.label for row in PROFILE if row.name == name), f"{name}'s stress")
+        words = next((row.told for row in PROFILE if row.name == name), f"stress of {name}")
         part, factor = display.part_in_words(layer, self.layers), layer.safety_factors.get(name)
         limit = None if factor is None else factor * value if value > 0 else np.inf
         sentence = None if limit != np.inf else f"{words[0].upper()}{words[1:]} {part}: none."

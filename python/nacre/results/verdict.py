@@ -57,6 +57,9 @@ KINDS: dict[str, Doubt] = {
     "coated end": Doubt("fair", "the ends of the layers are left out", leaves_model=True),
     "endless crown": Doubt("fair", "a crown reaches beyond the body", leaves_model=True),
     "large contact": Doubt("fair", "the contact is large for flat bodies", leaves_model=True),
+    "very large contact": Doubt(
+        "unknown", "the contact is too large for flat bodies", leaves_model=True
+    ),
     "large motion": Doubt(
         "fair", "the motion is large for cells that stay where they are", leaves_model=True
     ),
@@ -71,7 +74,8 @@ TEXTS: dict[str, Doubt] = {
     "contacts are neither elastic nor small": Doubt(
         "unknown", "the pressure is too high for elastic bodies", leaves_model=True
     ),
-    "errs by some": Doubt("fair", "the steps or the thinner layers leave a large error"),
+    "by the length of the steps": Doubt("fair", "the steps leave a large error"),
+    "counts as thick as before": Doubt(None, "the error of the distance has that of the pressure"),
     "nothing presses any more": Doubt("unknown", "nothing presses any more at this approach"),
     "did not settle": Doubt("fair", "the distance of a layer that is through did not settle"),
     "wear of a surface does not do": Doubt(
@@ -97,6 +101,8 @@ TEXTS: dict[str, Doubt] = {
     "the force at the largest depth": Doubt("fair", "the sample creeps, or the part is too deep"),
     "after the force began to fall": Doubt("unknown", "the sample creeps while it is unloaded"),
     "numbers of film and substrate": Doubt(None, "films are another question than bodies"),
+    "uncertain": Doubt(None, "the error of the value says so"),
+    "plane: the choice may jump": Doubt(None, "the value is right on either side of the jump"),
 }
 """What other warnings mean for verdicts, by words that their text has."""
 OUTSIDE = {doubt.reason for doubt in (*KINDS.values(), *TEXTS.values()) if doubt.leaves_model}
@@ -306,7 +312,7 @@ def judged(
     with a caution, with a demand that has no limit, or that holds by less than the margin with its
     error; and good without all of these.
     """
-    demands = [*demands]
+    demands = list(demands)
     needs = [demand for demand in demands if demand.limit is None]
     limited = [demand for demand in demands if demand.limit is not None]
     limited.sort(key=lambda demand: (demand.outcome, demand.factor or 0.0))

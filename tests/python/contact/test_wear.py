@@ -35,7 +35,7 @@ def test_worn_volume_is_that_of_the_law() -> None:
     # Sums of 64 cells.
     assert_close(history.volume, due, rtol=1e-12)
     assert history.life is None
-    assert history.verdict.words.startswith("No layer is through")
+    assert history.verdict().words.startswith("No layer is through")
 
 
 @pytest.mark.filterwarnings("ignore:the worn layer counts as thick")
@@ -47,7 +47,8 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert abs(life.position[1]) < GRID.spacing[1]
     assert history.distance[-1] == life.distance
     assert history.deepest[-1, 0] == pytest.approx(2e-6, rel=1e-5)
-    assert "layers[0] DLC of the body: through after" in history.verdict.words
+    assert history.verdict().words.startswith("Through after ")
+    assert history.verdict().lines[0].startswith("First worn through: DLC of the body, at y = ")
     with pytest.warns(nacre.NacreWarning, match="a layer is through"):
         further = worn(sliding=1.2 * life.distance, steps=3, scheme="euler")
     assert further.life is not None
@@ -57,7 +58,9 @@ def test_the_coat_is_through_in_the_middle_and_the_verdict_says_when() -> None:
     assert further.life.uncertainty is not None
     assert life.uncertainty < 1e-2 * life.distance
     assert 0 < late < further.life.uncertainty + life.uncertainty < 20 * late
-    assert f"± {further.life.uncertainty:.3g}"[:4] in further.verdict.words
+    assert further.report.thickness_error is not None
+    share = further.life.uncertainty / further.life.distance + further.report.thickness_error
+    assert f" ± {100 * share:.2g} %." in further.verdict().words
     assert further.distance[-1] > further.life.distance
 
 
@@ -114,9 +117,11 @@ def test_a_history_goes_on_from_a_layer_that_is_through() -> None:
         further = worn(initial=begun, until="through", sliding=10.0, scheme="euler")
     assert [event.distance for event in begun.events] == [0.0]
     # What was asked is answered, and nothing is required.
-    assert begun.verdict.level == "unknown"
-    assert "through from the start" in begun.verdict.words
-    assert begun.verdict_for(1.0).level == "bad"
+    assert begun.verdict().level == "unknown"
+    assert begun.verdict().words == "Through from the start."
+    failing = begun.verdict(required_distance=1.0)
+    assert (failing.level, failing.factor) == ("bad", 0.0)
+    assert failing.words == "Through from the start, 1 m required: too soon."
     assert list(begun.distance) == [0.0]
     assert further.events == begun.events
     assert list(further.distance) == [0.0, 5.0, 10.0]
@@ -377,17 +382,53 @@ def test_a_history_of_another_thickness_is_refused() -> None:
 
 def test_the_verdict_on_bodies_without_layers_is_unknown() -> None:
     history = nacre.wear(ROLLER, STEEL, load=1e5, grid=GRID, rate=1e-17, sliding=1.0, steps=1)
-    assert history.verdict.level == "unknown"
-    assert history.verdict.words.startswith("Worn after 1 m: ")
-    coated = worn()
-    assert coated.verdict.level == "unknown"
-    assert "verdict_for(distance)" in coated.verdict.lines[0]
-    for required, level in ((50.0, "good"), (80.0, "fair"), (120.0, "unknown")):
-        assert coated.verdict_for(required).level == level
-    with pytest.raises(ValueError, match="required must be above 0"):
-        coated.verdict_for(0.0)
+    for required in (None, 1.0):
+        assert history.verdict(required).level == "unknown"
+        assert history.verdict(required).words.startswith("Worn after 1 m: ")
+        assert history.verdict(required).question is None
+
+
+@pytest.mark.parametrize(
+    ("required", "level"), [(50.0, "good"), (66.0, "good"), (67.0, "fair"), (100.0, "fair")]
+)
+def test_a_history_in_which_no_layer_is_through_lasts_at_least_its_distance(
+    required: float, level: str
+) -> None:
+    verdict = worn(steps="auto").verdict(required_distance=required)
+    assert verdict.level == level
+    assert verdict.factor == pytest.approx(100.0 / required)
+    assert verdict.words.startswith(f"No layer is through after 100 m, {required:g} m required: ")
+    assert " of 2 µm worn at most." in verdict.words
+
+
+def test_a_history_that_ends_too_early_tells_nothing_of_a_longer_distance() -> None:
+    verdict = worn().verdict(required_distance=120.0)
+    assert verdict.level == "unknown"
+    assert verdict.words == "Cannot tell: the history ends before the required distance."
+    open_verdict = worn().verdict()
+    assert open_verdict.level == "unknown"
+    assert open_verdict.lines[-1] == "Give a required distance to judge it."
+    with pytest.raises(ValueError, match="required_distance must be above 0"):
+        worn().verdict(required_distance=0.0)
     apart = worn(load=None, approach=-1e-6)
-    assert (apart.verdict.level, apart.verdict_for(1.0).level) == ("unknown", "unknown")
+    for required in (None, 1.0):
+        assert apart.verdict(required).level == "unknown"
+        assert apart.verdict(required).words == "Cannot tell: nothing has worn."
+
+
+@pytest.mark.parametrize(
+    ("factor", "level"), [(0.9, "bad"), (1.1, "fair"), (1.49, "fair"), (1.6, "good")]
+)
+def test_the_distance_to_wear_through_is_judged_with_its_error(factor: float, level: str) -> None:
+    history = worn(sliding=5e4, steps="auto", until="through")
+    life = history.life
+    assert life is not None
+    assert life.uncertainty is not None
+    assert life.uncertainty < 0.01 * life.distance
+    verdict = history.verdict(required_distance=life.distance / factor)
+    assert verdict.level == level
+    assert verdict.factor == pytest.approx(factor)
+    assert verdict.words.endswith(" required: too soon." if factor < 1 else " required.")
 
 
 def test_a_store_of_another_measured_surface_is_refused(tmp_path: Path) -> None:

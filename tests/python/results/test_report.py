@@ -28,6 +28,7 @@ from nacre.results import report, svg
 from nacre.results.charts import Axis, Bars, Chart, Curve, Map, contact_charts, contact_map
 from nacre.results.report import Sections, input_rows, page, table, write
 from nacre.results.rows import remark
+from nacre.results.verdict import asked
 from nacre.studies.report import Study, save_report
 from support import Capture, assert_close, command, written
 
@@ -221,10 +222,12 @@ def test_pages_are_the_same_but_for_the_date(tmp_path: Path) -> None:
 class Stub:
     """A result with a verdict."""
 
-    def __init__(self, verdict: Any = None, *, fails: bool = False) -> None:
-        self.fails = fails
-        if verdict is not None:
-            self.verdict = verdict
+    def __init__(self, known: Any = None, *, fails: bool = False) -> None:
+        self.known, self.fails = known, fails
+
+    @asked
+    def verdict(self) -> Any:
+        return self.known
 
     def _sections(self) -> Sections:
         if self.fails:
@@ -240,8 +243,13 @@ class Words(NamedTuple):
     lines: tuple[str, ...] = ()
 
 
-def refused() -> Words:
-    raise ValueError("stresses are not known")
+class Open(Stub):
+    """A result whose verdict has to be computed."""
+
+    def verdict(self) -> Any:
+        if self.fails:
+            raise ValueError("stresses are not known")
+        return self.known
 
 
 def test_pages_begin_with_the_verdict(tmp_path: Path) -> None:
@@ -258,10 +266,10 @@ def test_pages_begin_with_the_verdict(tmp_path: Path) -> None:
 def test_verdicts_are_computed_only_where_there_is_no_other(tmp_path: Path) -> None:
     good: Any = Words("good", "Holds.")
     other: Any = Words("fair", "Cannot tell.")
-    assert [*report.verdicts([Stub(lambda: other)])] == [other]
-    assert [*report.verdicts([Stub(lambda: other), Stub(good)])] == [good]
-    assert [*report.verdicts([Stub(refused)])] == []
-    assert [*report.verdicts([Stub()])] == []
+    assert [*report.verdicts([Open(other)])] == [other]
+    assert [*report.verdicts([Open(other), Stub(good)])] == [good]
+    assert [*report.verdicts([Open(fails=True)])] == []
+    assert [*report.verdicts([object()])] == []  # type: ignore[list-item]
 
 
 def test_an_error_leaves_the_file_as_it_was(tmp_path: Path) -> None:

@@ -106,7 +106,7 @@ VALUES = MADE_BY_A_CALL | {
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],
     "interface stress": SUMMARY.interfaces[0],
-    "verdict": SUMMARY.verdict,
+    "verdict": SUMMARY.verdict(),
     "fatigue summary": ASSESSED,
     "layer fatigue": ASSESSED.layers[-1],
     "interface fatigue": ASSESSED.interfaces[0],
