@@ -45,11 +45,16 @@ def fit_verdict(fit: Fit, tolerance: float | None = None) -> Verdict:
     is_known = not any(map(math.isnan, totals.values()))
     held = dict.fromkeys(path for by_source in sources.values() for path in by_source)
     assumed = [path for path in held if path != "noise" and path not in fit.known]
+    has_exact_ratios = any(
+        path.endswith(".poisson") and path not in fit.known
+        for slopes in fit.sensitivity.values()
+        for path in slopes
+    )
     return judged(
         demands,
         doubts=(*reasons(fit.warnings, "unknown"), *(() if is_known else (UNKNOWN_SLOPES,))),
         cautions=reasons(fit.warnings, "fair"),
-        notes=[_assumption([" ".join(_words(path, owners)) for path in assumed])],
+        notes=[_assumption([" ".join(_words(path, owners)) for path in assumed], has_exact_ratios)],
         unasked=UNASKED if tolerance is None else None,
         question=None if tolerance is None else f"parameters{tolerated(tolerance)}",
     )
@@ -82,6 +87,8 @@ def _sentence(
     words = " ".join(_words(name, owners)).rstrip()
     start = f"{words[0].upper()}{words[1:]} {number(estimate, unit_of(name))}"
     if (reason := fit.reasons.get(name)) is not None:
+        for path in fit.free:
+            reason = reason.replace(path, f"the {' '.join(_words(path, owners))}")
         return f"{start}, not identified: {reason}."
     ranked = sorted(by_source, key=lambda path: -by_source[path])
     largest = [path for path in ranked[:MOST_SOURCES] if by_source[path] >= TOLD * total]
@@ -94,9 +101,10 @@ def _sentence(
     return f"{start}{error} ({', '.join(texts)}){tolerated(tolerance)}."
 
 
-def _assumption(assumed: list[str]) -> str:
+def _assumption(assumed: list[str], has_exact_ratios: bool) -> str:
     """Return the sentence on what is assumed of numbers that are held."""
-    exact = "hat else is held, such as Poisson's ratios, counts as exact."
+    ratios = ", such as Poisson's ratios," if has_exact_ratios else ""
+    exact = f"hat else is held{ratios} counts as exact."
     if not assumed:
         return f"W{exact}"
     *some, last = (f"the {words}" for words in assumed)

@@ -120,6 +120,11 @@ def test_one_per_cent_is_assumed_and_said() -> None:
     )
     assert "radius of the tip ± 1 %: " in found.verdict().words
     assert "Errors of 1 % are assumed of the thickness of the film" in found.verdict().lines[0]
+    assert "such as Poisson's ratios, counts as exact" in found.verdict().lines[0]
+    ratios = {POISSON: (0.3, 0.02), "body.substrate.poisson": (0.22, 0.01)}
+    measured = fitted(FORCES * np.exp(0.01 * NOISE), known=ratios).verdict()
+    assert "Poisson's ratio of the film ± 0.02: " in measured.words
+    assert "What else is held counts as exact." in measured.lines[0]
     two = fitted(FORCES * np.exp(0.01 * NOISE), YOUNG, THICKNESS)
     assert set(two.error_sources) == set(two.uncertainty) == {YOUNG, THICKNESS}
 
@@ -221,12 +226,14 @@ def test_a_fit_is_judged_only_where_a_tolerance_is_given() -> None:
 
 
 def test_a_parameter_that_the_curves_do_not_tell_breaks_any_tolerance() -> None:
-    found = dataclasses.replace(sure(0.02), reasons={YOUNG: "its 95 % interval does not close"})
+    reason = f"its 95 % interval does not close; it trades with {YOUNG}"
+    found = dataclasses.replace(sure(0.02), reasons={YOUNG: reason})
     assert found.verdict().level == "unknown"
     verdict = found.verdict(tolerance=10.0)
     assert (verdict.level, verdict.factor) == ("bad", 0.0)
     assert verdict.words == (
-        "Modulus of film 5 GPa, not identified: its 95 % interval does not close."
+        "Modulus of film 5 GPa, not identified: its 95 % interval does not close; it trades with "
+        "the modulus of film."
     )
 
 
@@ -401,7 +408,7 @@ def made_by(function: ast.FunctionDef) -> Iterator[str]:
 def literal(node: ast.expr) -> str:
     """Return a text without what is put into it."""
     parts = node.values if isinstance(node, ast.JoinedStr) else [node]
-    return "".join(part.value if isinstance(part, ast.Constant) else "" for part in parts)
+    return "".join(str(part.value) for part in parts if isinstance(part, ast.Constant))
 
 
 def test_every_warning_has_its_row() -> None:
