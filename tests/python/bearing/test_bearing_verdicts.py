@@ -360,8 +360,8 @@ def test_a_life_says_what_it_is_made_of() -> None:
     [
         (14203.0, 20e3, "Lives 14 200 h ± 4 % ("),
         (999e3, 20e3, "Lives 999 000 h ± 4 % ("),
-        (1.01e6, 20e3, "Lives > 1 000 000 h ("),
-        (7e12, None, "Lives > 1 000 000 h ("),
+        (1.01e6, 20e3, "Lives > 1 million hours ("),
+        (7e12, None, "Lives > 1 million hours ("),
         (3e6, 2e6, "Lives 3 000 000 h ± 4 % ("),  # which is judged against millions
         (0.5, 20e3, "Lives 30 min ± 4 % ("),
         (0.01, 20e3, "Lives 36 s ± 4 % ("),
