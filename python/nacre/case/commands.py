@@ -171,9 +171,8 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     solution = results["bearing"]
     added = {name: result for name, result in results.items() if result is not solution}
     if as_json:
-        # What was asked for stands beside the solution.
-        arrays = ("lamina_loads", "lamina_pressures", "grid_sizes", "cells")
-        left = {"format", "kind", *arrays, *ASKED}
+        # What was asked for has names of its own.
+        left = {"format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells", *ASKED}
         with shown_in(case_file.units):
             state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}

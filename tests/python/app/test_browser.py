@@ -347,6 +347,22 @@ def test_a_material_fills_its_numbers(browser: Any, url: str) -> None:
     assert page.at("field:materials.steel.young").input_value() == "209.6"
     assert page.at("field:materials.steel.yield_stress").input_value() == "1896"
     assert "Rolled Alloys" in page.page.locator(".source:visible").text_content()
+    assert "(card 440C)" in page.at("verdict").text_content()
+    # A steel without a yield stress leaves that of the card in place again.
+    page.page.locator("select.material:visible").first.select_option("100Cr6")
+    page.wait()
+    assert page.at("field:materials.steel.yield_stress").input_value() == "2000"
+    assert "No yield stress of 100Cr6" in page.page.locator(".source:visible").text_content()
     page.type("materials.steel.young", "200")
     assert page.page.locator(".source:visible").count() == 0
+    page.close()
+
+
+def test_finer_cells_are_a_button(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=contact")
+    page.wait()
+    assert 'press "Finer"' in page.at("warnings").text_content()
+    page.at("finer").click()
+    page.wait()
+    assert 'press "Finer"' not in page.at("warnings").text_content()
     page.close()
