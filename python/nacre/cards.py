@@ -5,14 +5,15 @@ from __future__ import annotations
 import difflib
 import html
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import resources
 from types import MappingProxyType
 from typing import Any, Literal
 
 import nacre._core as core
+from nacre._tools.typing import ByLayer
 from nacre._tools.units import SI, Within, printable, written
 
 NUMBERS = {
@@ -93,6 +94,8 @@ class Card:
     """Numbers by name: ``young`` and ``poisson``, and others that have a source; read-only."""
     source: str
     """Source of Young's modulus."""
+    unsourced: tuple[str, ...] = ()
+    """Names of numbers for which no source was found, such as the yield stress of a steel."""
 
     def __post_init__(self) -> None:
         """Make the numbers read-only."""
@@ -100,13 +103,32 @@ class Card:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return what makes the card again."""
-        arguments = self.name, self.title, self.kind, self.elastic, dict(self.numbers), self.source
-        return Card, arguments
+        values = vars(self) | {"numbers": dict(self.numbers)}
+        return Card, tuple(values.values())
+
+    def scaled(self, size: float) -> Card:
+        """Return the card with its stresses in a unit of a size [Pa]."""
+        numbers = {
+            name: replace(number, value=number.value / size) if number.unit == "Pa" else number
+            for name, number in self.numbers.items()
+        }
+        return replace(self, numbers=numbers)
 
     @property
     def numbers_in_words(self) -> list[tuple[str, str]]:
         """What each number is, and its value with range and source."""
-        return [(NUMBERS[name][0], str(number)) for name, number in self.numbers.items()]
+        known = [(NUMBERS[name][0], str(number)) for name, number in self.numbers.items()]
+        return known + [
+            (NUMBERS[name][0], "unknown: no source was found") for name in self.unsourced
+        ]
+
+    @property
+    def gaps(self) -> list[str]:
+        """Sentences on the numbers for which no source was found, without full stops."""
+        return [
+            f"No {NUMBERS[name][0]} of {self.name} with its source was found"
+            for name in self.unsourced
+        ]
 
     def __repr__(self) -> str:
         """Return where the card is from."""
@@ -136,7 +158,8 @@ def _card(name: str, entry: Mapping[str, Any]) -> Card:
     }
     elastic = core.Elastic(numbers["young"].value, numbers["poisson"].value)
     source = numbers["young"].source
-    return Card(name, entry["title"], entry["kind"], elastic, numbers, source)
+    unsourced = tuple(entry.get("unsourced", ()))
+    return Card(name, entry["title"], entry["kind"], elastic, numbers, source, unsourced)
 
 
 def unknown(name: object, known: Iterable[str]) -> str:
@@ -189,3 +212,35 @@ class Materials(Mapping[str, Card]):
 
 materials = Materials()
 """Materials by name, each a `nacre.types.Card`."""
+
+Limits = Mapping[int | str, float | Card] | Sequence[float | Card | None]
+"""Limits of layers, by number or name or from the surface down; cards stand for their numbers."""
+
+
+def numbers_of(limits: Limits | None, name: str) -> ByLayer | None:
+    """Return limits with the numbers of this name of cards in place of these."""
+
+    def number(limit: Any) -> Any:
+        known = limit.numbers.get(name) if isinstance(limit, Card) else None
+        return known.value if known else None if isinstance(limit, Card) else limit
+
+    if isinstance(limits, Mapping):
+        numbers = {key: number(limit) for key, limit in limits.items()}
+        return {
+            k: v for k, v in numbers.items() if v is not None or not isinstance(limits[k], Card)
+        }
+    plain: Any = [*map(number, limits)] if isinstance(limits, list | tuple) else limits
+    return plain  # type: ignore[no-any-return]
+
+
+def names_of(limits: Limits | None, body: object) -> tuple[str | None, ...] | None:
+    """Return the names of the cards in limits of a body, from the surface down; None without."""
+    if isinstance(limits, Mapping) and isinstance(body, core.HalfSpace):
+        known = {key: limit.name for key, limit in limits.items() if isinstance(limit, Card)}
+        numbers = {key: float(place) for place, key in enumerate(known)}
+        places = core.layer_values(body, "limits", numbers)
+        names = [None if place is None else [*known.values()][int(place)] for place in places]
+    else:
+        entries = limits if isinstance(limits, list | tuple) else ()
+        names = [limit.name if isinstance(limit, Card) else None for limit in entries]
+    return tuple(names) if any(names) else None

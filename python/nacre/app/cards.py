@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 import functools
 import math
-import operator
 import tomllib
+import warnings
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
@@ -15,12 +15,14 @@ from typing import Any
 
 import numpy as np
 
+import nacre
 import nacre._core as core
 from nacre._tools.typing import AnyPath
 from nacre.app.answer import NONE, Measured
-from nacre.app.fields import LIMITS, Field, FieldError, field_of, keys_of, tidy
+from nacre.app.fields import LIMITS, Field, FieldError, entry_at, field_of, keys_of, tidy
 from nacre.case import Case, CaseError, templates
 from nacre.case.results import files_of
+from nacre.case.schema import material_of
 
 Data = dict[str, Any]
 
@@ -33,7 +35,14 @@ MOST = {"cells": 65_536, "layers": 20, "elements": 200, "steps": 200}
 LOADS = 60
 """Number of loads of an indentation, whose depths are evenly spaced."""
 CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width"}
-"""Numbers of cells and sizes that cards choose."""
+CHOSEN |= {"counterbody.ends", "stress.direction"}
+"""Numbers of cells, sizes, ends and directions that cards choose."""
+IDLE = tuple(f".{key}" for keys in LIMITS.values() for key in keys)
+"""Ends of the paths of limits, which act in some cases only."""
+BONDS = ("shear", "tension")
+"""Limits of interfaces."""
+REQUIRED = {"wear": "wear.required_distance", "bearing": "bearing.life.required_life"}
+"""What has to be reached, by the table of the case."""
 MARGIN = 3.0
 """Width of the grid of a line contact over that of the contact on the softest of its materials."""
 
@@ -70,7 +79,8 @@ class Card:
                 raise FieldError(path, f"{path[:60]} is no field of this card")
             data = with_value(data, field, field.number(typed))
         check_size(data)
-        return Case(_solvable_case(data) if self.name != "own" else data, self.name)
+        data = data if self.name == "own" else _solvable_case(data)
+        return Case(_with_names(data), self.name)
 
 
 def with_value(data: Data, field: Field, value: float | None) -> Data:
@@ -86,7 +96,11 @@ def with_value(data: Data, field: Field, value: float | None) -> Data:
 def _with_entry(data: Data, path: str, entry: object) -> Data:
     """Return the data of a case with another entry at a path, or without one if it is None."""
     data, (*places, key) = copy.deepcopy(data), keys_of(path)
-    table = functools.reduce(operator.getitem, places, data)
+    if entry is None and entry_at(data, path) is None:
+        return data
+    table: Any = data
+    for step in places:
+        table = table.setdefault(step, {}) if isinstance(table, dict) else table[step]
     if entry is None:
         table.pop(key, None)
     else:
@@ -124,12 +138,15 @@ def _sizes(data: Any) -> Iterator[tuple[str, float]]:
 
 
 def _solvable_case(data: Data) -> Data:
-    """Return a case of a template without adhesion of no work, and a line on a grid that holds it.
+    """Return a case of a template without adhesion of no work, with ends and a grid that hold it.
 
-    The grid is wide enough by Hertz's formula for the softest material.
+    A roller's body ends with it. The grid of a line is wide enough by Hertz's formula for the
+    softest material.
     """
     if data.get("adhesion", {}).get("work") == 0:
         return _with_entry(data, "adhesion", None)
+    if (length := data.get("shape", {}).get("length")) is not None:
+        return _with_entry(data, "counterbody.ends", [-length / 2, length / 2])
     if "width" not in data.get("grid", {}):
         return data
     compliance = max(
@@ -139,6 +156,35 @@ def _solvable_case(data: Data) -> Data:
     load, radius = data["solve"]["load"], data["shape"]["radius"]
     width = MARGIN * 2 * math.sqrt(4 * load * radius * 2 * compliance / math.pi)
     return _with_entry(data, "grid.width", float(f"{width:.3g}"))
+
+
+def _with_names(data: Data) -> Data:
+    """Return the data of a case with the name of a card for a material that has its numbers."""
+    own, tables = data.get("materials", {}), _tables(data.get("units", "SI"))
+    names = {
+        key: next((name for name, table in tables.items() if _are_equal(table, numbers)), numbers)
+        for key, numbers in own.items()
+    }
+    return data | ({"materials": names} if own else {})
+
+
+def _are_equal(table: Data, numbers: Any) -> bool:
+    """Return whether two tables have the same numbers, but for their rounding."""
+    return (
+        isinstance(numbers, dict)
+        and table.keys() == numbers.keys()
+        and all(math.isclose(table[key], numbers[key]) for key in table)
+    )
+
+
+@functools.cache
+def _tables(units: str) -> dict[str, Data]:
+    """Return the numbers of all known materials in the units of a case."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # which the page shows as a source
+        return {
+            name: material_of(name, units).model_dump(exclude_none=True) for name in nacre.materials
+        }
 
 
 @functools.cache
@@ -156,8 +202,6 @@ def _card(name: str, entry: Data, helps: Mapping[str, str]) -> Card:
         data = _with_entry(data, path, None)
     for path, value in entry.get("changes", {}).items():
         data = _with_entry(data, path, value)
-    for layer in data.get("body", {}).get("layers", ()):
-        layer["name"] = layer["material"]
     main = [field_of(data, helps=helps, **description) for description in entry["fields"]]
     for field in main:
         data = with_value(data, field, field.default)
@@ -174,6 +218,11 @@ def own_card(path: AnyPath) -> Card:
     data = _with_entry(case.data, "sweep", None)
     if "wear" in data:
         data = _with_entry(data, "wear.store", None)
+    own = dict(data.get("materials", {}))
+    for known in case.cards():  # whose numbers become fields
+        for name in [key for key, entry in own.items() if entry == known.name] or [known.name]:
+            own[name] = _tables(case.units)[known.name]
+    data = data | ({"materials": own} if own else {})
     measured = NONE
     if case.measured():
         shape = case.arguments()["shape"]
@@ -181,6 +230,8 @@ def own_card(path: AnyPath) -> Card:
         data["shape"] = {"kind": "sphere", "radius": 1.0}  # whose place the measured one takes
     elif case.kind in ("contact", "wear") and "grid" not in data:
         data["solve"] = {"max_cells": MOST["cells"]} | data["solve"]
+    if case.kind == "contact" and "fatigue" not in data:
+        data.setdefault("stress", {})  # which the page shows
     check_size(data)
     fields = _other_fields(data, measured.tables.keys())
     ranks = {table: rank for rank, table in enumerate(FIRST)}
@@ -190,13 +241,28 @@ def own_card(path: AnyPath) -> Card:
 
 
 def _other_fields(data: Data, left: AbstractSet[str]) -> list[Field]:
-    """Return fields of all numbers, and of limits that are missing, but for some paths."""
-    paths = [path for path, _ in core.numbers(data)]
-    for name, table in data.get("materials", {}).items():
-        if isinstance(table, dict):
-            paths += [f"materials.{name}.{key}" for key in LIMITS]
+    """Return fields of all numbers and limits that act, but for some paths."""
+    limits = list(_limits(data))
+    paths = [path for path, _ in core.numbers(data) if not path.endswith(IDLE) or path in limits]
     return [
         field_of(data, path)
-        for path in dict.fromkeys(paths)
+        for path in dict.fromkeys([*paths, *limits])
         if left.isdisjoint({path, path.rpartition("[")[0], path.partition(".")[0]})
     ]
+
+
+def _limits(data: Data) -> Iterator[str]:
+    """Yield the paths of limits that decide a verdict."""
+    for table, keys in LIMITS.items():
+        if table not in data:
+            continue
+        member = data[table].get("body", "body")
+        layers = data[member].get("layers", [])
+        names = [layer["material"] for layer in layers] + [data[member]["substrate"]]
+        for name, numbers in data.get("materials", {}).items():
+            if name in names and isinstance(numbers, dict):
+                yield from (f"materials.{name}.{key}" for key in keys)
+        if table == "stress":
+            for place in range(len(layers)):
+                yield from (f"{member}.layers[{place}].bond_strength.{key}" for key in BONDS)
+    yield from (path for table, path in REQUIRED.items() if table in data)

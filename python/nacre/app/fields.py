@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nacre._tools.units import System, size_of
-from nacre.case.reference import UNIT, place
+from nacre.case.reference import UNIT, options, place
 from nacre.case.tables import unit_of
 from nacre.results.parameters import quantity_of
 
@@ -22,8 +22,11 @@ SCALES: dict[str, Callable[[float], float]] = {
     "°": math.radians,
 }
 """Numbers of a case by those in units that no system has: rad/s, slopes and radians."""
-LIMITS = ("yield_stress", "strength", "shear_yield")
-"""Keys of materials that may be empty."""
+LIMITS = {"stress": ("yield_stress", "strength"), "fatigue": ("shear_yield",)}
+"""Limits of materials, which may be empty, by the tables of a case that take them."""
+
+EMPTY = {"required_distance", "required_life", *LIMITS["stress"], *LIMITS["fatigue"]}
+"""Keys that may be empty, besides those of bonds."""
 
 
 class FieldError(ValueError):
@@ -140,8 +143,11 @@ def field_of(
         label=" ".join(map(str, keys[1:])).replace("_", " ") or path,
         unit=System(units).unit(unit)[1],
         help=UNIT.sub("", text) if helps is None else helps.get(quantity, ""),
-        may_be_empty=names[-1] in LIMITS,
-        is_count="integer" in (nodes[0].get("type"), nodes[0].get("items", {}).get("type")),
+        may_be_empty=names[-1] in EMPTY or "bond_strength" in names,
+        is_count=any(
+            "integer" in (option.get("type"), option.get("items", {}).get("type"))
+            for option in options(nodes[0])
+        ),
     )._replace(**own)
     default = one.typed(entry_at(data, path), units)
     return one._replace(**({"default": default} | own))

@@ -72,16 +72,25 @@ def _field(card: Card, field: Field) -> Markup:
 
 
 def _materials(card: Card) -> Iterator[Markup]:
-    """Yield a menu of known materials for each material of a card."""
-    known = [_material_option(material) for material in nacre.materials.values()]
+    """Yield a menu of known materials for each material of a card: of coatings, or of bodies."""
+    parts = [*map(card.base.get, ("body", "counterbody")), *card.base.get("bearing", {}).values()]
+    bodies = [body for body in parts if isinstance(body, dict)]
+    layers = {layer["material"] for body in bodies for layer in body.get("layers", ())}
     for name in card.base.get("materials", {}):
         if f"materials.{name}.young" in card.by_path:
+            kind = "coating" if name in layers else "body"
+            known = [_known(each) for each in nacre.materials.values() if each.kind == kind]
             yield markup("materials", name=name, known=known)
 
 
-def _material_option(material: nacre.types.Card) -> Markup:
-    """Return a known material as an option that holds its numbers in SI."""
+def _known(material: nacre.types.Card) -> Markup:
+    """Return a known material as an option that holds its numbers in SI.
+
+    What is brittle has no yield stress: null. Other numbers that a card has not stay as typed.
+    """
     numbers = {key: number.value for key, number in material.numbers.items()}
+    is_brittle = material.kind == "body" and "yield_stress" not in {*numbers, *material.unsourced}
+    own: dict[str, float | None] = {"yield_stress": None} if is_brittle else {}
     sources = "; ".join(dict.fromkeys(number.source for number in material.numbers.values()))
-    source = f"{material.title}. {sources}"
-    return markup("known", name=material.name, numbers=json.dumps(numbers), source=source)
+    source = ". ".join([material.title, sources, *material.gaps])
+    return markup("known", name=material.name, numbers=json.dumps(own | numbers), source=source)

@@ -34,11 +34,13 @@ class RingConditions(Group):
 
 @dataclass(frozen=True)
 class Operation(Group):
-    """Where the elements are, and how fast they move."""
+    """Where the elements are, how fast they move, and what is required of them."""
 
     rotation: float = keyword("rad", default=0.0)
     speed: float = keyword("rad/s", default=0.0)
     rotating: Ring = keyword(default="inner")
+    required_life: float | None = keyword()
+    static_safety: float | None = keyword()
 
     def checked(self, bearing: Bearing) -> Operation:
         """Return the operation with Python's numbers, or raise an error."""
@@ -53,7 +55,13 @@ class Operation(Group):
                 f"speed must be lower: elements must move at {FASTEST:g} m/s at most, "
                 f"got {speed!r} rad/s"
             )
-        return Operation(rotation, speed, rotating)
+        if self.required_life is not None and speed == 0:
+            raise ValueError(
+                "required_life must be given with a speed, got none: there are no hours"
+            )
+        needs = {name: getattr(self, name) for name in ("required_life", "static_safety")}
+        needs = {k: value if value is None else above(k, value) for k, value in needs.items()}
+        return Operation(rotation, speed, rotating, **needs)
 
 
 @dataclass(frozen=True)
@@ -107,6 +115,8 @@ class BearingKeywords(TypedDict, total=False):
     threads: int | None
     progress: Callable[[int, float], object] | None
     check: bool
+    required_life: float | None
+    static_safety: float | None
 
 
 def _positive(name: str, value: object) -> int:

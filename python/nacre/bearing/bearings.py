@@ -71,6 +71,10 @@ class Solvable(Bearing):
             returning False stops, and gives the unfinished solution.
         check : bool, optional
             Whether to raise an error if the tolerance was not met.
+        required_life : float, optional
+            Life that is required [h], which the verdict judges; it needs a speed.
+        static_safety : float, optional
+            Static safety s_0 that is required; by default 1.5 of rollers and 1 of balls, ISO 76.
 
         Returns
         -------

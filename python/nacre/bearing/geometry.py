@@ -149,12 +149,14 @@ class Standards(NamedTuple):
     B: (B.9) and (B.14)."""
     static_over_limit: float
     """Static rating over the fatigue load limit: annex B, (B.18) to (B.21)."""
+    static_safety: float
+    """Static safety s_0 that is usually required, of normal operation: ISO 76:2006."""
     size_power: float
     """Power of 100 mm over the pitch diameter by which limits of larger bearings fall: annex B."""
 
 
-BALLS = Standards("ball", 3.0, 4.2e9, 1 / 0.2288, 22.0, 0.5)
-ROLLERS = Standards("roller", 10 / 3, 4.0e9, 1 / 0.2453, 8.2, 0.3)
+BALLS = Standards("ball", 3.0, 4.2e9, 1 / 0.2288, 22.0, 1.0, 0.5)
+ROLLERS = Standards("roller", 10 / 3, 4.0e9, 1 / 0.2453, 8.2, 1.5, 0.3)
 
 KNOWN: dict[str, type[Bearing]] = {}
 """Bearings by the names of their classes, which files have."""

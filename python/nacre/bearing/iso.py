@@ -161,6 +161,8 @@ class ReferenceLife(NamedTuple):
     """Dynamic equivalent reference load [N]."""
     capacities: tuple[float, float]
     """Ratings of the contacts of an element with inner and outer ring [N]."""
+    load_power: float
+    """Power of the loads of all contacts by which the life falls: 3 of balls, 4 of laminae."""
 
 
 def capacities(bearing: Bearing, capacity: float) -> tuple[float, float]:
@@ -276,7 +278,7 @@ def reference_life(
         for ring in range(2)
     )
     l10 = sums**life if sums > 0 else math.inf
-    return ReferenceLife(l10, equivalent_load(bearing, l10), ring_capacities)
+    return ReferenceLife(l10, equivalent_load(bearing, l10), ring_capacities, -exponent * life)
 
 
 def equivalent_load(bearing: Bearing, l10: float) -> float:

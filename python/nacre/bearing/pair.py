@@ -33,7 +33,7 @@ from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
 from nacre.bearing.life import LINE, POINT
-from nacre.bearing.rating_life import required
+from nacre.bearing.rating_life import LATER, required
 from nacre.bearing.rollers import TaperedRoller
 from nacre.bearing.solution import (
     STIFFNESS,
@@ -56,15 +56,15 @@ from nacre.bearing.solving import (
     solve_bearing,
     solved_contacts,
 )
-from nacre.bearing.verdict import life_verdict, pair_verdict
+from nacre.bearing.verdict import bearing_verdict, life_verdict
 from nacre.results import display, files
 from nacre.results.charts import Picture
 from nacre.results.quantities import AXIS, frozen, quantity
 from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import TableResult
-from nacre.results.values import encode, refusing
-from nacre.results.verdict import Verdict, asked
+from nacre.results.values import decode, encode, refusing
+from nacre.results.verdict import Verdict, asked, merged
 
 if TYPE_CHECKING:
     import xarray
@@ -246,6 +246,10 @@ class Pair:
             returning False stops, and gives the unfinished solution.
         check : bool, optional
             Whether to raise an error if the tolerance was not met.
+        required_life : float, optional
+            Life of both that is required [h], which the verdict judges; it needs a speed.
+        static_safety : float, optional
+            Static safety s_0 that is required of each; by default 1.5 of rollers and 1 of balls.
 
         Returns
         -------
@@ -474,7 +478,14 @@ class PairLife(TableResult):
     required_life: float | None = None
     """Life that is required [h], which decides the verdict; None without."""
 
-    _LATER = ("reliability", "modification_factor", "required_life")
+    uncertainty: float | None = None
+    """Estimated error, as a share of the life, as that of a single bearing."""
+    doubt: str | None = None
+    """What leaves the verdict unknown; None without."""
+    caution: str | None = None
+    """What leaves the verdict fair at best; None without."""
+
+    _LATER = ("reliability", "modification_factor", "required_life", *LATER)
     _of: ClassVar[str] = "both bearings, "
 
     @classmethod
@@ -482,9 +493,9 @@ class PairLife(TableResult):
         return super()._restored(state | {"reliability": state.get("reliability") or 0.9})
 
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: how long both live; bad below `required_life`, good from 1.5 of it."""
-        return life_verdict(self)
+    def verdict(self, required_life: float | None = None) -> Verdict:
+        """Verdict: how long both live; `BearingLife.verdict` says more."""
+        return life_verdict(required(self, required_life))
 
     def _rows(self) -> list[Row]:
         rows = []
@@ -525,6 +536,7 @@ class PairSolution(Equilibrium):
 
     _TITLE = "pair of bearings"
     _DERIVED = ("_life",)
+    _LATER = ("life",)
 
     pair: Pair
     """Pair that was solved."""
@@ -554,10 +566,32 @@ class PairSolution(Equilibrium):
         """Solutions of both bearings."""
         return self.first, self.second
 
+    @property
+    def required_life(self) -> float | None:
+        """Life of both that is required [h]; None without."""
+        return self.first.required_life
+
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: the life of both, and those on both bearings, of which the worst decides."""
-        return pair_verdict(self._life or self.life(), dict(zip(NAMES, self.bearings, strict=True)))
+    def verdict(
+        self, required_life: float | None = None, static_safety: float | None = None
+    ) -> Verdict:
+        """Verdict: life of both, loads and pressures of each; `BearingSolution.verdict` says more.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life of both that is required [h], by default that of `solve`.
+        static_safety : float, optional
+            Static safety that is required of each, by default that of `solve`.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life and no static safety is required.
+        """
+        life = required(self._life or self.life(), required_life)
+        parts = {f"of the {k} bearing": s for k, s in zip(NAMES, self.bearings, strict=True)}
+        return bearing_verdict(parts, life, self.first._safety(static_safety))
 
     @property
     def peak_pressure(self) -> float:
@@ -659,7 +693,7 @@ class PairSolution(Equilibrium):
         """
         if modification.pop("spectrum", None) is not None:
             raise ValueError("spectrum must not be given: solve the pair under each of its loads")
-        hours_required = modification.pop("required_life", None)
+        hours_required = modification.pop("required_life", None) or self.required_life
         first, second = (
             solution.life(edge, rotating=rotating, **modification) for solution in self.bearings
         )
@@ -668,6 +702,9 @@ class PairSolution(Equilibrium):
         shortest = float(lives.min())
         shares = shortest / lives if math.isfinite(shortest) else np.ones(2)
         both = float((shares**slope).sum()) ** (-1 / slope)
+        # Each error counts by the share of failures that are those of the bearing.
+        errors = np.array([first.uncertainty, second.uncertainty], dtype=np.float64)
+        error = float(np.average(errors, weights=shares**slope))
         hours = both * min(first.hours, second.hours)
         shorter = min(first, second, key=lambda one: one.revolutions)
         life = PairLife(
@@ -678,6 +715,9 @@ class PairSolution(Equilibrium):
             model=first.model,
             reliability=first.reliability,
             modification_factor=shorter.modification_factor,
+            uncertainty=None if math.isnan(error) else error,
+            doubt=merged(first.doubt, second.doubt),
+            caution=merged(first.caution, second.caution),
         )
         return required(life, hours_required)
 
@@ -737,7 +777,8 @@ class PairSolution(Equilibrium):
         return self._heavier._notebook_picture()
 
     def _comments(self) -> dict[str, object]:
-        return {"model": self.first.model, **self._vector_texts(), **self._numbered_warnings()}
+        numbers = {"model": self.first.model, **self._vector_texts()}
+        return super()._comments() | numbers | self._numbered_warnings()
 
     def _file_rows(self) -> Iterable[Iterable[object]]:
         (heads, *first), (_, *second) = (solution._file_rows() for solution in self.bearings)
@@ -777,7 +818,12 @@ class PairSolution(Equilibrium):
         state = {name: list(getattr(self, name)) for name in VECTORS}
         results = {name: getattr(self, name)._state() for name in (*NAMES, "report")}
         pair = {name: encode(value) for name, value in self.pair._arguments().items()}
-        return {"pair": pair, **state, **results, "tangent": self.tangent.tolist()}
+        life = encode(self._life)
+        return {"pair": pair, **state, **results, "tangent": self.tangent.tolist(), "life": life}
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [*super()._names(), "life"]
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -793,6 +839,7 @@ class PairSolution(Equilibrium):
                 **vectors,
                 tangent=np.array(state["tangent"], dtype=np.float64),
                 report=BearingReport._restored(dict(state["report"])),
+                _life=decode(state["life"]),
             )
             solution._check()
             return solution
@@ -802,4 +849,6 @@ class PairSolution(Equilibrium):
         for name in NAMES:
             if getattr(self, name).bearing != getattr(self.pair, name):
                 raise ValueError(f"{name} must be a solution of that bearing of the pair")
+        if not isinstance(self._life, PairLife | None):
+            raise ValueError(f"life must be a PairLife or None, got {self._life!r}")
         self._check_vectors()

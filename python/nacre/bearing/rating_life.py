@@ -28,7 +28,7 @@ from nacre.bearing.modified import (
     reliability_factor,
     simple_fatigue_load_limit,
 )
-from nacre.bearing.verdict import life_verdict
+from nacre.bearing.verdict import doubts_and_cautions, life_verdict
 from nacre.results.quantities import frozen, quantity
 from nacre.results.report import Rows
 from nacre.results.rows import Row
@@ -47,6 +47,8 @@ EDGES = {
 """Words for the factors of a life."""
 BARRELS = "barrels have none of the standard's edge factors"
 """The same of spherical rollers."""
+LATER = ("uncertainty", "doubt", "caution")
+"""Fields of lives that older files do not have."""
 ROUNDED = 1e-3
 """Largest difference of a sum of shares and 1: thirds with three digits are as good."""
 
@@ -76,7 +78,7 @@ class BearingLife(TableResult):
     _IN_SI = True
     _LATER = (
         *("hours", "l10", "reliability", "reliability_factor", "modification_factor"),
-        *("viscosity_ratio", "contamination_factor", "required_life"),
+        *("viscosity_ratio", "contamination_factor", "required_life", *LATER),
         *("fatigue_load_limit", "simple_fatigue_load_limit"),
     )
 
@@ -110,6 +112,15 @@ class BearingLife(TableResult):
     """Model in words."""
     required_life: float | None = None
     """Life that is required [h], which decides the verdict; None without."""
+    uncertainty: float | None = None
+    """Estimated error, as a share of the life, due to the cells of solved contacts.
+
+    It is 0 of the standard's contacts, which are formulas, and None where it is not known.
+    """
+    doubt: str | None = None
+    """What leaves the verdict unknown; None without."""
+    caution: str | None = None
+    """What leaves the verdict fair at best; None without."""
 
     _of: ClassVar[str] = ""
 
@@ -122,9 +133,20 @@ class BearingLife(TableResult):
         return super()._restored(fields)
 
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: how long the bearing lives; bad below `required_life`, good from 1.5 of it."""
-        return life_verdict(self)
+    def verdict(self, required_life: float | None = None) -> Verdict:
+        """Verdict: how long the bearing lives; bad below the required life, good from 1.5 of it.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life that is required [h], by default that of the life.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life is required.
+        """
+        return life_verdict(required(self, required_life))
 
     def _rows(self) -> list[Row]:
         if math.isinf(self.l10):
@@ -154,6 +176,8 @@ class _Rate(NamedTuple):
     reference: ReferenceLife
     cycles: float
     """Share of the time, times the speed [rad/s]."""
+    least: float | None
+    """Share of the life that is left with its error; None where that is not known."""
     factor: float
     """Factor a_ISO, 1 without lubrication."""
     kappa: float | None
@@ -171,11 +195,31 @@ class _Terms(NamedTuple):
         """Return the life under the load of a solution, for a share of the time."""
         bearing, cycles = solution.bearing, share * abs(speed)
         reference = reference_of(solution, self.edge, self.rotating)
+        least = _least(solution, self.edge, reference.load_power)
         if self.limit is None:
-            return _Rate(reference, cycles, 1.0, None)
-        load = reference.equivalent_load
-        factor = self.lubrication.factor(bearing, speed, self.limit, load)
-        return _Rate(reference, cycles, factor, self.lubrication.kappa(bearing, speed))
+            return _Rate(reference, cycles, least, 1.0, None)
+        limit, load = self.limit, reference.equivalent_load
+        factor = self.lubrication.factor(bearing, speed, limit, load)
+        if least:  # the load is then larger, and a_ISO smaller
+            more = equivalent_load(bearing, least) / equivalent_load(bearing, 1.0)
+            least *= self.lubrication.factor(bearing, speed, limit, load * more) / factor
+        return _Rate(reference, cycles, least, factor, self.lubrication.kappa(bearing, speed))
+
+
+def _least(solution: BearingSolution, edge: Edge, power: float) -> float | None:
+    """Return the share of a reference life that is left with its error; None if not known.
+
+    With ``L ∝ Q^-p`` the share of the error is ``δL/L = p δQ/Q``. p is 3 of balls and 4 of the
+    laminae of rollers: `ReferenceLife.load_power`, which is not the exponent 10/3 of the equivalent
+    load. Loads err by `BearingReport.load_error`; those with factors from the pressure also by the
+    share by which the peak pressure does, as these factors are pressures over Hertz's.
+    """
+    report = solution.report
+    error = 0.0 if solution.model == "iso16281" else report.load_error
+    peak = (report.discretisation or {}).get("peak_pressure") if edge == "pressure" else 0.0
+    if error is None or peak is None:
+        return None
+    return max(0.0, 1 - power * (error + peak / (solution.peak_pressure or 1.0)))
 
 
 def reference_of(solution: BearingSolution, edge: Edge, rotating: Ring) -> ReferenceLife:
@@ -290,7 +334,9 @@ def life_of(
         words += f"; a_ISO of ISO 281, {lubrication.cleanliness(solution.bearing)[1]}"
     if spectrum is not None:
         words += f"; Miner's sum of {len(rates)} loads"
-    return _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+    life = _life_of_spectrum(solution.bearing, terms, rates, (float(reliability), factor), words)
+    doubt, caution = doubts_and_cautions(solution, life)
+    return replace(life, doubt=doubt or None, caution=caution or None)
 
 
 Life = TypeVar("Life", "BearingLife", "PairLife")
@@ -325,7 +371,11 @@ def _life_of_spectrum(
     turned, is_known = sum(rate.cycles for rate in rates), terms.lubrication.is_known
     shares = [rate.cycles / turned for rate in rates] if turned else [1.0]
     l10 = _harmonic(shares, [rate.reference.l10 for rate in rates])
-    modified = _harmonic(shares, [rate.reference.l10 * rate.factor for rate in rates])
+    lives = [rate.reference.l10 * rate.factor for rate in rates]
+    modified, uncertainty = _harmonic(shares, lives), None
+    if all(rate.least is not None for rate in rates):
+        left = [life * (rate.least or 0.0) for rate, life in zip(rates, lives, strict=True)]
+        uncertainty = 1 - _harmonic(shares, left) / modified if math.isfinite(modified) else 0.0
     revolutions = reliability[1] * modified * 1e6
     return BearingLife(
         revolutions=revolutions,
@@ -344,10 +394,13 @@ def _life_of_spectrum(
         fatigue_load_limit=terms.limit,
         simple_fatigue_load_limit=simple_fatigue_load_limit(bearing) if is_known else None,
         model=words,
+        uncertainty=uncertainty,
     )
 
 
 def _harmonic(shares: Sequence[float], lives: Sequence[float]) -> float:
-    """Return the mean of lives by Miner's rule; infinite where all are."""
+    """Return the mean of lives by Miner's rule; infinite where all are, and 0 where one is."""
+    if min(lives) == 0:
+        return 0.0
     used = sum(share / life for share, life in zip(shares, lives, strict=True))
     return 1 / used if used > 0 else math.inf

@@ -16,7 +16,7 @@ from nacre._tools.typing import among
 from nacre._tools.units import rounded, symbol
 from nacre.bearing.arguments import Model, Operation
 from nacre.bearing.contact_laws import LAMINAE
-from nacre.bearing.geometry import RINGS, Bearing, Ring, bearing_from
+from nacre.bearing.geometry import RINGS, Bearing, Ring, above, bearing_from
 from nacre.bearing.iso import Edge, pressure_factors
 from nacre.bearing.kinds import RollerBearing
 from nacre.bearing.modified import Lubrication
@@ -39,7 +39,7 @@ from nacre.results.report import (
 )
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
-from nacre.results.values import encode, refusing
+from nacre.results.values import decode, encode, refusing
 from nacre.results.verdict import Verdict, asked
 
 if TYPE_CHECKING:
@@ -73,6 +73,8 @@ ARRAYS = (
 """Arrays in the state of a solution."""
 ANGLES = {"angles": ("°", math.degrees(1.0)), "tilt": ("mrad", 1e3), "tilts": ("mrad", 1e3)}
 """Units in which angles are printed, and how many there are in a radian."""
+ASKED = {"life": "BearingLife", "film": "Film"}
+"""What was asked for of a solution, which its verdict has, by names in its state, and classes."""
 VECTORS = ("displacement", "tilt", "force", "moment")
 """Numbers of the ring in the state of a solution."""
 PER_CONTACT, PER_LAMINA = ("element", "ring"), ("element", "ring", "lamina")
@@ -129,8 +131,16 @@ class BearingReport(Result):
     are solved again on half the cells, under the same loads and moments. A pressure without a
     limit, as at sharp ends, has none, `None`; a warning says so.
     """
+    load_error: float | None = None
+    """Error of loads due to the size of the cells, estimated, as a share that a life feels.
 
-    _LATER = ("discretisation",)
+    None of the standard's contacts, which are formulas, and where it is not known.
+    """
+    contact_kinds: tuple[str, ...] | None = None
+    """Kinds of warnings of contacts that carry 1 % of the largest load or more; None of old files.
+    """
+
+    _LATER = ("discretisation", "load_error", "contact_kinds")
 
     @property
     def converged(self) -> bool:
@@ -213,7 +223,7 @@ class BearingSolution(Equilibrium):
     """
 
     _TITLE = "bearing"
-    _LATER = ("rotating", "loaded_directions")
+    _LATER = ("rotating", "loaded_directions", "required_life", "static_safety", "life", "film")
 
     bearing: Bearing
     """Bearing that was solved."""
@@ -268,6 +278,10 @@ class BearingSolution(Equilibrium):
     """Cells of each grid; None for the standard's contacts."""
     report: BearingReport
     """Report: how the solution came about."""
+    required_life: float | None = None
+    """Life that is required [h], which the verdict judges; None without."""
+    static_safety: float | None = None
+    """Static safety that is required; None where it is the usual one."""
     _contacts: dict[tuple[int, int], Solution] = field(default_factory=dict, repr=False)
     """Contacts that are known, by element and ring."""
     _life: BearingLife | None = field(default=None, repr=False)
@@ -311,14 +325,51 @@ class BearingSolution(Equilibrium):
         return self.bearing.cage_speed(self.speed, self.rotating)
 
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: life, and the largest pressure against that of the static rating of ISO 76.
+    def verdict(
+        self, required_life: float | None = None, static_safety: float | None = None
+    ) -> Verdict:
+        """Verdict: life, static safety, and peak pressure against that of the static rating.
 
-        It is bad above that pressure, which is 4000 MPa of rollers and 4200 MPa of balls, fair
-        where less than 1.5 times below it or where the largest pressure is at an edge. Without a
-        required life, which a case file gives, it is unknown; `life` judges one.
+        It is bad where the life is shorter than the required one, the static safety less, or the
+        pressure above 4000 MPa of rollers and 4200 MPa of balls: ISO 76. From 1.5 of each, less its
+        error, it is good; fair with edge stress, and with tilts, loads and films beyond the usual.
+
+        Parameters
+        ----------
+        required_life : float, optional
+            Life that is required [h], by default that of `solve`, or of the life of a case.
+        static_safety : float, optional
+            Static safety that is required, by default that of `solve`, else 1.5 of rollers and 1 of
+            balls.
+
+        Returns
+        -------
+        Verdict
+            Verdict; unknown where no life and no static safety is required.
+
+        Raises
+        ------
+        ValueError
+            If a limit is not above 0, or a life is required of a bearing at rest.
+
+        Examples
+        --------
+        >>> from nacre.bearing import DeepGrooveBall
+        >>> bearing = DeepGrooveBall(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3)
+        >>> solution = bearing.solve(
+        ...     force=(1000.0, 0.0, None), speed=100.0, model="iso16281", required_life=20e3
+        ... )
+        >>> solution.verdict().level, solution.verdict(required_life=250e3).level
+        ('good', 'bad')
         """
-        return bearing_verdict(self)
+        life = required(self._life or self.life(), required_life)
+        return bearing_verdict({"": self}, life, self._safety(static_safety))
+
+    def _safety(self, static_safety: float | None) -> float | None:
+        """Return the static safety that is required, if any, checked."""
+        if static_safety is None:
+            return self.static_safety
+        return above("static_safety", static_safety)
 
     def stiffness(self) -> Array:
         """Exact tangent stiffness ``(5, 5)`` of forces and moments over displacements and tilts.
@@ -486,7 +537,8 @@ class BearingSolution(Equilibrium):
             along x, y and z [N] and the speed [rad/s]. Shares sum to 1. Each load is solved with
             moments, tilts and displacements of this solution, and lives add up by Miner's rule.
         required_life : float, optional
-            Life that is required [h], which decides the verdict; it needs a speed.
+            Life that is required [h], which decides the verdict; it needs a speed. By default that
+            of `solve`.
 
         Returns
         -------
@@ -526,7 +578,7 @@ class BearingSolution(Equilibrium):
         life = life_of(
             self, edge, rotating, speed, reliability, lubrication, fatigue_load_limit, spectrum
         )
-        return required(life, required_life)
+        return required(life, self.required_life if required_life is None else required_life)
 
     def static_load(self) -> StaticLoad:
         """Rate the bearing at rest by ISO 76: rating, equivalent static load and safety factor.
@@ -596,9 +648,7 @@ class BearingSolution(Equilibrium):
     def _comments(self) -> dict[str, object]:
         errors = self.report.discretisation or {}
         error_columns = {f"{name}_discretisation": error for name, error in errors.items() if error}
-        verdict = " ".join(self.verdict().sentences)
-        return {
-            "verdict": verdict,
+        return super()._comments() | {
             "model": self.model,
             **self._vector_texts(),
             **error_columns,
@@ -762,7 +812,7 @@ class BearingSolution(Equilibrium):
     @classmethod
     def _names(cls) -> list[str]:
         words = ["bearing", "model", "rotation", "speed", "rotating", "loaded_directions", *VECTORS]
-        return [*words, *ARRAYS, "cells", "report"]
+        return [*words, *ARRAYS, "cells", "report", "required_life", "static_safety", *ASKED]
 
     def _state(self) -> dict[str, object]:
         state = {name: getattr(self, name) for name in ("model", "rotation", "speed", "rotating")}
@@ -771,8 +821,9 @@ class BearingSolution(Equilibrium):
         state |= {name: None if a is None else a.tolist() for name, a in arrays.items()}
         state["loaded_directions"] = self.loaded_directions and list(self.loaded_directions)
         cells = None if self.cells is None else list(self.cells)
-        report = self.report._state()
-        return state | {"bearing": encode(self.bearing), "cells": cells, "report": report}
+        state |= {"required_life": self.required_life, "static_safety": self.static_safety}
+        state |= {"bearing": encode(self.bearing), "cells": cells, "report": self.report._state()}
+        return state | {name: encode(getattr(self, f"_{name}")) for name in ASKED}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -792,8 +843,9 @@ class BearingSolution(Equilibrium):
                 if state[name] is not None:
                     fields[name] = np.array(state[name], dtype=np.float64)
             fields["cells"] = None if state["cells"] is None else tuple(state["cells"])
-            report = BearingReport._restored(dict(state["report"]))
-            solution = cls(**fields | {"report": report})
+            fields["report"] = BearingReport._restored(dict(state["report"]))
+            fields |= {f"_{name}": decode(fields.pop(name, None)) for name in ASKED}
+            solution = cls(**fields)
             solution._check()
             return solution
 
@@ -801,6 +853,9 @@ class BearingSolution(Equilibrium):
         """Raise a `ValueError` unless all fields fit each other."""
         if not isinstance(self.bearing, Bearing):
             raise ValueError(f"bearing must be a bearing, got {self.bearing!r}")
+        for name, kind in ASKED.items():
+            if type(asked := getattr(self, f"_{name}")).__name__ not in (kind, "NoneType"):
+                raise ValueError(f"{name} must be a {kind} or None, got {asked!r}")
         if self.rotating not in RINGS:
             raise ValueError(f'rotating must be "inner" or "outer", got {self.rotating!r}')
         if self.model not in ("solved", "iso16281"):

@@ -21,17 +21,19 @@ from nacre.bearing.contact_laws import (
     STANDARD,
     Hertzian,
     Law,
+    Reaction,
     Slices,
     Solved,
     binned,
 )
 from nacre.bearing.equilibrium import Problem, State
 from nacre.bearing.geometry import HIGHEST, RINGS, Bearing
-from nacre.bearing.iso import hertz_pressures
+from nacre.bearing.iso import edge_factors, hertz_pressures
 from nacre.bearing.kinds import BallBearing, RollerBearing
 from nacre.bearing.solution import BearingReport, BearingSolution, carrying, edge_pressure
 from nacre.contact.solution import Solution
-from nacre.results.verdict import SINGULAR
+from nacre.contact.stresses import kinds_of
+from nacre.results.verdict import SINGULAR, SLIGHT
 
 if TYPE_CHECKING:
     from nacre.bearing.pair import PairSolution
@@ -286,9 +288,11 @@ def solution_of(
         *_beyond_shoulders(bearing, normals, peaks),
         *_notes(bearing, options.model, loaded),
     )
-    errors = None
+    errors, load_error = None, None
     if isinstance(problem.law, Solved):
-        errors = _discretisation(problem.law, contacts, peaks, edges)
+        errors, load_error = _discretisation(problem.law, state.reaction, peaks, edges)
+    noted = [kinds_of(one) for one in loaded.values() if one.load > SLIGHT * loads.max()]
+    ended = *ending[::-1], state.balance, notes, errors, load_error
     return BearingSolution(
         bearing=bearing,
         model=options.model,
@@ -313,7 +317,9 @@ def solution_of(
         tangent=(state.tangent + state.tangent.T) / 2,
         grid_sizes=sizes,
         cells=None if sizes is None else options.cells,
-        report=BearingReport(ending[1], ending[0], state.balance, notes, errors),  # type: ignore[arg-type]
+        report=BearingReport(*ended, tuple(sorted(set().union(*noted)))),  # type: ignore[arg-type]
+        required_life=operation.required_life,
+        static_safety=operation.static_safety,
         _contacts=dict(contacts),
     )
 
@@ -342,13 +348,18 @@ def _contact_fields(
 
 
 def _discretisation(
-    law: Solved, contacts: Mapping[tuple[int, int], Solution], peaks: Array, edges: Array
-) -> dict[str, float | None]:
-    """Return the errors of peak and edge pressure due to the size of the cells [Pa].
+    law: Solved, reaction: Reaction, peaks: Array, edges: Array
+) -> tuple[dict[str, float | None], float | None]:
+    """Return the errors due to the size of the cells: of peak and edge pressure [Pa], and of loads.
 
     Both contacts of the elements with the largest pressures are solved on half the cells under the
     same load and moment. None where the pressure has no limit, or half the cells do not carry them.
+
+    The share by which loads err has two parts. An approach that errs by Δδ changes the load Q of a
+    contact by K Δδ/Q at most, with its stiffness K: less where a force is given, since all contacts
+    err alike. And laminae share the load otherwise, by the change of its mean in a life.
     """
+    contacts, load_error = reaction.contacts, 0.0
     bearing = law.bearing
     pressures = [peaks, edges] if isinstance(bearing, RollerBearing) else [peaks]
     names = ("peak_pressure", "edge_pressure")
@@ -357,16 +368,26 @@ def _discretisation(
     for key in [key for key in contacts if key[0] in heaviest]:
         coarse = law.coarse_contact(key[1], contacts[key])
         if coarse is None:
-            return dict.fromkeys(errors)
+            return dict.fromkeys(errors), None
+        moved = abs(coarse.approach - contacts[key].approach)
+        change = float(reaction.stiffness[key][0, 0]) * moved / contacts[key].load
         singular = not SINGULAR.isdisjoint(coarse.report.warning_kinds)
         values = [coarse.peak_pressure]
         if isinstance(bearing, RollerBearing):
-            values.append(float(edge_pressure(binned(bearing, coarse)[1])))
+            loads, pressures_of_laminae = binned(bearing, coarse)
+            values.append(float(edge_pressure(pressures_of_laminae)))
+            change += abs(_mean_load(loads) / _mean_load(binned(bearing, contacts[key])[0]) - 1)
+        load_error = max(load_error, change / (2**UNKNOWN_RATE - 1))
         for name, value, field in zip(names, values, pressures, strict=False):
             known = errors[name]
             error = abs(value - float(field[key])) / (2**UNKNOWN_RATE - 1)
             errors[name] = None if singular or known is None else max(known, error)
-    return errors
+    return errors, load_error
+
+
+def _mean_load(loads: Array) -> float:
+    """Return the load of laminae that counts in a life, but for a factor: ISO/TS 16281."""
+    return float(((edge_factors(LAMINAE) * loads) ** 4.5).sum() ** (1 / 4.5))
 
 
 def _implausible(bearing: Bearing, ring: Array, peaks: Array) -> Iterable[str]:

@@ -193,7 +193,7 @@ class Case:
         if not isinstance(table, CaseTable) or table.stress is None:
             return None
         keywords = table.stress.keywords() | table.limits(table.stress, "yield_stress", "strength")
-        return self._without_friction(keywords)
+        return self._without_friction(keywords | table.bonds(table.stress))
 
     def fatigue(self) -> dict[str, Any] | None:
         """Return the arguments of `nacre.fatigue.assess`, or None without a table ``fatigue``."""
@@ -210,6 +210,11 @@ class Case:
         """Return keywords without those of friction where the tractions are known."""
         left = () if self.friction is None else ("friction", "direction")
         return {name: value for name, value in keywords.items() if name not in left}
+
+    def required_distance(self) -> float | None:
+        """Return the distance that a coat must survive, or None without one."""
+        wear = self._table.wear if isinstance(self._table, CaseTable) else None
+        return None if wear is None else wear.required_distance
 
     def life(self) -> dict[str, Any] | None:
         """Return the arguments of `BearingSolution.life`, or None without a table for it."""
@@ -243,6 +248,8 @@ class Case:
                 not key.startswith(self._table.solved)
                 or key.startswith("bearing.film.")
                 or key.endswith((".yield_stress", ".strength", ".shear_yield"))
+                or ".bond_strength." in key
+                or key == "wear.required_distance"
             ):
                 message = (
                     f"{self.name}: sweep.parameters: {_short_repr(key)} changes nothing in a solve"

@@ -114,7 +114,7 @@ class Rings(Directions):
 
 @from_signature(
     Solvable.solve,
-    {"threads", "check"},
+    {"threads", "check", "required_life"},  # which is a key of the life
     force=InSpace | None,
     displacement=InSpace | None,
     moment=About | None,

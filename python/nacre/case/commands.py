@@ -17,6 +17,7 @@ from nacre._tools.disk import FILMS, PICTURES, check_folder, replacing
 from nacre._tools.progress import alive
 from nacre._tools.units import printable, system
 from nacre.bearing.pair import NAMES
+from nacre.bearing.solution import ASKED
 from nacre.case import Case, CaseError
 from nacre.case import reference as _reference
 from nacre.case import templates as _templates
@@ -170,7 +171,9 @@ def _solve_bearing(case: Path, case_file: Case, save: list[Path], as_json: bool)
     solution = results["bearing"]
     added = {name: result for name, result in results.items() if result is not solution}
     if as_json:
-        left = ("format", "kind", "lamina_loads", "lamina_pressures", "grid_sizes", "cells")
+        # What was asked for stands beside the solution.
+        arrays = ("lamina_loads", "lamina_pressures", "grid_sizes", "cells")
+        left = {"format", "kind", *arrays, *ASKED}
         with shown_in(case_file.units):
             state = _verdicts(results)
         state |= {k: v for k, v in solution.to_dict().items() if k not in left}

@@ -126,6 +126,7 @@ def sections() -> Iterator[tuple[str, Node]]:
     yield "`[body]` and `[counterbody]`", definitions["Body"]
     yield "`[[body.layers]]`", definitions["Layer"]
     yield "`interface` of a layer: `interface = { normal = ... }`", definitions["Spring"]
+    yield "`bond_strength` of a layer: `bond_strength = { shear = ... }`", definitions["Bond"]
     yield "`[grid]`", definitions["Grid"]
     yield "`[solve]`", definitions["Solve"]
     yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", definitions["Along"]

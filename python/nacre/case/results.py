@@ -12,6 +12,7 @@ import nacre
 from nacre._tools.groups import keyword_units
 from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
+from nacre.cards import numbers_of
 from nacre.case import Case, CaseError
 from nacre.fatigue.criteria import Criterion
 from nacre.indent.solution import solve as solve_indentation
@@ -52,10 +53,10 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
     name = case.friction or "solve"
     with naming(case, name):
         results = {"solution": getattr(nacre, name)(**arguments, **options)}
-    return results | _of_last(case, last_of(results["solution"]), options)
+    return results | of_last(case, last_of(results["solution"]), options)
 
 
-def _of_last(case: Case, last: Any, options: Options) -> Results:
+def of_last(case: Case, last: Any, options: Options) -> Results:
     """Return the stresses and the fatigue of a contact that the case asks for."""
     results = {}
     if (keywords := case.stress()) is not None:
@@ -70,21 +71,29 @@ def _of_last(case: Case, last: Any, options: Options) -> Results:
 def _wear(case: Case, arguments: Options, options: Options) -> Results:
     with naming(case, "wear"):
         history = nacre.wear(**arguments, **options)
-    return {"wear": history} | _of_last(case, history.states[-1].solution, options)
+    history = replace(history, required_distance=case.required_distance())
+    return {"wear": history} | of_last(case, history.states[-1].solution, options)
 
 
 def _bearing(case: Case, arguments: Options, options: Options) -> Results:
     keywords = dict(arguments)
-    bearing, life, film = keywords.pop("bearing"), case.life(), case.film()
+    bearing = keywords.pop("bearing")
     with naming(case, "bearing"):
-        results = {"bearing": bearing.solve(**keywords, **options)}
-        if life is not None:
-            results["life"] = results["bearing"].life(**life)
-            results["bearing"] = replace(results["bearing"], _life=results["life"])
-    if film is not None:
+        solution = bearing.solve(**keywords, **options)
+    return rated(case, solution)
+
+
+def rated(case: Case, solution: Any, has_film: bool = True) -> Results:
+    """Return a solved bearing that knows the life and the film of the case, and these two."""
+    results = {"bearing": solution}
+    if (keywords := case.life()) is not None:
+        with naming(case, "bearing"):
+            results["life"] = solution.life(**keywords)
+        results["bearing"] = replace(results["bearing"], _life=results["life"])
+    if has_film and (keywords := case.film()) is not None:
         with naming(case, "bearing.film"):
-            results["film"] = _film(results["bearing"], **film)
-            results["bearing"] = replace(results["bearing"], _film=results["film"])
+            results["film"] = _film(solution, **keywords)
+        results["bearing"] = replace(results["bearing"], _film=results["film"])
     return results
 
 
@@ -122,6 +131,9 @@ def report_of(case: Case, results: Results, text: str, name: str, files: report.
     Its files are those of `files_of`.
     """
     tables = {"stress": case.stress(), "fatigue": case.fatigue()}
+    if tables["stress"] is not None:
+        cards_or_numbers = tables["stress"].get("yield_stress")
+        tables["stress"]["yield_stress"] = numbers_of(cards_or_numbers, "yield_stress")
     of_stress = {} if case.kind == "wear" else tables["stress"] or {}
     sliding = {k: v for k, v in of_stress.items() if k in DEPTH_OPTIONS}
     cards = [

@@ -24,7 +24,7 @@ import nacre
 from nacre._core import Free, Rigid
 from nacre._tools.typing import Member
 from nacre._tools.units import System
-from nacre.cards import unknown
+from nacre.cards import Card, unknown
 from nacre.case.friction import SHARED, Roll, Slide
 from nacre.case.shapes import AnyShape
 from nacre.case.tables import (
@@ -79,16 +79,11 @@ def material_of(name: str, units: str) -> Material:
     A warning says which value of a coating's range is taken.
     """
     card = nacre.materials[name]
-    size = System(units).unit("Pa")[0]
-    young = card.numbers["young"]
     if card.kind == "coating":
+        young = card.numbers["young"]
         warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
-    numbers = {
-        key: number.value / (size if number.unit == "Pa" else 1.0)
-        for key, number in card.numbers.items()
-        if key in Material.model_fields
-    }
-    return Material(**numbers)
+    numbers = card.scaled(System(units).unit("Pa")[0]).numbers
+    return Material(**{k: n.value for k, n in numbers.items() if k in Material.model_fields})
 
 
 @from_signature(nacre.Spring)
@@ -106,10 +101,20 @@ AnyInterface = Annotated[
 ]
 
 
+class Bond(Table):
+    """What an interface bears, for the verdict on stresses."""
+
+    shear: Number | None = Field(None, description="Shear that it bears [Pa].")
+    tension: Number | None = Field(None, description="Tension that it bears [Pa].")
+
+
 @from_signature(nacre.Layer, material=AnyMaterial, interface=AnyInterface, name=str)
 class Layer(Table):
     """A layer, the interface below it, and the name that results show."""
 
+    bond_strength: Bond | None = Field(
+        None, description="Shear and tension that the interface below it bears [Pa]."
+    )
     if TYPE_CHECKING:
         material: str | Material
         interface: str | Spring
@@ -318,6 +323,7 @@ class Keys(Table):
         for number, layer in enumerate(body.layers):
             with at(f"{name}.layers[{number}]"):
                 arguments = layer.keywords()
+                arguments.pop("bond_strength", None)  # of stresses
                 with at("material"):
                     arguments["material"] = self._material(layer.material)
                 with at("interface"):
@@ -465,15 +471,32 @@ class CaseTable(Bodies):
                 )
         return motion.keywords()
 
-    def limits(self, table: Stress | Fatigue | None, *names: str) -> dict[str, list[float | None]]:
+    def bonds(self, table: Stress) -> dict[str, dict[int, tuple[float | None, float | None]]]:
+        """Return what the interfaces of the body of a table bear; nothing where none is given."""
+        body = self.body if table.body == "body" else self.counterbody
+        bonds = {
+            place: (layer.bond_strength.shear, layer.bond_strength.tension)
+            for place, layer in enumerate(body.layers if body is not None else ())
+            if layer.bond_strength is not None
+        }
+        return {"bond_strength": bonds} if bonds else {}
+
+    def limits(self, table: Stress | Fatigue | None, *names: str) -> dict[str, list[Any]]:
         """Return limits of the layers and the substrate of the body of a table, by their names."""
         body = self.body if table is None or table.body == "body" else self.counterbody
         if body is None:
             return {}
         entries = [*(layer.material for layer in body.layers)]
         entries += [body.substrate] if self._base(body) is None else []
-        materials = [self._material_table(entry) for entry in entries]
-        return {name: [getattr(material, name, None) for material in materials] for name in names}
+        return {name: [self._limit(entry, name) for entry in entries] for name in names}
+
+    def _limit(self, material: str | Material, name: str) -> float | Card | None:
+        """Return a limit of a material; for a yield stress its card, in the units of the case."""
+        named = self.materials.get(material, material) if isinstance(material, str) else material
+        if isinstance(named, str) and name == "yield_stress" and named in nacre.materials:
+            return nacre.materials[named].scaled(System(self.units).unit("Pa")[0])
+        limit: float | None = getattr(self._material_table(material), name)
+        return limit
 
 
 class WrongValue(ValueError):

@@ -42,6 +42,18 @@ TEXTS = {
 class Wear(Table):
     """Dry wear over one of sliding, cycles and passes; load and tilts stand in `[solve]`."""
 
+    required_distance: Number | None = Field(
+        None,
+        description="Distance [m], cycles or passes, after which no layer may be through, for the "
+        "verdict.",
+    )
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords of `nacre.wear`."""
+        arguments = super().keywords()
+        arguments.pop("required_distance", None)
+        return arguments
+
 
 def rates(rate: float | Mapping[str, float], names: Sequence[Sequence[str]]) -> Any:
     """Return a rate as `nacre.wear` takes it, by the numbers of layers.

@@ -17,6 +17,7 @@ from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import rounded, written
+from nacre.cards import Limits, materials, names_of, numbers_of
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
@@ -53,8 +54,10 @@ EXTREMES = (
 )
 """Columns of the table of a stress summary."""
 Progress = Callable[[float], object]
-Bonds = tuple[float, float] | Mapping[int | str, tuple[float, float]]
-"""Shear and tension that all interfaces bear, or those below layers, by number or name."""
+Bond = tuple[float | None, float | None]
+"""Shear and tension that an interface bears; None where one is not known."""
+Bonds = Bond | Mapping[int | str, Bond]
+"""Those of all interfaces, or of those below layers, by number or name."""
 
 FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_factor"}
 """Safety factors that stand with extremes."""
@@ -483,7 +486,7 @@ class StressSummary(Shown, Warned, Result):
 
     _COMPILED = True
     _DERIVED = ("warnings",)
-    _LATER = ("friction", "doubt", "caution", "bond_strength")
+    _LATER = ("friction", "doubt", "caution", "bond_strength", "origins")
     _TITLE = "stresses"
 
     layers: list[LayerStress]
@@ -505,8 +508,10 @@ class StressSummary(Shown, Warned, Result):
     """
     caution: str | None
     """What leaves the verdict fair at best; None without."""
-    bond_strength: tuple[tuple[float, float] | None, ...] | None
+    bond_strength: tuple[Bond | None, ...] | None
     """Shear and tension that the interfaces bear [Pa], from the surface down; None without."""
+    origins: tuple[str | None, ...] | None
+    """Cards that yield stresses were taken from, from the surface down; None without."""
     warnings: list[str]
     """Warnings about extremes that the cells do not resolve, each also issued as `NacreWarning`."""
 
@@ -544,6 +549,7 @@ class StressSummary(Shown, Warned, Result):
             demands,
             doubts=doubts if self.finished else [*doubts, UNFINISHED],
             cautions=split(self.caution),
+            notes=[*_gaps(self)],
             unasked=UNASKED if demands and not is_limited else None,
             question="Do the largest stresses keep the limits?" if is_limited else None,
         )
@@ -703,7 +709,7 @@ class StressPlan:
     def summary(
         self,
         *,
-        yield_stress: ByLayer | None = None,
+        yield_stress: Limits | None = None,
         strength: ByLayer | None = None,
         friction: float = 0.0,
         direction: Direction | None = None,
@@ -738,14 +744,14 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        _check_limits_of(self._solution, self._member, yield_stress, strength)
-        limits = StressLimits(yield_stress, strength, None)
+        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, None)
+        body = _check_limits_of(self._solution, self._member, limits)
         with lasting("stresses", progress) as tell:
             options = StressOptions(self._member, friction, direction, residual, None, tell)
             fields = core.stress_summary(self._plan, limits, options)
         sliding = self._solution._sliding(friction, direction, self._member)
-        doubts = _doubts_of(self._solution)
-        return _warned(StressSummary._from_fields(fields, sliding, **doubts))
+        contact = _doubts_of(self._solution) | {"origins": names_of(yield_stress, body)}
+        return _warned(StressSummary._from_fields(fields, sliding, **contact))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -862,7 +868,7 @@ class Stressed:
         self,
         *,
         body: Member = "body",
-        yield_stress: ByLayer | None = None,
+        yield_stress: Limits | None = None,
         strength: ByLayer | None = None,
         bond_strength: Bonds | None = None,
         friction: float = 0.0,
@@ -885,12 +891,13 @@ class Stressed:
         yield_stress : dict or sequence, optional
             Yield stress [Pa] of layers. A dict maps layers to it, by number (0 at the surface) or
             name, and ``"substrate"``; a sequence holds it from the surface down, with None where it
-            is not known.
+            is not known. A card of `nacre.materials` stands for its number, in SI.
         strength : dict or sequence, optional
             Tensile strength [Pa] of layers, likewise.
         bond_strength : tuple of float or dict, optional
             Shear and tension that the interfaces bear [Pa], for the verdict: a pair for all, or
-            ``{0: (shear, tension)}`` by number, or the name of the layer above.
+            ``{0: (shear, tension)}`` by number, or the name of the layer above. One of them may be
+            None.
         refine : float, optional
             Largest estimated error of the extremes, as a part of them, such as 0.05. Patches that
             hold the places where value and error together exceed an extreme by more are solved
@@ -932,21 +939,22 @@ class Stressed:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        _check_limits_of(self, body, yield_stress, strength)
+        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, refine)
+        member = _check_limits_of(self, body, limits)
         bonds = _bond_strengths(self, body, bond_strength)
-        limits = StressLimits(yield_stress, strength, refine)
         with lasting("stresses", progress) as tell:
             options = StressOptions(body, friction, direction, residual, threads, tell)
             fields = core.stress_summary(self._solved, limits, options)
         sliding = self._sliding(friction, direction, body)
-        contact = _doubts_of(self) | {"bond_strength": bonds}
+        contact = {"bond_strength": bonds, "origins": names_of(yield_stress, member)}
+        contact |= _doubts_of(self)
         return _warned(StressSummary._from_fields(fields, sliding, **contact))
 
     def verdict(
         self,
         *,
         body: Member = "body",
-        yield_stress: ByLayer | None = None,
+        yield_stress: Limits | None = None,
         strength: ByLayer | None = None,
         bond_strength: Bonds | None = None,
         friction: float = 0.0,
@@ -1128,15 +1136,14 @@ def check_limits(name: str, limits: Sequence[float | None], body: core.HalfSpace
             )
 
 
-def _check_limits_of(
-    solution: Stressed, member: Member, yield_stress: ByLayer | None, strength: ByLayer | None
-) -> None:
-    """Raise an error unless limits of a body of a solution are in the units of the moduli."""
+def _check_limits_of(solution: Stressed, member: Member, limits: StressLimits) -> object:
+    """Return a body of a solution, whose limits must be in the units of the moduli."""
     report = solution._normal.report
     body = report.counterbody if among(member, ("counterbody",)) else report.body
     if isinstance(body, core.HalfSpace):
-        for name, limits in (("yield_stress", yield_stress), ("strength", strength)):
-            check_limits(name, core.layer_values(body, name, limits), body)
+        for name in ("yield_stress", "strength"):
+            check_limits(name, core.layer_values(body, name, getattr(limits, name)), body)
+    return body
 
 
 def _warned(result: StressResult) -> StressResult:
@@ -1220,15 +1227,15 @@ def doubt_of(solution: Stressed) -> str | None:
     normal = solution._normal
     if not (solution.report.converged and normal.report.converged):
         return UNCONVERGED
-    return joined(_kinds(normal), "unknown")
+    return joined(kinds_of(normal), "unknown")
 
 
 def caution_of(solution: Stressed) -> str | None:
     """Return what leaves a verdict on a solution fair at best, or None."""
-    return joined(_kinds(solution._normal), "fair")
+    return joined(kinds_of(solution._normal), "fair")
 
 
-def _kinds(normal: Solution) -> Iterator[str]:
+def kinds_of(normal: Solution) -> Iterator[str]:
     """Yield the kinds of the warnings of a contact, that of flat bodies by its size."""
     for warning in cast(list[dict[str, Any]], normal.report._data["warnings"]):
         is_flat = warning["kind"] != "large contact" or warning["figure"] <= LARGEST_CONTACT
@@ -1241,7 +1248,7 @@ def _doubts_of(solution: Stressed) -> dict[str, Any]:
 
 def _bond_strengths(
     solution: Stressed, member: Member, bonds: Bonds | None
-) -> tuple[tuple[float, float] | None, ...] | None:
+) -> tuple[Bond | None, ...] | None:
     """Return shear and tension that each interface bears, checked; None without any."""
     if bonds is None:
         return None
@@ -1251,26 +1258,34 @@ def _bond_strengths(
     given: dict[Any, Any] = (
         dict(bonds) if isinstance(bonds, Mapping) else dict.fromkeys(range(len(layers)), bonds)
     )
-    strengths: list[tuple[float, float] | None] = []
+    strengths: list[Bond | None] = []
     for k, layer in enumerate(layers):
         names = [name for name in (k, layer.name, f"interfaces[{k}]") if name in given]
         strength = given.pop(names[0]) if names else None
         if strength is not None:
-            pair = tuple(core.real("bond_strength", one) for one in _shear_and_tension(strength))
-            if not all(0 < one < np.inf for one in pair):
+            pair = _shear_and_tension(strength)
+            if not all(one is None or 0 < one < np.inf for one in pair):
                 raise ValueError(f"bond_strength must be above 0 and finite, got {strength!r}")
-            strength = cast(tuple[float, float], pair)
+            strength = pair
         strengths.append(strength)
     if given:
         raise ValueError(f"bond_strength must be of layers above an interface, got {[*given]!r}")
     return tuple(strengths)
 
 
-def _shear_and_tension(strength: object) -> tuple[object, object]:
+def _shear_and_tension(strength: object) -> Bond:
     """Return shear and tension that an interface bears, or raise a `ValueError`."""
     if not isinstance(strength, Sequence) or len(strength) != 2:
         raise ValueError(f"bond_strength must be (shear, tension) [Pa], got {strength!r}")
-    return strength[0], strength[1]
+    shear, tension = (one if one is None else core.real("bond_strength", one) for one in strength)
+    return shear, tension
+
+
+def _gaps(summary: StressSummary) -> Iterator[str]:
+    """Yield sentences on cards that have no yield stress of a layer without a limit."""
+    for layer, name in zip(summary.layers, summary.origins or (), strict=False):
+        if name is not None and layer.yield_safety_factor is None:
+            yield from (f"{gap}." for gap in materials[name].gaps)
 
 
 def _demands(summary: StressSummary) -> Iterator[Demand]:
@@ -1286,23 +1301,34 @@ def _demands(summary: StressSummary) -> Iterator[Demand]:
         if need.value > noise and need.limit is None and (pulled or not limited):
             yield need
     for face in summary.interfaces:
-        bond = (summary.bond_strength or {face.interface: None})[face.interface]
-        for k, name in enumerate(("shear", "tension")):
-            demand = _demand(summary, face, name, name)
-            if demand.value > noise:
-                yield demand if bond is None else demand._replace(limit=bond[k])
+        bonds = dict(enumerate(summary.bond_strength or ()))
+        for name, limit in zip(
+            ("shear", "tension"), bonds.get(face.interface) or (None, None), strict=True
+        ):
+            demand = _demand(summary, face, name, name, limit)
+            if demand.value > noise or limit is not None:
+                yield demand
 
 
 def _demand(
-    summary: StressSummary, place: LayerStress | InterfaceStress, name: str, words: str
+    summary: StressSummary,
+    place: LayerStress | InterfaceStress,
+    name: str,
+    words: str,
+    limit: float | None = None,
 ) -> Demand:
-    """Return an extreme as a demand."""
+    """Return an extreme as a demand, with a limit that its safety factor may have."""
     value, (_, _, depth) = getattr(place, name)
     factor = getattr(place, FACTORS.get(name, ""), None)
-    limit = None if factor is None else factor * value if value > 0 else np.inf
+    limit = limit if factor is None else factor * value
+    limit = limit if limit is None or value > 0 else np.inf
     part = display.part_in_words(place, summary.layers)
     sentence = None if limit != np.inf else f"{words[0].upper()}{words[1:]} {part}: none."
-    return Demand(words, part, value, place.uncertainty.get(name), depth, limit, sentence=sentence)
+    cards = dict(enumerate(summary.origins or ())) if name == "von_mises" else {}
+    card = cards.get(getattr(place, "layer", -1))
+    origin = "given" if card is None else f"card {card}"
+    error = place.uncertainty.get(name)
+    return Demand(words, part, value, error, depth, limit, origin, sentence=sentence)
 
 
 def _peak_rows(summary: StressSummary) -> list[list[str]]:

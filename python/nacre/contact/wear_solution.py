@@ -230,6 +230,7 @@ class WearHistory(Shown, Result):
     """
 
     _TITLE = "wear of a contact"
+    _LATER = ("required_distance",)
 
     states: tuple[WearState, ...]
     """Worn contacts, the first before any sliding."""
@@ -241,6 +242,8 @@ class WearHistory(Shown, Result):
     """How it came about."""
     inputs: dict[str, str]
     """Inputs in words."""
+    required_distance: float | None = None
+    """Distance that is required, cycles or passes, which decides the verdict; None without."""
 
     @property
     @derived("m")
@@ -308,8 +311,8 @@ class WearHistory(Shown, Result):
         Parameters
         ----------
         required_distance : float, optional
-            Distance [m], cycles or passes, after which no layer may be through. Without it, the
-            verdict is unknown.
+            Distance [m], cycles or passes, after which no layer may be through; by default that of
+            the history. Without it, the verdict is unknown.
 
         Returns
         -------
@@ -329,7 +332,7 @@ class WearHistory(Shown, Result):
         >>> history.verdict(required_distance=0.5).level
         'good'
         """
-        limit = None
+        limit = self.required_distance
         if required_distance is not None:
             limit = core.real("required_distance", required_distance)
             if not 0 < limit < math.inf:
@@ -499,6 +502,7 @@ class WearHistory(Shown, Result):
             report = WearReport.from_dict(values.heading("WearReport") | state["report"])
             if not entries["states"]:
                 raise ValueError("states must hold one at least")
+            entries |= cls._checked({name: state.get(name) for name in cls._LATER})
             return cls(unit=state["unit"], inputs=dict(state["inputs"]), report=report, **entries)  # type: ignore[arg-type]
 
     @classmethod
@@ -529,6 +533,7 @@ class WearHistory(Shown, Result):
             "unit": self.unit,
             "report": self.report._state(),
             "inputs": dict(self.inputs),
+            "required_distance": self.required_distance,
         }
 
     def plot(self, axes: Axes | None = None) -> Axes:

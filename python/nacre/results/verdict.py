@@ -74,6 +74,34 @@ TEXTS: dict[str, Doubt] = {
     "contacts are neither elastic nor small": Doubt(
         "unknown", "the pressure is too high for elastic bodies", leaves_model=True
     ),
+    "layers are not counted": Doubt(
+        "fair", "layers are not counted in the life, which is that of bare rings", leaves_model=True
+    ),
+    "rings are not of steel": Doubt(
+        "unknown",
+        "lives and limits of ISO are those of bearing steel, and these bodies are not",
+        leaves_model=True,
+    ),
+    "above half of the rating": Doubt(
+        "fair",
+        "the equivalent load is above half of the rating, where ISO 281 errs",
+        leaves_model=True,
+    ),
+    "tilt of balls": Doubt("fair", "the tilt is above the 16' that many makers allow"),
+    "tilt of rollers": Doubt("fair", "the tilt is above the 4' that many makers allow"),
+    "far above those of bearings": Doubt("fair", "no bearing tilts as far", leaves_model=True),
+    "of the catalogue, ": Doubt("fair", "a rating differs from that of the catalogue"),
+    "are estimates from the ratings": Doubt("fair", "the elements are estimates from the ratings"),
+    "the fatigue load limit is C_0/8.2": Doubt(None, "the simple limit of ISO 281 is taken"),
+    "is above the fatigue limit": Doubt(None, "the ratio of lives is 0 or infinite"),
+    "the formula is for the piezoviscous-elastic one": Doubt(
+        "fair", "the film's formula is for another regime", leaves_model=True
+    ),
+    "fit is extrapolated": Doubt("fair", "the film's formula is extrapolated", leaves_model=True),
+    "asperities touch through the film": Doubt(None, "λ is said where it is below 1"),
+    "how they move the film is not known": Doubt(
+        "fair", "how thick layers move the film is not known", leaves_model=True
+    ),
     "by the length of the steps": Doubt("fair", "the steps leave a large error"),
     "counts as thick as before": Doubt(None, "the error of the distance has that of the pressure"),
     "nothing presses any more": Doubt("unknown", "nothing presses any more at this approach"),
@@ -132,6 +160,11 @@ def joined(notices: Iterable[str], level: Level) -> str | None:
 def split(text: str | None) -> list[str]:
     """Return the reasons of a text."""
     return [] if text is None else text.split(MARK)
+
+
+def merged(*texts: str | None) -> str | None:
+    """Return the reasons of texts in one, each once, or None without any."""
+    return MARK.join(dict.fromkeys(reason for text in texts for reason in split(text))) or None
 
 
 if TYPE_CHECKING:

@@ -213,7 +213,7 @@ def test_each_number_of_a_case_has_a_unit() -> None:
         *("count", "rows", "poisson", "rating_factor", "osculation", "tolerance", "end_factor"),
         *("max_iterations", "cells", "k1", "k2", "film_ratio", "viscosity_ratio", "share"),
         *("contamination", "reliability"),
-        "required_life",
+        *("required_life", "static_safety"),
     }
 
     def units(table: Any, path: tuple[str, ...]) -> dict[str, str]:

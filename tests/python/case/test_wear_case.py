@@ -171,7 +171,7 @@ def test_the_command_prints_the_history_in_the_units_of_the_case(
     assert capsys.readouterr().out == f"{due}\n"
     life = history.life
     assert life is not None
-    assert f"through after {life.distance / 1e3:.4g} m ± " in due
+    assert f"Through after {life.distance / 1e3:.4g} m ± " in due
     assert " at y = 0 mm." in due
     assert ", 0 µm² of the counterbody" in due
 

@@ -133,7 +133,8 @@ def test_numbers_of_other_units_are_converted() -> None:
 def test_the_file_has_no_entry_that_is_not_read() -> None:
     text = resources.files("nacre").joinpath("materials.toml").read_text("utf-8")
     for entry in tomllib.loads(text).values():
-        assert entry.keys() <= {"title", "kind"} | NUMBERS.keys()
+        assert entry.keys() <= {"title", "kind", "unsourced"} | NUMBERS.keys()
+        assert set(entry.get("unsourced", ())) <= NUMBERS.keys() - entry.keys()
         for number in entry.values():
             if isinstance(number, dict):
                 assert number.keys() <= {"value", "low", "high", "source"}
@@ -237,7 +238,7 @@ def test_the_yield_stress_of_a_card_makes_a_safety_factor(tmp_path: Path, capsys
     for steel in ('"440C"', typed):
         assert command("solve", case(tmp_path, steel=steel)) == 0
         printed.append(capsys.readouterr().out)
-    assert printed[0] == printed[1]
+    assert printed[0] == printed[1].replace("(given)", "(card 440C)", 1)
     # 1896 MPa over the stress that is printed beside.
     assert re.search(r"von Mises .* 1\.9", printed[0])
     assert command("solve", case(tmp_path)) == 0  # the card of 100Cr6 has no yield stress

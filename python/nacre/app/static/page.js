@@ -113,13 +113,15 @@ function follow(input) {
   slider.value = slider.dataset.scale === "linear" ? value : Math.log(value / input.defaultValue) / Math.log(20) || 0;
 }
 
-// A material fills the numbers of a body, and shows its source; another number takes it off again.
+// A material fills the numbers of a body that it has, and shows its source; another number takes it off again.
 function choose(select) {
   const { numbers, source } = select.selectedOptions[0].dataset, path = `materials.${select.dataset.material}.`;
   const known = numbers ? JSON.parse(numbers) : null;
   for (const input of known ? inputs().filter((one) => one.name.startsWith(path)) : []) {
     const value = known[input.name.slice(path.length)];
-    input.value = value === undefined ? "" : +(value / input.dataset.si).toPrecision(9);
+    if (value !== undefined) input.value = value === null ? "" : +(value / input.dataset.si).toPrecision(9);
+    else if (input.dataset.filled) input.value = input.defaultValue;
+    input.dataset.filled = value === undefined ? "" : "filled";
     follow(input);
   }
   tell(select.parentElement.nextElementSibling, source);
@@ -128,6 +130,7 @@ function choose(select) {
 function release(input) {
   const select = all(".material", form).find(({ dataset }) => input.name.startsWith(`materials.${dataset.material}.`));
   if (!select) return;
+  input.dataset.filled = "";
   select.value = "";
   choose(select);
 }
@@ -183,6 +186,13 @@ document.addEventListener("change", ({ target }) => {
 });
 document.addEventListener("submit", (event) => event.preventDefault());
 all(".tab").forEach((tab) => tab.addEventListener("click", () => open(forms.find((other) => other.dataset.group === tab.dataset.group))));
+one("[data-testid=finer]").addEventListener("click", () => {
+  if (drafting) return;
+  clearTimeout(timer);
+  request?.abort();
+  show("busy", "computing …");
+  ask("finer");
+});
 one("[data-testid=report]").addEventListener("click", () => save("/report", "report", "text/html", "html"));
 one("[data-testid=case-file]").addEventListener("click", () => save("/answer", "case", "application/toml", "toml"));
 one("[data-testid=copy-link]").addEventListener("click", () =>
