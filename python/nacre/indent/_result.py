@@ -412,6 +412,10 @@ class Fit(Shown, Result):
             and self.noise in ("relative", "absolute", "mixed")
             and {*self.sensitivity} <= names
             and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
+            and all(
+                math.isfinite(value) and 0 <= error < math.inf and (value or ".poisson" in path)
+                for path, (value, error) in self.known.items()
+            )
             and isinstance(self.is_sigma_known, bool)
             and isinstance(self.is_profiled, bool)
             and holds(self.body, self.tip, self.counterbody, self.adhesion)

@@ -106,6 +106,9 @@ def test_a_known_value_is_that_of_the_parameter_and_its_error_is_kept(tmp_path: 
     assert sources[THICKNESS] == 0
     assert found.uncertainty[YOUNG] == pytest.approx(math.hypot(*sources.values()))
     assert "Errors of 1 % are assumed of the modulus of the substrate:" in str(found)
+    for pair in ([0.0, 1.0], [1.0, -1.0], [1.0, math.inf]):
+        with pytest.raises(ValueError, match="Fit"):
+            Fit.from_dict(found.to_dict() | {"known": {"tip.radius": pair}})
     old = found.to_dict()
     del old["known"]
     assert set(Fit.from_dict(old).error_sources[YOUNG]) == set(sources)
