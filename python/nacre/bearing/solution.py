@@ -359,7 +359,7 @@ class BearingSolution(Equilibrium):
         >>> solution = bearing.solve(
         ...     force=(1000.0, 0.0, None), speed=100.0, model="iso16281", required_life=20e3
         ... )
-        >>> solution.verdict().level, solution.verdict(required_life=40e3).level
+        >>> solution.verdict().level, solution.verdict(required_life=250e3).level
         ('good', 'bad')
         """
         life = required(self._life or self.life(), required_life)

@@ -191,7 +191,7 @@ def _duration(hours: float, limit: float | None = None) -> str:
     if math.isinf(hours):
         return "without end"
     if hours > MILLION and not (limit is not None and limit > MILLION / 2):
-        return f"> {plain(MILLION, DIGITS)} h"
+        return "> 1 million hours"
     for size, unit in ((1.0, "h"), (MINUTES, "min"), (SECONDS, "s")):
         if hours * size >= 1:
             return f"{plain(hours * size, DIGITS)} {unit}"

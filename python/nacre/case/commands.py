@@ -379,7 +379,7 @@ def _solve_indentation(case: Path, case_file: Case, save: list[Path], as_json: b
             solution = results["indent"]
             with naming(case_file, "indent"):
                 numbers = _indent_numbers(solution)
-        print(json.dumps(_plain(numbers), indent=2) if as_json else solution)
+        print(json.dumps(_plain(numbers | _verdicts(results)), indent=2) if as_json else solution)
         for path in save:
             if path.suffix.lower() == ".html":
                 _save_report(path, results, case, case_file)

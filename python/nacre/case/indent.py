@@ -114,6 +114,10 @@ class Indent(Table):
     control: Literal["load", "approach"] = Field(
         "load", description="What is held while the tip is pulled off."
     )
+    tolerance: Number | None = Field(
+        None,
+        description="Largest error of the modulus of the film, as a part of it, that is judged.",
+    )
 
     @model_validator(mode="after")
     def _check_target(self) -> Indent:

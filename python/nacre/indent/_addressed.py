@@ -15,6 +15,9 @@ from nacre.indent.solution import Indentation, IndentCurve
 
 Array = npt.NDArray[np.float64]
 
+INCOMPRESSIBLE = 0.4999
+"""Least Poisson's ratio with respect to which no fit has a slope."""
+
 
 @dataclass(frozen=True)
 class System:
@@ -44,6 +47,21 @@ class System:
         parameters = numbers(vars(self)) | {"tip.area": 1.0}
         indentation = core.Indentation(self.body, self.tip, self.counterbody, self.adhesion)
         return {k: parameters[k] for k in indentation.parameters() if k != "adhesion.strength"}
+
+    def held(self, free: Sequence[str]) -> dict[str, float]:
+        """Return what a fit with these free parameters holds, and of which estimates have a slope.
+
+        An area of the tip stands for a tip without numbers of its own.
+        """
+        values = self.values()
+        of_tip = [path for path in values if path.startswith("tip.")]
+        other = of_tip if "tip.area" in free else ["tip.area"] if len(of_tip) > 1 else []
+        return {
+            path: value
+            for path, value in values.items()
+            if path not in (*free, *other)
+            and (0 <= value < INCOMPRESSIBLE if path.endswith(".poisson") else value > 0)
+        }
 
     def with_values(self, values: Mapping[str, float]) -> System:
         """Return the system with other values of some parameters, but for the area of the tip."""

@@ -49,12 +49,13 @@ def indentation(solution: IndentSolution) -> xarray.Dataset:
 
 def estimates(fit: Fit) -> xarray.Dataset:
     """Return the parameters of a fit, and its points, those of all curves one after another."""
-    names = list(fit.estimates)
+    names, whole = list(fit.estimates), fit.uncertainty
     low, high = np.array([fit.intervals[name] for name in names]).T
     both = ("parameter", "other_parameter")
     columns: dict[str, object] = {
         "estimate": ("parameter", list(fit.estimates.values())),
         "standard_error": ("parameter", [fit.standard_errors[name] for name in names]),
+        "uncertainty": ("parameter", [whole.get(name, np.nan) for name in names]),
         "low": ("parameter", low),
         "high": ("parameter", high),
         "covariance": (both, fit.covariance),
@@ -83,6 +84,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
         warnings="\n".join(fit.warnings),
         reasons="\n".join(f"{name}: {text}" for name, text in fit.reasons.items()),
     )
+    fields["uncertainty"].attrs["long_name"] = "standard error with those of what is held"
     fields["low"].attrs["long_name"] = "lower end of the interval of 95 %"
     fields["high"].attrs["long_name"] = "upper end of the interval of 95 %"
     return fields
@@ -106,7 +108,8 @@ def contact_rows(solution: IndentSolution) -> Iterator[list[object]]:
 
 def parameter_rows(fit: Fit) -> Iterator[list[object]]:
     """Yield the rows of a table of parameters."""
-    yield ["parameter", "unit", "estimate", "standard error", "low", "high", "not identifiable"]
+    errors, whole = ["standard error", "low", "high", "uncertainty"], fit.uncertainty
+    yield ["parameter", "unit", "estimate", *errors, "not identifiable"]
     for name, unit in zip(fit.estimates, _units(fit), strict=True):
         numbers = [fit.estimates[name], fit.standard_errors[name], *fit.intervals[name]]
-        yield [name, unit, *numbers, fit.reasons.get(name, "")]
+        yield [name, unit, *numbers, whole.get(name, ""), fit.reasons.get(name, "")]

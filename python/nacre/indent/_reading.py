@@ -11,18 +11,18 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import plain
-from nacre.results.verdict import DIGITS, MARGIN, Level, Verdict, number
+from nacre.results.verdict import DIGITS, Demand, Verdict, judged, number, reasons
 
 if TYPE_CHECKING:
     from nacre.indent.solution import IndentSolution
 
 Array = npt.NDArray[np.float64]
 
+UNASKED = "Give a tolerance to judge it."
 READ = 0.05
 """Largest error of a modulus of which the film is said to be read."""
-UNASKED = "No tolerance is given: verdict(tolerance=...) judges the modulus."
 TOLERATED = 0.10
-"""Error of the modulus up to whose depth a verdict tells."""
+"""Error of the modulus up to whose depth a verdict tells where no tolerance is given."""
 DEPTHS, SHALLOWEST = 40, 1e-3
 """Number of depths, and the smallest over the largest."""
 
@@ -39,6 +39,10 @@ class Reading:
     """Young's modulus of the film [Pa]."""
     has_adhesion: bool
     """Whether the indentation has adhesion, which the loads here have not."""
+    warnings: tuple[str, ...] = ()
+    """Warnings about the indentation."""
+    tolerance: float | None = None
+    """Largest error of the modulus that is tolerated, if given."""
 
 
 def apparent_modulus(solution: IndentSolution) -> Reading | None:
@@ -64,39 +68,68 @@ def apparent_modulus(solution: IndentSolution) -> Reading | None:
     left = 1 / reduced - compliance
     with np.errstate(divide="ignore"):
         moduli = np.where(left > 0, (1 - film.poisson**2) / left, math.inf)
-    return Reading(depths, moduli, film.young, solution.adhesion is not None)
+    has_adhesion = solution.adhesion is not None
+    return Reading(depths, moduli, film.young, has_adhesion, solution.warnings, solution.tolerance)
+
+
+def checked_tolerance(tolerance: float | None) -> float | None:
+    """Return a tolerance, which must be above 0 and finite if there is one."""
+    if tolerance is not None and not 0 < core.real("tolerance", tolerance) < math.inf:
+        raise ValueError(f"tolerance must be above 0 and finite, got {tolerance:g}")
+    return tolerance
+
+
+def tolerated(tolerance: float | None) -> str:
+    """Return a tolerance at the end of a phrase, if there is one."""
+    return "" if tolerance is None else f", ± {plain(100 * tolerance, DIGITS)} % tolerated"
 
 
 def substrate_verdict(reading: Reading | None, tolerance: float | None = None) -> Verdict:
     """Return whether the largest depth tells the modulus of the film, to a tolerance if any."""
     if reading is None:
-        return Verdict("unknown", "Cannot tell: there is no film.")
+        return Verdict("unknown", "Cannot tell: there is no film, or no depth above 0.")
+    tolerance = reading.tolerance if tolerance is None else tolerance
     ratio = float(reading.moduli[-1]) / reading.modulus
     error = abs(ratio - 1)
-    level: Level = "unknown"
-    if tolerance is not None:
-        level = "bad" if error > tolerance else "fair" if MARGIN * error > tolerance else "good"
     read, film = number(float(reading.moduli[-1]), "Pa"), number(reading.modulus, "Pa")
-    start = "The film is read" if error <= READ else "The substrate shows"
-    words = f"{start}: as a bare film, this curve gives {read} for a film of {film}"
-    words += f" ({plain(ratio, DIGITS)} times)."
+    start = "The film is read" if error <= (tolerance or READ) else "The substrate shows"
+    words = f"{start}: as a bare film, this curve gives {read} for a film of {film} "
+    words += f"({plain(ratio, DIGITS)} times{tolerated(tolerance)})."
     if not math.isfinite(ratio):
         words = "The substrate shows: at this depth the curve tells nothing of the film."
-    lines = [_depth(reading), *([] if tolerance is not None else [UNASKED])]
-    lines += ["Adhesion is left out of this reading."] if reading.has_adhesion else []
-    return Verdict(level, words, tuple(lines), ratio, "substrate", None)
+    left_out = ["Adhesion is left out of this reading."] if reading.has_adhesion else []
+    return judged(
+        [
+            Demand(
+                "modulus",
+                "of the film",
+                error,
+                0.0,
+                None,
+                tolerance,
+                "given",
+                "",
+                sentence=words,
+                leads=True,
+            )
+        ],
+        doubts=reasons(reading.warnings, "unknown"),
+        notes=[_depth(reading, tolerance or TOLERATED), *left_out],
+        unasked=UNASKED if tolerance is None else None,
+        question=None if tolerance is None else f"modulus of the film{tolerated(tolerance)}",
+    )
 
 
-def _depth(reading: Reading) -> str:
+def _depth(reading: Reading, tolerance: float) -> str:
     """Return up to which depth the error is tolerated."""
     errors = np.abs(reading.moduli / reading.modulus - 1)
-    beyond = np.flatnonzero(errors > TOLERATED)
-    share = f"{plain(100 * TOLERATED, DIGITS)} %"
+    beyond = np.flatnonzero(errors > tolerance)
+    share = f"{plain(100 * tolerance, DIGITS)} %"
     if not beyond.size:
         return f"The error is below {share} at all these depths."
     if not (first := int(beyond[0])):
         least = number(float(reading.depths[0]), "m")
         return f"The error is above {share} from {least} of depth on."
     ends = slice(first - 1, first + 1)
-    depth = np.interp(TOLERATED, errors[ends], reading.depths[ends])
+    depth = np.interp(tolerance, errors[ends], reading.depths[ends])
     return f"The error is below {share} only up to {number(float(depth), 'm')} of depth."

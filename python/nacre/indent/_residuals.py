@@ -86,14 +86,7 @@ class FixedParameters:
     @classmethod
     def of(cls, model: Model, x: Array) -> FixedParameters:
         """Return what a fit holds, but for what cannot be free there."""
-        free = [
-            name
-            for name, value in model.system.values().items()
-            if name not in model.free
-            and name != "tip.area"
-            and not (name.startswith("tip.") and "tip.area" in model.free)
-            and (0 <= value < 0.4999 if name.endswith(".poisson") else value > 0)
-        ]
+        free = [*model.system.held(model.free)]
         is_timed = all(c.time is not None and np.ptp(c.time) > 0 for c in model.curves)
         kinds = [kind for kind in NUISANCES if kind != "drift" or is_timed]
         try:

@@ -6,6 +6,7 @@ import math
 import operator
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -14,9 +15,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.units import written
+from nacre.indent._addressed import System
 from nacre.indent._model import NUISANCES, OF_FORCE, unit_of
+from nacre.indent._reading import checked_tolerance
 from nacre.indent._residuals import ROUNDING
-from nacre.indent._verdict import fit_verdict
+from nacre.indent._verdict import UNFIT, fit_verdict
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.indent.solution import MODEL, holds
@@ -37,8 +40,8 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
-UNFIT = "the model does not fit the data"
-"""Reason why no parameter is identifiable where the residuals are no noise."""
+ASSUMED = 0.01
+"""Standard error that is assumed of moduli, thicknesses and tips that are held, as a share."""
 
 MOST_RATES = 6
 """Most numbers on which a table says that an estimate depends."""
@@ -110,6 +113,39 @@ class Fit(Shown, Result):
     """How the residuals show that the model does not describe the data, and what to free, with
     errors and intervals wider and linear; what makes the contacts doubtful. Each was also issued as
     a `NacreWarning`."""
+    known: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Value and standard error of what is held, as far as they were given."""
+
+    _LATER = ("known",)
+
+    @property
+    def error_sources(self) -> dict[str, dict[str, float]]:
+        """Standard error of each free parameter by its source: "noise", and each number held.
+
+        Errors of numbers that are held are those of `known`, and 1 % of every other modulus,
+        thickness and number of the tip but an exponent. NaN where a slope is not known.
+        """
+        held = System.of(self.body, self.tip, self.counterbody, self.adhesion).held(self.free)
+        shares = {path: ASSUMED for path in held if path not in self.known and _is_assumed(path)}
+        for path, (value, error) in self.known.items():
+            shares[path] = error if path.endswith(".poisson") else error / value
+        sources = {}
+        for name in self.free:
+            rate = 1.0 if name.endswith(".poisson") else self.estimates[name]
+            slopes = self.sensitivity.get(name, {})
+            moves = {p: abs(slopes.get(p, math.nan) * rate) * share for p, share in shares.items()}
+            sources[name] = {"noise": self.standard_errors[name]} | moves
+        return sources
+
+    def _held_share(self, path: str) -> str:
+        """Return the error that counts of a number that is held, as a share of it, in words."""
+        value, error = self.known.get(path, (1.0, ASSUMED))
+        return f"{error:.2g}" if path.endswith(".poisson") else display.share(error, value)
+
+    @property
+    def uncertainty(self) -> dict[str, float]:
+        """Standard error of each free parameter: of the noise, and of what is held, together."""
+        return {name: math.hypot(*by.values()) for name, by in self.error_sources.items()}
 
     @property
     def identifiable(self) -> dict[str, bool]:
@@ -122,13 +158,29 @@ class Fit(Shown, Result):
         return not self.reasons
 
     @asked
-    def verdict(self) -> Verdict:
-        """Verdict: each free parameter with its standard error, the least certain one first.
+    def verdict(self, tolerance: float | None = None) -> Verdict:
+        """Verdict: each free parameter with its `uncertainty`, the least certain one first.
 
-        It is fair where all are known to 20 %, as errors of what is held fixed are not known, and
-        bad beyond, or where a parameter is not identifiable.
+        Parameters
+        ----------
+        tolerance : float, optional
+            Largest standard error of each free parameter that is tolerated, as a part of it, such
+            as 0.05. Without, the verdict is unknown.
+
+        Returns
+        -------
+        Verdict
+            Good where all errors are two thirds of the tolerance at most; bad where one is above
+            it. A parameter that is not identifiable, though it was asked for, has no smaller error
+            than the interval that does not close, and breaks any tolerance. Where the model does
+            not describe the data, errors are wider, and what keeps the tolerance is unknown.
+
+        Raises
+        ------
+        ValueError
+            If the tolerance is not above 0 and finite.
         """
-        return fit_verdict(self)
+        return fit_verdict(self, checked_tolerance(tolerance))
 
     def classical(self, curve: int = 0) -> list[Classical]:
         """Return what customary formulae would have said, with their bias against the fit.
@@ -182,9 +234,10 @@ class Fit(Shown, Result):
 
     def _report_rows(self) -> Rows:
         rows = []
-        for name, value, error, interval, verdict in self._table().rows:
-            text = f"{value} ± {error}; 95 %: {interval} {verdict}".rstrip()
-            estimate, deviation = self.estimates[name], self.standard_errors[name]
+        errors = self.standard_errors | self.uncertainty
+        for name, value, error, interval, whole, verdict in self._table().rows:
+            text = f"{value} ± {whole or error}; noise ± {error}, 95 %: {interval} {verdict}"
+            text, estimate, deviation = text.rstrip(), self.estimates[name], errors[name]
             rows.append(Row(name, name, text, estimate, unit_of(name), deviation))
         return rows
 
@@ -234,12 +287,13 @@ class Fit(Shown, Result):
 
     def _table(self) -> Printed:
         """Return the table of the estimates."""
-        rows = []
+        rows, totals = [], self.uncertainty
         for name in self.estimates:
             low, high = (self._with_unit(name, end) for end in self.intervals[name])
             error = self._with_unit(name, self.standard_errors[name], 2)
+            whole = self._with_unit(name, totals[name], 2) if name in totals else ""
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
-            rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
+            rows.append([name, self._value(name), error, f"{low} to {high}", whole, verdict])
         lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
         if self.noise == "absolute":
             noise = written(self.sigma, "N", 3)
@@ -261,7 +315,8 @@ class Fit(Shown, Result):
             lines.append("intervals are linear, and widened by what the residuals show")
         elif not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
-        return Printed(("parameter", "estimate", "±", "95 % interval", ""), rows, lines)
+        head = ("parameter", "estimate", "± noise", "95 % of noise", "± in all", "")
+        return Printed(head, rows, lines)
 
     def _sensitivities(self) -> list[str]:
         """Return lines on numbers of which 1 % matters beside the intervals, most first."""
@@ -312,6 +367,8 @@ class Fit(Shown, Result):
         with refusing("Fit"):
             for name in ("body", "tip", "counterbody", "adhesion"):
                 state[name] = decode(state[name])
+            pairs = (state["known"] or {}).items()
+            state["known"] = {key: (float(value), float(error)) for key, (value, error) in pairs}
             for name in ("estimates", "standard_errors"):
                 state[name] = {key: float(value) for key, value in state[name].items()}
             for name in ("chi2", "sigma", "floor", "condition"):
@@ -355,10 +412,20 @@ class Fit(Shown, Result):
             and self.noise in ("relative", "absolute", "mixed")
             and {*self.sensitivity} <= names
             and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
+            and all(
+                math.isfinite(value) and 0 <= error < math.inf and (value or ".poisson" in path)
+                for path, (value, error) in self.known.items()
+            )
             and isinstance(self.is_sigma_known, bool)
             and isinstance(self.is_profiled, bool)
             and holds(self.body, self.tip, self.counterbody, self.adhesion)
         )
+
+
+def _is_assumed(path: str) -> bool:
+    """Return whether an error of what is held is assumed where none is given."""
+    last = path.rpartition(".")[2]
+    return last in ("young", "thickness") or (path.startswith("tip.") and last != "exponent")
 
 
 def _step(parameter: str) -> str:

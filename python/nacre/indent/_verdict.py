@@ -1,4 +1,4 @@
-"""Verdict on a fit: which parameters the curves tell, and how well."""
+"""Verdict on a fit: how well the curves tell each parameter, with the sources of its error."""
 
 from __future__ import annotations
 
@@ -8,74 +8,118 @@ from typing import TYPE_CHECKING
 
 import nacre._core as core
 from nacre.indent._model import unit_of
+from nacre.indent._reading import UNASKED, tolerated
 from nacre.results import display
-from nacre.results.verdict import DIGITS, Level, Verdict, number
+from nacre.results.verdict import Demand, Verdict, judged, number, reasons, with_error
 
 if TYPE_CHECKING:
     from nacre.indent._result import Fit
 
-FAIR = 0.20
-"""Largest standard error of fair estimates, as a share of them; chosen here."""
-MOST_DIGITS = 6
-"""Largest number of digits of an estimate."""
-NOISE = (
-    "Errors are those of noise alone: that of a radius of the tip, a thickness or a modulus that "
-    "is held fixed comes on top."
-)
+UNFIT = "the model does not fit the data"
+"""Reason why no parameter is identifiable where the residuals are no noise."""
+TOLD = 0.1
+"""Share of the whole error from which a source of it is named."""
+MOST_SOURCES = 4
+"""Most sources that are named, the largest first."""
+UNKNOWN_SLOPES = "what errors of the numbers that are held do is not known"
 WORDS = {"young": "modulus", "poisson": "Poisson's ratio"}
 """Words for parameters that paths name otherwise."""
 
 
-def fit_verdict(fit: Fit) -> Verdict:
+def fit_verdict(fit: Fit, tolerance: float | None = None) -> Verdict:
     """Return the verdict on a fit: the least certain parameter decides."""
-    shares = {name: _share(fit, name) for name in dict.fromkeys((*fit.free, *fit.reasons))}
-    if not shares:
-        return Verdict("unknown", "No parameter was fitted.")
-    worst, *better = sorted(shares, key=lambda name: -shares[name])
-    share, owners = shares[worst], dict(_owners(fit))
-    # Errors of what is held fixed are in none of the standard errors: no fit is good.
-    level: Level = "bad" if share > FAIR else "fair"
-    words, *lines = [_sentence(fit, name, owners) for name in (worst, *better)]
-    lines.append(NOISE)
-    uncertainty = share if math.isfinite(share) else None
-    return Verdict(level, words, tuple(lines), None, _words(worst, owners), uncertainty)
+    owners, sources = dict(_owners(fit)), fit.error_sources
+    totals = {name: math.hypot(*by_source.values()) for name, by_source in sources.items()}
+    demands = [
+        Demand(
+            *_words(name, owners),
+            *_share(fit, name, sources[name]["noise"], total),
+            limit=tolerance,
+            unit="",
+            sentence=_sentence(fit, name, sources[name], owners, tolerance),
+            leads=True,
+        )
+        for name, total in totals.items()
+    ]
+    demands.sort(key=lambda demand: -demand.value)
+    is_known = not any(map(math.isnan, totals.values()))
+    held = dict.fromkeys(path for by_source in sources.values() for path in by_source)
+    assumed = [path for path in held if path != "noise" and path not in fit.known]
+    has_exact_ratios = any(
+        path.endswith(".poisson") and path not in fit.known
+        for slopes in fit.sensitivity.values()
+        for path in slopes
+    )
+    return judged(
+        demands,
+        doubts=(*reasons(fit.warnings, "unknown"), *(() if is_known else (UNKNOWN_SLOPES,))),
+        cautions=reasons(fit.warnings, "fair"),
+        notes=[_assumption([" ".join(_words(path, owners)) for path in assumed], has_exact_ratios)],
+        unasked=UNASKED if tolerance is None else None,
+        question=None if tolerance is None else f"parameters{tolerated(tolerance)}",
+    )
 
 
-def _share(fit: Fit, name: str) -> float:
-    """Return the standard error as a share of the estimate, infinite where the data do not tell."""
-    estimate, error = fit.estimates[name], fit.standard_errors[name]
-    if name in fit.reasons or not estimate or not math.isfinite(error):
-        return math.inf
-    return error / abs(estimate)
+def _share(fit: Fit, name: str, noise: float, total: float) -> tuple[float, float | None]:
+    """Return the error of a parameter as a share of it, and the error of that.
+
+    It is infinite where the curves do not tell the parameter.
+    """
+    size = abs(fit.estimates[name])
+    if fit.reasons.get(name, UNFIT) != UNFIT or not size or total == math.inf:
+        return math.inf, 0.0
+    if math.isnan(total):
+        return noise / size, None
+    # A standard deviation of noise that is estimated is itself known to a part 1/√(2 dof).
+    scatter = 0.0 if fit.is_sigma_known or not total else noise**2 / total / math.sqrt(2 * fit.dof)
+    return total / size, scatter / size
 
 
-def _sentence(fit: Fit, name: str, owners: dict[str, str]) -> str:
-    """Return a parameter with its error, and whether it is identified."""
-    unit, estimate, words = unit_of(name), fit.estimates[name], _words(name, owners)
+def _sentence(
+    fit: Fit,
+    name: str,
+    by_source: dict[str, float],
+    owners: dict[str, str],
+    tolerance: float | None,
+) -> str:
+    """Return a parameter with its error and the sources of that, or why the curves do not tell."""
+    estimate, total = fit.estimates[name], math.hypot(*by_source.values())
+    words = " ".join(_words(name, owners)).rstrip()
+    start = f"{words[0].upper()}{words[1:]} {number(estimate, unit_of(name))}"
     if (reason := fit.reasons.get(name)) is not None:
-        return f"{words} {number(estimate, unit)}, not identified: {reason}."
-    return f"{words} {_with_error(estimate, fit.standard_errors[name], unit)}, identified."
+        for path in fit.free:
+            reason = reason.replace(path, f"the {' '.join(_words(path, owners))}")
+        return f"{start}, not identified: {reason}."
+    ranked = sorted(by_source, key=lambda path: -by_source[path])
+    largest = [path for path in ranked[:MOST_SOURCES] if by_source[path] >= TOLD * total]
+    texts = []
+    for path in dict.fromkeys(("noise", *largest)):
+        of = " ".join(_words(path, owners))
+        what = path if path == "noise" else f"{of} ± {fit._held_share(path)}:"
+        texts.append(f"{what} {display.share(by_source[path], estimate) or '0 %'}")
+    error = with_error(estimate, total) if total < math.inf else ""
+    return f"{start}{error} ({', '.join(texts)}){tolerated(tolerance)}."
 
 
-def _with_error(value: float, error: float, unit: str) -> str:
-    """Return a number of three digits or more, as many as its error tells."""
-    scale = display.scale_of(value, unit)
-    value, error = scale.factor * value, scale.factor * error
-    first = math.floor(math.log10(abs(value))) if 0 < abs(value) < math.inf else 0
-    decimals = DIGITS - 1 - first
-    if math.isfinite(error) and error > 0:
-        decimals = max(decimals, -math.floor(math.log10(error)))
-    decimals = max(min(decimals, MOST_DIGITS - 1 - first), 0)
-    errors = f" ± {error:.{decimals}f}" if round(error, decimals) else ""
-    return f"{value:.{decimals}f}{errors} {scale.unit}".rstrip()
+def _assumption(assumed: list[str], has_exact_ratios: bool) -> str:
+    """Return the sentence on what is assumed of numbers that are held."""
+    ratios = ", such as Poisson's ratios," if has_exact_ratios else ""
+    exact = f"hat else is held{ratios} counts as exact."
+    if not assumed:
+        return f"W{exact}"
+    *some, last = (f"the {words}" for words in assumed)
+    names = f"{', '.join(some)} and {last}" if some else last
+    if len(assumed) > MOST_SOURCES:
+        names = "each modulus, thickness and number of the tip that is held"
+    return f"Errors of 1 % are assumed of {names}: give the known ones. W{exact}"
 
 
-def _words(name: str, owners: dict[str, str]) -> str:
-    """Return a parameter in words; those of curves have the names that they are given by."""
+def _words(name: str, owners: dict[str, str]) -> tuple[str, str]:
+    """Return a parameter in words, and of what it is; those of curves have their own names."""
     place, _, last = name.replace(".material", "").rpartition(".")
     if place not in owners:
-        return name
-    return f"{WORDS.get(last, last.replace('_', ' '))} of {owners[place]}"
+        return name, ""
+    return WORDS.get(last, last.replace("_", " ")), f"of {owners[place]}"
 
 
 def _owners(fit: Fit) -> Iterator[tuple[str, str]]:
@@ -86,5 +130,6 @@ def _owners(fit: Fit) -> Iterator[tuple[str, str]]:
         layers = body.layers if isinstance(body, core.HalfSpace) else ()
         yield f"{place}.substrate", f"the substrate{further}"
         for k, layer in enumerate(layers):
-            only = "the film" if len(layers) == 1 else f"layers[{k}]"
-            yield f"{place}.layers[{k}]", (f"the {layer.name}" if layer.name else only) + further
+            film = "the film" if len(layers) == 1 and layer.name is None else None
+            words = film or display.layer_in_words(k, layer.name, len(layers))
+            yield f"{place}.layers[{k}]", words + further

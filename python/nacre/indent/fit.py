@@ -18,7 +18,8 @@ from nacre.indent._addressed import System
 from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimate_at, interval, minimum, reasons, shifted_starts
 from nacre.indent._residuals import Examination, examine, likeliest_noise
-from nacre.indent._result import UNFIT, Fit
+from nacre.indent._result import Fit
+from nacre.indent._verdict import UNFIT
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
 
@@ -43,6 +44,7 @@ def fit(
     noise: Literal["auto", "relative", "absolute"] = "auto",
     sigma: float | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
+    known: Mapping[str, tuple[float, float]] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     starts: Sequence[Mapping[str, float]] | None = None,
     profile: bool = True,
@@ -83,6 +85,11 @@ def fit(
         intervals are then Student's.
     prior : mapping, optional
         What is known otherwise of free parameters: value and standard deviation by name.
+    known : mapping, optional
+        What is known of parameters that are held: value, which takes the place of that of `body`
+        and `tip`, and standard error by name, such as ``{"tip.radius": (5e-6, 5e-8)}``. Of all
+        other moduli, thicknesses and numbers of the tip but an exponent 1 % is assumed; what else
+        is held counts as exact.
     bounds : mapping, optional
         Least and largest value by name.
     starts : sequence of mapping, optional
@@ -126,6 +133,15 @@ def fit(
     factor of 1.5, and if no other start leads to a minimum outside of it with a χ² that is less
     than 3.84 above the least. These criteria were chosen here.
 
+    Standard errors and intervals are those of the noise. `Fit.uncertainty` adds what the errors σ_q
+    of each number q that is held do to the estimates x, by the implicit function theorem::
+
+        dx/dq = −(JᵀJ)⁻¹ Jᵀ ∂r/∂q        u² = s² + Σ (dx/dq σ_q)²
+
+    with the residuals r and their Jacobian J. As in Gauss and Newton's method products of residuals
+    with their second derivatives are left out, and x is taken to be linear in q up to its error;
+    errors of different numbers are taken to be independent.
+
     Moduli, thicknesses, radii and the work of adhesion are fitted by their logarithms.
 
     Examples
@@ -146,6 +162,8 @@ def fit(
     curves = _curves(data)
     _check_arguments(noise, sigma, nuisance)
     system = System.of(body, tip, counterbody, adhesion)
+    known = _checked_known(known or {}, system, free)
+    system = system.with_values({name: value for name, (value, _) in known.items()})
     doubts = _doubts(curves, system)
     for text in doubts:
         warnings.warn(text, core.NacreWarning, stacklevel=2)
@@ -171,7 +189,7 @@ def fit(
         )
     with lasting("fit", progress) as tell:
         best = _model_fit(new_model, model, noise, starts, profile, tell or (lambda text: None))
-    return replace(best, warnings=(*doubts, *best.warnings))
+    return replace(best, warnings=(*doubts, *best.warnings), known=known)
 
 
 def _model_fit(
@@ -239,6 +257,29 @@ def _check_arguments(noise: str, sigma: float | None, nuisance: Sequence[str]) -
         )
     if isinstance(nuisance, str):
         raise TypeError(f"nuisance must be a sequence of names, got {nuisance!r}")
+
+
+def _checked_known(
+    known: Mapping[str, tuple[float, float]], system: System, free: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """Return what is known of parameters that are held, as numbers."""
+    held = system.held(free)
+    for name in known:
+        if name not in held:
+            raise ValueError(
+                f"known must name parameters that are held, {list(held)}, got {name!r}"
+            )
+    try:
+        numbers = {name: (float(value), float(error)) for name, (value, error) in known.items()}
+    except (TypeError, ValueError):
+        raise TypeError(f"known must hold pairs of value and error, got {known!r}") from None
+    for name, (value, error) in numbers.items():
+        if not (0 <= error < math.inf and (name != "tip.area" or value == 1)):
+            raise ValueError(
+                f"known must hold a value and its standard error, not below 0, and 1 for an area "
+                f"of the tip, got {name} = {(value, error)}"
+            )
+    return numbers
 
 
 def _doubts(curves: Sequence[Curve], system: System) -> list[str]:

@@ -19,7 +19,7 @@ from nacre._tools.groups import with_units
 from nacre._tools.progress import check_progress
 from nacre._tools.typing import Field, Layers, Matrix, Vector, among
 from nacre._tools.units import written
-from nacre.indent._reading import apparent_modulus, substrate_verdict
+from nacre.indent._reading import apparent_modulus, checked_tolerance, substrate_verdict
 from nacre.results import display
 from nacre.results.base import Fields, Result, Warned
 from nacre.results.charts import Axis, Chart, Curve
@@ -28,7 +28,7 @@ from nacre.results.report import Rows, Table, input_rows, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing
-from nacre.results.verdict import Verdict
+from nacre.results.verdict import Verdict, asked, judged
 
 if TYPE_CHECKING:
     import xarray
@@ -140,7 +140,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     """
 
     _TITLE = "indentation of a coated body"
-    _LATER = ("warnings",)
+    _LATER = ("warnings", "tolerance")
 
     body: core.HalfSpace
     """Body that is indented."""
@@ -175,6 +175,8 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     Each was also issued as a `nacre.NacreWarning`.
     """
+    tolerance: float | None = None
+    """Largest error of the modulus of the film that is tolerated, as a part of it, if given."""
 
     @classmethod
     def _of(
@@ -185,6 +187,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         branch: Branch,
         control: Control,
         stacklevel: int = 4,
+        tolerance: float | None = None,
     ) -> Self:
         """Return contacts of the compiled module, and issue their warnings."""
         messages = states.warnings()
@@ -204,6 +207,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
             stiffness=states.number("stiffness"),
             outer_radius=states.number("outer_radius"),
             warnings=tuple(messages),
+            tolerance=tolerance,
             indentation=test,
             _states=states,
         )
@@ -335,13 +339,15 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"]
+        names = ("given", "branch", "control", *NUMBERS, "pull_off", "warnings", "tolerance")
+        return [*ARGUMENTS, *names]
 
     def _state(self) -> dict[str, object]:
         state = {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
-        return state | {"pull_off": self._pulled, "warnings": list(self.warnings)}
+        state |= {"pull_off": self._pulled, "warnings": list(self.warnings)}
+        return state | {"tolerance": self.tolerance}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
@@ -352,6 +358,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
                 values = np.array(state[name], dtype=np.float64)
                 state[name] = values if values.ndim else float(values)
             state["warnings"] = tuple(state["warnings"] or ())
+            state["tolerance"] = checked_tolerance(state["tolerance"])
             pulled, central = state.pop("pull_off"), state.pop("central_pressure")
             solution = cls(**state)
             solution.__dict__["central_pressure"] = central
@@ -384,6 +391,7 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
     def _inputs(self) -> Rows:
         inputs = {name: getattr(self, name) for name in ARGUMENTS}
         inputs |= {name: getattr(self, name) for name in ("given", "branch", "control")}
+        inputs |= {} if self.tolerance is None else {"tolerance": self.tolerance}
         return input_rows(inputs | {"counterbody": self.counterbody or "rigid"})
 
     def _report_rows(self) -> Rows:
@@ -403,22 +411,25 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         caption = "Pressure over the distance from the axis."
         return [Chart(caption, [Curve(x, np.ravel(self.pressure(x)))], axes)]
 
+    @asked
     def verdict(self, tolerance: float | None = None) -> Verdict:
         """Return the verdict: whether the largest depth tells the modulus of the outermost layer.
 
         It compares with a bare half-space of the layer that bears the same load at the same depth,
-        without adhesion. Its `factor` is the modulus that is read so over the layer's.
+        without adhesion.
 
         Parameters
         ----------
         tolerance : float, optional
             Largest error of the modulus, as a part of it, such as 0.1: beyond it the verdict is
-            bad, and good up to two thirds of it. Without, the verdict is unknown.
+            bad, and good up to two thirds of it. Without, it is that of `solve`; without that, the
+            verdict is unknown.
 
         Returns
         -------
         Verdict
-            Verdict; unknown of a body without layers.
+            Verdict, whose `factor` is the tolerance over the error; unknown of a body without
+            layers.
 
         Raises
         ------
@@ -431,12 +442,18 @@ class IndentSolution(Shown, Warned, Result, Generic[Value]):
         >>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
         >>> tip = nacre.indent.Tip.sphere(5e-6)
         >>> verdict = nacre.indent.solve(body, tip, load=1e-3).verdict(tolerance=0.1)
-        >>> verdict.level, round(verdict.factor, 1), verdict.lines[0]
-        ('bad', 2.4, 'The error is below 10 % only up to 1.91 nm of depth.')
+        >>> verdict.level, verdict.lines[0]
+        ('bad', 'The error is below 10 % only up to 1.91 nm of depth.')
         """
-        if tolerance is not None and not 0 < core.real("tolerance", tolerance) < np.inf:
-            raise ValueError(f"tolerance must be above 0 and finite, got {tolerance:g}")
-        return substrate_verdict(apparent_modulus(self), tolerance)
+        tolerance = checked_tolerance(tolerance)
+        try:
+            reading = apparent_modulus(self)
+        except ValueError as error:  # as of a ring, or a tip that ends, where adhesion has none
+            return judged([], doubts=[f"without adhesion {error}"])
+        return substrate_verdict(reading, tolerance)
+
+    def _sentences(self) -> tuple[str, ...]:
+        return super()._sentences() if self.body.layers else ()
 
     def _notebook_picture(self) -> bytes | None:
         return display.drawn(self.plot)
@@ -677,13 +694,14 @@ class Indentation:
         branch: Branch,
         control: Control,
         progress: PointProgress | None = None,
+        tolerance: float | None = None,
     ) -> IndentSolution:
         check_progress(progress)
         values: dict[str, Any] = {str(name): one for name, one in numbers.items()}
         states = self._planned.at(branch, **values, progress=progress)
         # What was given is the value that is not None.
         name = next(name for name, value in numbers.items() if value is not None)
-        return IndentSolution._of(self, states, name, branch, control)
+        return IndentSolution._of(self, states, name, branch, control, tolerance=tolerance)
 
     def curve(self, *, approach: Vector, wrt: Sequence[str] = ()) -> IndentCurve:
         """Compute loads at approaches with their derivatives, by interpolation in the radius.
@@ -790,6 +808,7 @@ def solve(
     radius: npt.ArrayLike | None = None,
     branch: Branch = "stable",
     control: Control = "load",
+    tolerance: float | None = None,
     progress: PointProgress | None = None,
 ) -> IndentSolution:
     """Solve an indentation to a result that can be saved, and that studies take outputs from.
@@ -810,6 +829,8 @@ def solve(
         Branch of the curve where adhesion gives two contacts the same load or approach.
     control : {"load", "approach"}
         What is held while the tip is pulled off.
+    tolerance : float, optional
+        Largest error of the modulus of the film, as a part of it, by which its verdict judges.
     progress : callable, optional
         Function that is called with the number of finished contacts and of all contacts. Its result
         is ignored.
@@ -843,5 +864,9 @@ def solve(
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = Indentation(body, tip, counterbody, adhesion=adhesion)
     return test._at(
-        {"load": load, "approach": approach, "radius": radius}, branch, control, progress
+        {"load": load, "approach": approach, "radius": radius},
+        branch,
+        control,
+        progress,
+        checked_tolerance(tolerance),
     )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import functools
 import math
+import tomllib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from importlib import resources
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from nacre._tools.units import plain, printable
@@ -30,92 +32,28 @@ MILLION = 1e6
 """Hours from which lives are not told apart."""
 SINGULAR = {"grid edge", "sharp end", "free end", "sharp edge", "map rim"}
 """Warnings of contacts whose pressure has no limit on ever finer cells."""
-NO_LIMIT = "the pressure at an edge has no limit, and grows as the cells shrink"
 UNCONVERGED = "the solution has not converged"
-COARSE = "the cells do not resolve the contact"
 UNKNOWN_ERROR = "the error of the value that decides is not known"
 
 
 class Doubt(NamedTuple):
     """What a warning means for a verdict."""
 
-    level: Level | None
-    """Level that it leaves at most; None leaves any."""
+    level: Literal[Level, "any"]
+    """Level that it leaves at most."""
     reason: str
     leaves_model: bool = False
     """Whether the result is outside the model."""
 
 
-KINDS: dict[str, Doubt] = {
-    **dict.fromkeys(sorted(SINGULAR), Doubt("unknown", NO_LIMIT, leaves_model=True)),
-    "coarse": Doubt("unknown", COARSE),
-    "coarse spots": Doubt("unknown", COARSE),
-    "outside grid": Doubt("unknown", "the largest stresses may lie beyond the grid"),
-    "unknown stations": Doubt(
-        "unknown", "the errors of the sections along the roller are not known"
-    ),
-    "coated end": Doubt("fair", "the ends of the layers are left out", leaves_model=True),
-    "endless crown": Doubt("fair", "a crown reaches beyond the body", leaves_model=True),
-    "large contact": Doubt("fair", "the contact is large for flat bodies", leaves_model=True),
-    "very large contact": Doubt(
-        "unknown", "the contact is too large for flat bodies", leaves_model=True
-    ),
-    "large motion": Doubt(
-        "fair", "the motion is large for cells that stay where they are", leaves_model=True
-    ),
-    "no estimate": Doubt(None, "a missing error counts where it decides"),
-    "peak error": Doubt("fair", "the cells leave a large error of the peak pressure"),
-    "stations": Doubt("fair", "the sections along the roller leave a large error"),
-}
-"""What warnings of contacts mean for verdicts, by their kind."""
-TEXTS: dict[str, Doubt] = {
-    "they are cut off": Doubt("unknown", "the pressure and the life are wrong", leaves_model=True),
-    "moduli are not counted": Doubt("unknown", "the loads are those of steel", leaves_model=True),
-    "contacts are neither elastic nor small": Doubt(
-        "unknown", "the pressure is too high for elastic bodies", leaves_model=True
-    ),
-    "layers are not counted": Doubt(
-        "fair", "layers are not counted in the life, which is that of bare rings", leaves_model=True
-    ),
-    "rings are not of steel": Doubt(
-        "unknown",
-        "lives and limits of ISO are those of bearing steel, and these bodies are not",
-        leaves_model=True,
-    ),
-    "above half of the rating": Doubt(
-        "fair",
-        "the equivalent load is above half of the rating, where ISO 281 errs",
-        leaves_model=True,
-    ),
-    "tilt of balls": Doubt("fair", "the tilt is above the 16' that many makers allow"),
-    "tilt of rollers": Doubt("fair", "the tilt is above the 4' that many makers allow"),
-    "far above those of bearings": Doubt("fair", "no bearing tilts as far", leaves_model=True),
-    "of the catalogue, ": Doubt("fair", "a rating differs from that of the catalogue"),
-    "are estimates from the ratings": Doubt("fair", "the elements are estimates from the ratings"),
-    "the fatigue load limit is C_0/8.2": Doubt(None, "the simple limit of ISO 281 is taken"),
-    "is above the fatigue limit": Doubt(None, "the ratio of lives is 0 or infinite"),
-    "the formula is for the piezoviscous-elastic one": Doubt(
-        "fair", "the film's formula is for another regime", leaves_model=True
-    ),
-    "fit is extrapolated": Doubt("fair", "the film's formula is extrapolated", leaves_model=True),
-    "asperities touch through the film": Doubt(None, "λ is said where it is below 1"),
-    "how they move the film is not known": Doubt(
-        "fair", "how thick layers move the film is not known", leaves_model=True
-    ),
-    "by the length of the steps": Doubt("fair", "the steps leave a large error"),
-    "counts as thick as before": Doubt(None, "the error of the distance has that of the pressure"),
-    "nothing presses any more": Doubt("unknown", "nothing presses any more at this approach"),
-    "did not settle": Doubt("fair", "the distance of a layer that is through did not settle"),
-    "wear of a surface does not do": Doubt(
-        "unknown", "more is worn off than the contact is wide", leaves_model=True
-    ),
-    "what follows errs by": Doubt(None, "what follows the first layer that is through"),
-    "thinner layers count to first order": Doubt("fair", "layers are thinner to first order"),
-    "nothing is worn": Doubt("unknown", "the cycles wear nothing"),
-    "uncertain": Doubt(None, "the error of the value says so"),
-    "plane: the choice may jump": Doubt(None, "the value is right on either side of the jump"),
-}
-"""What other warnings mean for verdicts, by words that their text has."""
+def _doubts(table: str) -> dict[str, Doubt]:
+    """Return a table of ``warnings.toml``."""
+    rows = tomllib.loads(resources.files(__package__).joinpath("warnings.toml").read_text("utf-8"))
+    return {key: Doubt(**row) for key, row in rows[table].items()}
+
+
+KINDS, TEXTS = _doubts("kinds"), _doubts("texts")
+"""What warnings mean for verdicts: of contacts by their kind, of others by words of their text."""
 OUTSIDE = {doubt.reason for doubt in (*KINDS.values(), *TEXTS.values()) if doubt.leaves_model}
 """Reasons that lie outside the model."""
 

@@ -19,8 +19,9 @@ def test_the_example_is_printed_and_written(tmp_path: Path, capsys: Capture) -> 
     rows = tmp_path / "a.csv"
     assert command("indent", EXAMPLE, "--save", rows) == 0
     assert "pull-off" in capsys.readouterr().out
-    version, head, *lines = rows.read_text().splitlines()
+    version, verdict, head, *lines = rows.read_text().splitlines()
     assert version == f"# source: nacre {nacre.__version__}"
+    assert verdict.startswith("# verdict: The substrate shows")
     assert head.startswith("load [N],approach [m]")
     assert command("indent", EXAMPLE, "--json") == 0
     found = json.loads(capsys.readouterr().out)

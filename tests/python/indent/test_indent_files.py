@@ -96,7 +96,7 @@ def test_the_files_of_a_fit_say_what_its_numbers_are(tmp_path: Path) -> None:
     assert head[:3] == ["parameter", "unit", "estimate"]
     assert [float(row[2]) for row in rows] == list(found.estimates.values())
     assert rows[0][1] == "Pa"
-    assert "95 % interval" in found._repr_html_()
+    assert "95 % of noise" in found._repr_html_()
 
 
 def test_fits_are_equal_where_all_is(tmp_path: Path) -> None:
