@@ -232,6 +232,11 @@ def _verdicts(results: Mapping[str, object]) -> dict[str, object]:
     return {"verdict": verdicts} if verdicts else {}
 
 
+def _is_open(result: object) -> bool:
+    """Return whether a result has no verdict."""
+    return verdict_on(result) is None
+
+
 def _solve(
     case: Path, case_file: Case, arguments: dict[str, object], save: list[Path], as_json: bool
 ) -> None:
@@ -251,7 +256,8 @@ def _solve(
     else:
         if steps:
             print(f"{steps}\n\nlast step")
-        print(solution, *summaries.values(), sep="\n\n")
+        # A verdict answers what was asked, and comes first.
+        print(*sorted([solution, *summaries.values()], key=_is_open), sep="\n\n")
     for path in save:
         if path.suffix.lower() == ".html":
             _save_report(path, results, case, case_file)

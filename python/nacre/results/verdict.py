@@ -325,7 +325,7 @@ def _sentence(demand: Demand, is_open: bool) -> str:
     return (
         f"{start} factor {factor}{outcomes[demand.outcome]}: {demand.name}, "
         f"{number(value, demand.unit)}{_place(demand)}, "
-        f"limit {beside(value, limit, demand.unit)} ({demand.origin})."
+        f"limit {beside(value, limit, demand.unit, DIGITS + 1)} ({demand.origin})."
     )
 
 
@@ -365,10 +365,10 @@ def number(value: float, unit: str) -> str:
     return beside(value, value, unit)
 
 
-def beside(value: float, limit: float, unit: str = "Pa") -> str:
+def beside(value: float, limit: float, unit: str = "Pa", digits: int = DIGITS) -> str:
     """Return a limit in the unit in which a value is printed."""
     scale = display.scale_of(value, unit)
-    return f"{plain(scale.factor * limit, DIGITS)} {scale.unit}".rstrip()
+    return f"{plain(scale.factor * limit, digits)} {scale.unit}".rstrip()
 
 
 def measured(value: float, error: float | None, unit: str = "Pa") -> str:
