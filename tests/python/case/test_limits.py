@@ -53,7 +53,7 @@ def verdict(data: dict[str, Any], name: str) -> nacre.types.Verdict:
 def test_a_limit_says_where_it_is_from(steel: Any, origin: str) -> None:
     judged = verdict(contact(steel), "stress")
     assert judged.factor is not None
-    assert f"limit 1900 MPa ({origin})." in judged.words
+    assert f"limit 1896 MPa ({origin})." in judged.words
 
 
 def test_a_limit_of_a_card_is_in_the_units_of_the_case() -> None:
