@@ -106,7 +106,7 @@ class Card:
         values = vars(self) | {"numbers": dict(self.numbers)}
         return Card, tuple(values.values())
 
-    def scaled(self, size: float) -> Card:
+    def _scaled(self, size: float) -> Card:
         """Return the card with its stresses in a unit of a size [Pa]."""
         numbers = {
             name: replace(number, value=number.value / size) if number.unit == "Pa" else number

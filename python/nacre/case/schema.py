@@ -82,7 +82,7 @@ def material_of(name: str, units: str) -> Material:
     if card.kind == "coating":
         young = card.numbers["young"]
         warnings.warn(f"{name} has Young's modulus {young}", nacre.NacreWarning, stacklevel=2)
-    numbers = card.scaled(System(units).unit("Pa")[0]).numbers
+    numbers = card._scaled(System(units).unit("Pa")[0]).numbers
     return Material(**{k: n.value for k, n in numbers.items() if k in Material.model_fields})
 
 
@@ -494,7 +494,7 @@ class CaseTable(Bodies):
         """Return a limit of a material; for a yield stress its card, in the units of the case."""
         named = self.materials.get(material, material) if isinstance(material, str) else material
         if isinstance(named, str) and name == "yield_stress" and named in nacre.materials:
-            return nacre.materials[named].scaled(System(self.units).unit("Pa")[0])
+            return nacre.materials[named]._scaled(System(self.units).unit("Pa")[0])
         limit: float | None = getattr(self._material_table(material), name)
         return limit
 

@@ -1284,8 +1284,9 @@ def _shear_and_tension(strength: object) -> Bond:
 def _gaps(summary: StressSummary) -> Iterator[str]:
     """Yield sentences on cards that have no yield stress of a layer without a limit."""
     for layer, name in zip(summary.layers, summary.origins or (), strict=False):
-        if name is not None and layer.yield_safety_factor is None:
-            yield from (f"{gap}." for gap in materials[name].gaps)
+        card = materials.get(name) if name is not None else None
+        if card is not None and layer.yield_safety_factor is None:
+            yield from (f"{gap}." for gap in card.gaps)
 
 
 def _demands(summary: StressSummary) -> Iterator[Demand]:

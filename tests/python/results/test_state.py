@@ -40,7 +40,7 @@ every_result = pytest.mark.parametrize("kind", RESULTS)
 LATER = {"rolling_direction", "uncertainty", "doubt"}
 """Keys that states of format 1 did not have at first: without them they are None."""
 LATER_OF = {
-    "StressSummary": {"friction", "caution", "bond_strength"},
+    "StressSummary": {"friction", "caution", "bond_strength", "origins"},
     "fatigue": {"caution"},
     "FrictionReport": {"coupling_energy", "warnings"},
     "shakedown map": {"warnings"},
