@@ -71,7 +71,11 @@ def _share(fit: Fit, name: str, noise: float, total: float) -> tuple[float, floa
     if math.isnan(total):
         return noise / size, None
     # A standard deviation of noise that is estimated is itself known to a part 1/√(2 dof).
-    scatter = 0.0 if fit.is_sigma_known or not total else noise**2 / total / math.sqrt(2 * fit.dof)
+    scatter = (
+        0.0
+        if fit.is_sigma_known or not total
+        else noise**2 / total / math.sqrt(2 * max(fit.dof, 1))
+    )
     return total / size, scatter / size
 
 

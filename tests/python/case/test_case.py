@@ -186,7 +186,7 @@ def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
     )
     path = written(tmp_path, STRESSED)
     assert command("solve", path) == 0
-    assert capsys.readouterr().out == f"{solution}\n\n{summary}\n"
+    assert capsys.readouterr().out == f"{summary}\n\n{solution}\n"
     assert command("solve", path, "--json") == 0
     found = json.loads(capsys.readouterr().out)["stress"]
     coating, substrate = found["layers"]
