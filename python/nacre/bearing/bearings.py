@@ -5,12 +5,7 @@ from __future__ import annotations
 from typing import Unpack
 
 from nacre._tools.groups import grouped
-from nacre.bearing.arguments import (
-    BearingKeywords,
-    BearingOptions,
-    Operation,
-    RingConditions,
-)
+from nacre.bearing.arguments import BearingKeywords, BearingOptions, Operation, RingConditions
 from nacre.bearing.geometry import Bearing
 from nacre.bearing.iso import rating
 from nacre.bearing.solution import BearingSolution

@@ -20,12 +20,7 @@ from nacre._tools.arguments import read_fields
 from nacre._tools.groups import grouped, in_unit, keyword_units
 from nacre._tools.typing import among
 from nacre._tools.units import rounded
-from nacre.bearing.arguments import (
-    BearingKeywords,
-    BearingOptions,
-    Operation,
-    RingConditions,
-)
+from nacre.bearing.arguments import BearingKeywords, BearingOptions, Operation, RingConditions
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
 from nacre.bearing.contact_laws import Law, Reaction, Several

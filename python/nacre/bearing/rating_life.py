@@ -14,13 +14,7 @@ from nacre._tools.typing import among
 from nacre._tools.units import rounded
 from nacre.bearing.contact_laws import LAMINAE
 from nacre.bearing.geometry import RINGS, Bearing, Ring, above
-from nacre.bearing.iso import (
-    Edge,
-    ReferenceLife,
-    edge_factors,
-    equivalent_load,
-    reference_life,
-)
+from nacre.bearing.iso import Edge, ReferenceLife, edge_factors, equivalent_load, reference_life
 from nacre.bearing.kinds import CurvedRaceways
 from nacre.bearing.modified import (
     Lubrication,

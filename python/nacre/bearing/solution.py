@@ -30,13 +30,7 @@ from nacre.results import display, files
 from nacre.results.base import Result
 from nacre.results.charts import Axis, Bars, Chart, Curve, Look, Picture, contact_charts
 from nacre.results.quantities import AXIS, Quantity, derived, frozen, quantity
-from nacre.results.report import (
-    Rows,
-    Table,
-    input_rows,
-    notebook_picture,
-    table,
-)
+from nacre.results.report import Rows, Table, input_rows, notebook_picture, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 from nacre.results.values import decode, encode, refusing

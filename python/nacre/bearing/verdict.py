@@ -57,9 +57,7 @@ def life_verdict(life: BearingLife | PairLife) -> Verdict:
 
 @display.in_si
 def bearing_verdict(
-    parts: Mapping[str, BearingSolution],
-    life: BearingLife | PairLife,
-    static_safety: float | None,
+    parts: Mapping[str, BearingSolution], life: BearingLife | PairLife, static_safety: float | None
 ) -> Verdict:
     """Return the verdict on a bearing or on both of a pair, by words for parts."""
     doubts, cautions = _doubts(life), split(life.caution)

@@ -8,14 +8,7 @@ from pydantic import Field
 
 import nacre
 from nacre._tools.arguments import keywords_of
-from nacre.case.tables import (
-    Directions,
-    Number,
-    Pair,
-    Table,
-    from_signature,
-    with_words,
-)
+from nacre.case.tables import Directions, Number, Pair, Table, from_signature, with_words
 
 SHARED = keywords_of(nacre.solve)
 """Keywords that stand in `[solve]`."""

@@ -108,8 +108,7 @@ class Indent(Table):
     approach: Values | None = Field(None, description="Approaches [m].")
     radius: Values | None = Field(None, description="Contact radii [m].")
     branch: Literal["stable", "unstable"] = Field(
-        "stable",
-        description="Branch where adhesion gives two contacts the same load or approach.",
+        "stable", description="Branch where adhesion gives two contacts the same load or approach."
     )
     control: Literal["load", "approach"] = Field(
         "load", description="What is held while the tip is pulled off."

@@ -49,10 +49,7 @@ class Profile(Table):
 
 PROFILE_TABLES = {
     kind: table_of(
-        kind,
-        maker,
-        Profile,
-        {"x": Numbers, "drop": Numbers, "smooth": bool, "corners": Numbers},
+        kind, maker, Profile, {"x": Numbers, "drop": Numbers, "smooth": bool, "corners": Numbers}
     )
     for kind, maker in PROFILES.items()
 }

@@ -200,9 +200,7 @@ def parameter_texts(thing: object) -> dict[str, str]:
         return defaultdict(str)
     descriptions: dict[str, str] = {}
     for names, lines in re.findall(
-        r"^(\w+(?:, \w+)*) : .*\n((?:[ \t]+.*(?:\n|\Z)|\n)+)",
-        section[1],
-        re.MULTILINE,
+        r"^(\w+(?:, \w+)*) : .*\n((?:[ \t]+.*(?:\n|\Z)|\n)+)", section[1], re.MULTILINE
     ):
         descriptions |= dict.fromkeys(names.split(", "), " ".join(lines.split()))
     return descriptions

@@ -308,10 +308,7 @@ def roll(
 
 @grouped(Setup, Motion, Rolling, FrictionOptions)
 def roll(
-    shape: core.Shape,
-    body: Layers,
-    counterbody: Layers | None = None,
-    **keywords: Any,
+    shape: core.Shape, body: Layers, counterbody: Layers | None = None, **keywords: Any
 ) -> FrictionSolution | History:
     """Press a shape into a body, which rolls, in one call.
 

@@ -31,14 +31,7 @@ from nacre.results.quantities import (
     quantities_of,
     quantity,
 )
-from nacre.results.report import (
-    Rows,
-    Table,
-    input_rows,
-    notebook_picture,
-    other_numbers,
-    table,
-)
+from nacre.results.report import Rows, Table, input_rows, notebook_picture, other_numbers, table
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Printed, Shown
 

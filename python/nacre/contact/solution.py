@@ -32,13 +32,7 @@ from nacre.results import display, files, tables, values, vtk
 from nacre.results.base import Result, as_text
 from nacre.results.charts import Picture, contact_charts
 from nacre.results.quantities import CELLS, Quantity, derived
-from nacre.results.report import (
-    Rows,
-    input_rows,
-    notebook_picture,
-    other_numbers,
-    writer,
-)
+from nacre.results.report import Rows, input_rows, notebook_picture, other_numbers, writer
 from nacre.results.rows import Row, remark
 from nacre.results.shown import Shown
 

@@ -17,9 +17,7 @@ import nacre._core as core
 from nacre._tools.groups import Group, keyword, keyword_units
 from nacre._tools.typing import Field
 from nacre._tools.units import Scale, rounded, symbol, travelled, written
-from nacre.contact.arguments import (
-    Motion,
-)
+from nacre.contact.arguments import Motion
 from nacre.contact.solution import Solution
 from nacre.results import display, files, values
 from nacre.results.base import Result, same

@@ -103,10 +103,7 @@ def coating_chart(
     parameters = {"thickness": thickness, "young": young}
     dataset = sweep(case, parameters, outputs=outputs, stress=stress, **study)
     dataset["thickness"].attrs["units"] = symbol("m")
-    dataset["young"].attrs = {
-        "units": symbol("Pa"),
-        "long_name": "Young's modulus of the coating",
-    }
+    dataset["young"].attrs = {"units": symbol("Pa"), "long_name": "Young's modulus of the coating"}
     return dataset
 
 

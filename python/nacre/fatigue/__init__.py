@@ -17,14 +17,7 @@ Examples
 """
 
 from nacre.fatigue.criteria import CRITERIA as CRITERIA
-from nacre.fatigue.criteria import (
-    Crossland,
-    DangVan,
-    Findley,
-    Matake,
-    Shakedown,
-    shakedown,
-)
+from nacre.fatigue.criteria import Crossland, DangVan, Findley, Matake, Shakedown, shakedown
 from nacre.fatigue.map import ShakedownMap, shakedown_map
 from nacre.fatigue.summary import FatigueSummary, InterfaceFatigue, LayerFatigue, assess
 

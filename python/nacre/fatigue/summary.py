@@ -619,12 +619,7 @@ class Assessment:
         return rows
 
     def _rows_of(
-        self,
-        region: Region,
-        depths: list[float],
-        history: States,
-        errors: Array,
-        friction: float,
+        self, region: Region, depths: list[float], history: States, errors: Array, friction: float
     ) -> list[Row]:
         states = history.at(friction).copy()
         states[..., :2] += self.residual[region.layer]

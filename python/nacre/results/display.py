@@ -18,15 +18,7 @@ import numpy.typing as npt
 
 from nacre._core import Elastic, Free, HalfSpace, Response, Rigid, Spring
 from nacre._tools.typing import Planned
-from nacre._tools.units import (
-    SI,
-    Scale,
-    Within,
-    display_units,
-    printable,
-    rounded,
-    written,
-)
+from nacre._tools.units import SI, Scale, Within, display_units, printable, rounded, written
 from nacre.results.quantities import Quantity
 from nacre.results.rows import Row, remark
 

@@ -676,9 +676,7 @@ def _bare_unit(text: str) -> str | None:
     return bare if unit_of(bare) else None
 
 
-def _content(
-    path: Path,
-) -> tuple[dict[str, str], list[tuple[int, str]], list[tuple[int, str]]]:
+def _content(path: Path) -> tuple[dict[str, str], list[tuple[int, str]], list[tuple[int, str]]]:
     """Return comments ``# name: value`` by name and as numbered lines, and the other lines.
 
     A comment that names another channel is a line: it stands between tables.

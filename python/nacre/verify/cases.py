@@ -175,10 +175,7 @@ def _ellea1() -> Numbers:
 @_case
 def _amadeus() -> Numbers:
     upper, lower, base = (5000.0, 0.35), (200.0, 0.4), (50.0, 0.45)
-    layers = [
-        nacre.Layer(nacre.Elastic(*upper), 260.0),
-        nacre.Layer(nacre.Elastic(*lower), 500.0),
-    ]
+    layers = [nacre.Layer(nacre.Elastic(*upper), 260.0), nacre.Layer(nacre.Elastic(*lower), 500.0)]
     body, numbers = nacre.HalfSpace(nacre.Elastic(*base), layers), Numbers()
     grid, pressure = _disc(150.8, 0.7, 123)
     sides: tuple[tuple[str, float, Side, tuple[float, float]], ...] = (
