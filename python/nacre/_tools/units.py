@@ -380,6 +380,8 @@ def plain(value: float, digits: int) -> str:
     >>> plain(14203.0, 3), plain(1.2345e-5, 3), plain(1739.0, 3)
     ('14 200', '0.0000123', '1740')
     """
+    if not math.isfinite(value):
+        return str(value)
     number = Decimal(f"{value:.{digits}g}").normalize()
     return f"{number:,f}".replace(",", " ") if abs(number) >= 1e4 else f"{number:f}"
 
