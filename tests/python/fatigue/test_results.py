@@ -200,7 +200,7 @@ def test_cases_ask_for_fatigue(tmp_path: Path, capsys: Capture) -> None:
     path, summary = written(tmp_path, TEXT), expected()
     assert command("solve", path) == 0
     with nacre.display_units("N-mm-MPa"):
-        assert capsys.readouterr().out.endswith(f"\n\n{summary}\n")
+        assert capsys.readouterr().out.startswith(f"{summary}\n\n")
     assert command("solve", path, "--json") == 0
     found = json.loads(capsys.readouterr().out)["fatigue"]
     assert found["layers"][1]["depths"] == [15e-3, None]
