@@ -65,6 +65,7 @@ use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 mod edge;
+mod law;
 mod near;
 mod reconstruction;
 mod uncertainty;
@@ -105,13 +106,11 @@ impl SubcellStress {
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
-        let [dx, dy] = grid.spacing();
-        let side = if grid.is_line() { dy } else { dx.min(dy) };
-        let edges = pair.root_law_holds(side);
+        let law = pair.edge_law(grid);
         let margin = Margin::of(grid);
         let wide = margin.wide(grid);
         let pressure = &*margin.around(pressure);
-        let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
+        let near = NearPlan::new(pressure, &wide, law, threads, progress)?;
         let reach = near.farthest();
         // A free base does not see what has neither force nor moment.
         let kernels =
@@ -119,7 +118,7 @@ impl SubcellStress {
         let tractions =
             tractions.map(|both| both.each_ref().map(|q| margin.around(q).into_owned()));
         let loads = (pressure, tractions);
-        let uncertainty = Uncertainty::new((body, pair), &wide, loads, &near.reconstruction);
+        let uncertainty = Uncertainty::new(body, &wide, loads, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),
             margin,

@@ -19,6 +19,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
+use super::law::EdgeLaw;
 use crate::numerics::dense::{backward, cholesky, forward};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
@@ -58,10 +59,11 @@ pub(super) fn edge_cells(
     pressure: &[f64],
     distances: &[u8],
     shape: [usize; 2],
+    law: &EdgeLaw,
     threads: &Threads,
     progress: &mut StressProgress,
 ) -> ControlFlow<(), Vec<EdgeCell>> {
-    let known = squared_pressures(pressure, distances, shape);
+    let known = pressures_at_centres(pressure, distances, shape);
     progress(0.0)?;
     let band = edge_band(distances, shape);
     progress(0.0)?;
@@ -77,7 +79,7 @@ pub(super) fn edge_cells(
         progress(0.0)?;
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();
-        let fit = |k: &usize| accepted_fit(&known, pressure, shape, band[*k]);
+        let fit = |k: &usize| accepted_fit(&known, pressure, (shape, band[*k]), law);
         let fits: Vec<_> = threads.run(|| needed.par_iter().map(fit).collect());
         for (k, squared) in needed.into_iter().zip(fits) {
             if squared.is_none() {
@@ -134,19 +136,23 @@ impl OpenCells {
     }
 }
 
-/// p² at the centres of cells that are [`BAND`] cells from the edge and farther. A solver's pressure
+/// Pressure at the centres of cells that are [`BAND`] cells from the edge and farther. A solver's pressure
 /// stands for the mean over its cell, which differs from the value at the centre by
 /// (δ_x² + δ_y²) p / 24.
-fn squared_pressures(pressure: &[f64], distances: &[u8], [nx, ny]: [usize; 2]) -> Vec<Option<f64>> {
-    let squared = |cell: usize| {
+fn pressures_at_centres(
+    pressure: &[f64],
+    distances: &[u8],
+    [nx, ny]: [usize; 2],
+) -> Vec<Option<f64>> {
+    let at_centre = |cell: usize| {
         let p = pressure[cell];
         let mut differences = pressure[cell - 1] + pressure[cell + 1] - 2.0 * p;
         if nx > 1 {
             differences += pressure[cell - ny] + pressure[cell + ny] - 2.0 * p;
         }
-        (p + differences / 24.0).powi(2)
+        p + differences / 24.0
     };
-    let inside = |(cell, distance): (usize, &u8)| (*distance >= BAND).then(|| squared(cell));
+    let inside = |(cell, distance): (usize, &u8)| (*distance >= BAND).then(|| at_centre(cell));
     distances.iter().enumerate().map(inside).collect()
 }
 
@@ -155,16 +161,23 @@ fn squared_pressures(pressure: &[f64], distances: &[u8], [nx, ny]: [usize; 2]) -
 fn accepted_fit(
     known: &[Option<f64>],
     pressure: &[f64],
-    shape: [usize; 2],
-    cell @ [i, j]: [usize; 2],
+    (shape, cell @ [i, j]): ([usize; 2], [usize; 2]),
+    law: &EdgeLaw,
 ) -> Option<SquaredPressure> {
     if !may_be_fitted(known, shape, cell) {
         return None;
     }
-    let equations = NormalEquations::around(known, shape, cell);
-    let fits = DEGREES.into_iter().filter_map(|degree| equations.fit(degree));
-    let Fit { polynomial, uncertainty } =
-        fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })?;
+    let mut last: Option<Fit> = None;
+    for _ in 0..law.passes() {
+        let squared = |number: usize, at: [f64; 2]| {
+            let factor = last.map_or(1.0, |fit| law.factor(&fit.polynomial, at));
+            Some((known[number]? / factor).powi(2))
+        };
+        let equations = NormalEquations::around(shape, cell, squared);
+        let fits = DEGREES.into_iter().filter_map(|degree| equations.fit(degree));
+        last = Some(fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })?);
+    }
+    let Fit { polynomial, uncertainty } = last?;
     // Distance of the cell's centre from the edge, positive inside.
     let distance = polynomial.at(0.0, 0.0) / polynomial.slope();
     let agrees = if pressure[i * shape[1] + j] > 0.0 {
@@ -223,6 +236,24 @@ impl SquaredPressure {
         self
     }
 
+    /// Distance to the edge from a point inside, if the slope changes evenly on the way, with cells of these sides.
+    pub(super) fn distance(&self, at @ [u, v]: [f64; 2], sides: [f64; 2]) -> f64 {
+        let [_, _, _, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
+        let value = self.at(u, v);
+        if value <= 0.0 {
+            return 0.0;
+        }
+        let slopes = self.gradient(at);
+        let [su, sv] = [0, 1].map(|axis| slopes[axis] / sides[axis]);
+        let square = su * su + sv * sv;
+        let [along, across] = [su / sides[0], sv / sides[1]];
+        let curvature = along * along * 2.0 * (cuu + 3.0 * u * cuuu + v * cuuv)
+            + across * across * 2.0 * (cvv + 3.0 * v * cvvv + u * cuvv)
+            + 2.0 * along * across * (cuv + 2.0 * (u * cuuv + v * cuvv));
+        let end = square - 2.0 * value * curvature / square;
+        2.0 * value / (square.sqrt() + end.max(0.0).sqrt())
+    }
+
     /// Change from the centre to a corner of a rectangle of half sides (a, b), at the slope of the
     /// cell's centre.
     pub(super) fn variation(&self, [a, b]: [f64; 2]) -> f64 {
@@ -270,11 +301,12 @@ pub(super) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Sums over the known `values` of the cells around `cell`, nearer ones weighing more.
+    /// Sums over the known values of the cells around `cell`, nearer ones weighing more. `value` gives that of a cell, from
+    /// its number and its place in cells from `cell`.
     pub(super) fn around(
-        values: &[Option<f64>],
         shape: [usize; 2],
         cell @ [i, j]: [usize; 2],
+        value: impl Fn(usize, [f64; 2]) -> Option<f64>,
     ) -> Self {
         let scale = 1.0 / WINDOW as f64;
         let mut equations = Self {
@@ -286,11 +318,11 @@ impl NormalEquations {
             count: 0,
         };
         for [k, l] in around(shape, cell, WINDOW) {
-            let Some(value) = values[k * shape[1] + l] else {
+            let at = [k as f64 - i as f64, l as f64 - j as f64];
+            let Some(value) = value(k * shape[1] + l, at) else {
                 continue;
             };
-            let u = (k as f64 - i as f64) * scale;
-            let v = (l as f64 - j as f64) * scale;
+            let [u, v] = at.map(|cells| cells * scale);
             let (uu, vv) = (u * u, v * v);
             let rest = WEIGHT_RADIUS_SQUARED - (uu + vv);
             if rest > 0.0 {
@@ -439,7 +471,7 @@ mod tests {
             let distances = edge_distances(pressure, SHAPE, BAND + 1);
             let threads = Threads::new(Some(2))?;
             let mut progress = |_| ControlFlow::Continue(());
-            match edge_cells(pressure, &distances, SHAPE, &threads, &mut progress) {
+            match edge_cells(pressure, &distances, SHAPE, &EdgeLaw::default(), &threads, &mut progress) {
                 ControlFlow::Continue(cells) => Ok(cells),
                 ControlFlow::Break(()) => panic!("nothing stops it"),
             }
@@ -484,7 +516,7 @@ mod tests {
                     continue;
                 }
                 let cell @ [i, j] = place(cell);
-                let Some(fit) = NormalEquations::around(&known, SHAPE, cell).fit(degree) else {
+                let Some(fit) = NormalEquations::around(SHAPE, cell, |k, _| known[k]).fit(degree) else {
                     panic!("too few values around {cell:?}")
                 };
                 let (x, y) = (i as f64 - 20.3, j as f64 - 21.1);

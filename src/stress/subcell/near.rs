@@ -11,6 +11,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::edge::around;
+use super::law::EdgeLaw;
 use super::reconstruction::{
     CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, SHIFT_LIMIT, mean_root,
 };
@@ -129,7 +130,7 @@ impl NearPlan {
     pub(super) fn new(
         pressure: &[f64],
         grid: &Grid,
-        edges: bool,
+        law: Option<EdgeLaw>,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -138,7 +139,7 @@ impl NearPlan {
         let longer = sides[0].max(sides[1]);
         let reach = |side: f64| cells_within(NEAR_REACH * longer, side).min(REACH_LIMIT);
         ControlFlow::Continue(Self {
-            reconstruction: Reconstruction::new(pressure, shape, edges, threads, progress)?,
+            reconstruction: Reconstruction::new(pressure, shape, law, threads, progress)?,
             shape,
             sides,
             line,
@@ -273,7 +274,8 @@ impl NearPlan {
     /// Pressures on the pieces of a cut, less the cell's mean, and linearly corrected: their first
     /// moments are those that the shares in the convolution stand for.
     fn piece_pressures(&self, cell: &RootCell, cut: &Cut) -> Vec<f64> {
-        let pressure = |piece| mean_root(&cell.squared, piece, cut.points, self.line);
+        let law = &self.reconstruction.law;
+        let pressure = |piece| mean_root((&cell.squared, law), piece, cut.points, self.line);
         let mut pressures: Vec<f64> = cut.pieces.iter().map(pressure).collect();
         let (mut mean, mut missing) = (0.0, cell.moments);
         for (pressure, piece) in pressures.iter().zip(&cut.pieces) {
@@ -345,7 +347,7 @@ impl NearPlan {
         };
         let [dx, dy] = self.sides;
         let [rx, ry] = self.reach.map(|reach| reach as isize);
-        let Reconstruction { interior, roots, .. } = &self.reconstruction;
+        let Reconstruction { interior, roots, law, .. } = &self.reconstruction;
         let offsets = (-rx..=rx).flat_map(|i| (-ry..=ry).map(move |j| [i, j]));
         for by @ [i, j] in offsets {
             let Some(cell) = self.cell_at(target, [-i, -j]) else {
@@ -376,8 +378,8 @@ impl NearPlan {
                         [0, 1].iter().all(|k| (at[*k] - piece.centre[*k]).abs() < piece.half[*k])
                     };
                     if let Some(own) = cut.pieces.iter().position(has_point) {
-                        let mean = mean_root(&root.squared, &cut.pieces[own], 1, self.line);
-                        pressures[own] += root.squared.at(at[0], at[1]).max(0.0).sqrt() - mean;
+                        let mean = mean_root((&root.squared, law), &cut.pieces[own], 1, self.line);
+                        pressures[own] += law.pressure(&root.squared, at) - mean;
                     }
                     (pressures, root.moments)
                 }
@@ -416,9 +418,9 @@ impl NearPlan {
         &CellPoint { cell, within: [u, v] }: &CellPoint,
         mean: f64,
     ) -> f64 {
-        let Reconstruction { interior, roots, .. } = &self.reconstruction;
+        let Reconstruction { interior, roots, law, .. } = &self.reconstruction;
         if let Ok(root) = roots.binary_search_by_key(&cell, |root| root.cell) {
-            return roots[root].squared.at(u, v).max(0.0).sqrt();
+            return law.pressure(&roots[root].squared, [u, v]);
         }
         let number = self.number(cell);
         let along = |axis: usize, u: f64| {
@@ -430,9 +432,8 @@ impl NearPlan {
 
     /// Cells near the edge, and the pressure at their centres.
     pub(super) fn central_pressures(&self) -> impl Iterator<Item = (usize, f64)> {
-        let of =
-            |root: &RootCell| (self.number(root.cell), root.squared.at(0.0, 0.0).max(0.0).sqrt());
-        self.reconstruction.roots.iter().map(of)
+        let Reconstruction { roots, law, .. } = &self.reconstruction;
+        roots.iter().map(|root| (self.number(root.cell), law.pressure(&root.squared, [0.0; 2])))
     }
 
     /// Points of the edge, at most one in a cell.

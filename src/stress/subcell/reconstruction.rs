@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use super::edge::{
     BAND, EdgeCell, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
 };
+use super::law::EdgeLaw;
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -29,8 +30,9 @@ pub(super) struct Reconstruction {
     /// Pressure that is taken as uniform over cells, at all depths.
     pub(super) uniform: Vec<f64>,
     pub(super) interior: Interior,
-    /// Cells near the edge, in which p is the root of a polynomial.
+    /// Cells near the edge, in which p is the root of a polynomial times the law's factor.
     pub(super) roots: Vec<RootCell>,
+    pub(super) law: EdgeLaw,
 }
 
 /// Parabolas within the cells of the interior; zero in all cells up to [`BAND`] from the edge.
@@ -46,7 +48,7 @@ pub(super) struct Interior {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RootCell {
     pub(super) cell: [usize; 2],
-    /// p²; the pressure is its root where it is positive, and 0 elsewhere.
+    /// p² without the law's factor; the pressure is its root times that where it is positive, and 0 elsewhere.
     pub(super) squared: SquaredPressure,
     /// Mean of p.
     pub(super) mean: f64,
@@ -83,11 +85,11 @@ const RATE_STEP: f64 = 0.01;
 const EDGE_STEPS: usize = 5;
 
 impl Reconstruction {
-    /// The reconstruction of `pressure`, near the edge if `edges`. `progress` is asked many times, with 0.
+    /// The reconstruction of `pressure`, near the edge by its law, if that is known. `progress` is asked many times, with 0.
     pub(super) fn new(
         pressure: &[f64],
         shape: [usize; 2],
-        edges: bool,
+        law: Option<EdgeLaw>,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -96,12 +98,13 @@ impl Reconstruction {
         progress(0.0)?;
         let interior = Interior::new(pressure, &distances, shape);
         progress(0.0)?;
-        let edges = match edges {
-            true => edge_cells(pressure, &distances, shape, threads, progress)?,
-            false => Vec::new(),
+        let edges = match &law {
+            Some(law) => edge_cells(pressure, &distances, shape, law, threads, progress)?,
+            None => Vec::new(),
         };
+        let law = law.unwrap_or_default();
         let divisions = pieces(Piece::CELL, MEAN_DIVISIONS, line);
-        let root = |edge| RootCell::new(edge, &divisions, line);
+        let root = |edge| RootCell::new(edge, &law, &divisions, line);
         let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
         let mut uniform = uniform_part(pressure, &interior, &roots, shape);
         for _ in 0..BALANCE_STEPS {
@@ -109,7 +112,7 @@ impl Reconstruction {
             let raises = balancing_raises(pressure, &uniform, &roots, shape);
             progress(0.0)?;
             let raised = roots.into_par_iter().zip(raises);
-            let root = |(root, by): (RootCell, f64)| root.raised(by, &divisions, line);
+            let root = |(root, by): (RootCell, f64)| root.raised(by, &law, &divisions, line);
             roots = threads.run(|| raised.filter_map(root).collect());
             uniform = uniform_part(pressure, &interior, &roots, shape);
         }
@@ -119,7 +122,7 @@ impl Reconstruction {
         let edges: BTreeSet<_> = roots.iter().filter(with_edge).map(|root| root.cell).collect();
         let is_alone = |cell| !around(shape, cell, 1).any(|beside| edges.contains(&beside));
         roots.retain(|root| root.mean > 0.0 || root.edge(0.5).is_some() && is_alone(root.cell));
-        ControlFlow::Continue(Self { uniform, interior, roots })
+        ControlFlow::Continue(Self { uniform, interior, roots, law })
     }
 }
 
@@ -203,11 +206,11 @@ fn balancing_raises(
 }
 
 impl RootCell {
-    fn new(edge: EdgeCell, divisions: &[Piece], line: bool) -> Self {
+    fn new(edge: EdgeCell, law: &EdgeLaw, divisions: &[Piece], line: bool) -> Self {
         let EdgeCell { cell, squared } = edge;
-        let (mean, moments) = mean_and_moments(&squared, divisions, line);
+        let (mean, moments) = mean_and_moments(&squared, law, divisions, line);
         let step = RATE_STEP * squared.variation([1.0, 1.0]);
-        let (higher, _) = mean_and_moments(&squared.raised(step), divisions, line);
+        let (higher, _) = mean_and_moments(&squared.raised(step), law, divisions, line);
         Self { cell, squared, mean, moments, rate: (higher - mean) / step }
     }
 
@@ -225,21 +228,26 @@ impl RootCell {
     }
 
     /// The cell with p² raised; none where that shifts the edge too far.
-    fn raised(self, by: f64, divisions: &[Piece], line: bool) -> Option<Self> {
+    fn raised(self, by: f64, law: &EdgeLaw, divisions: &[Piece], line: bool) -> Option<Self> {
         if by.abs() > SHIFT_LIMIT * self.squared.slope() {
             return None;
         }
         let squared = self.squared.raised(by);
-        let (mean, moments) = mean_and_moments(&squared, divisions, line);
+        let (mean, moments) = mean_and_moments(&squared, law, divisions, line);
         Some(Self { squared, mean, moments, ..self })
     }
 }
 
-/// Mean and first moments of the root over the cell.
-fn mean_and_moments(squared: &SquaredPressure, divisions: &[Piece], line: bool) -> (f64, [f64; 2]) {
+/// Mean and first moments of the pressure over the cell.
+fn mean_and_moments(
+    squared: &SquaredPressure,
+    law: &EdgeLaw,
+    divisions: &[Piece],
+    line: bool,
+) -> (f64, [f64; 2]) {
     let (mut mean, mut moments) = (0.0, [0.0; 2]);
     for piece in divisions {
-        let p = piece.area() * mean_root(squared, piece, 1, line);
+        let p = piece.area() * mean_root((squared, law), piece, 1, line);
         mean += p;
         moments[0] += p * piece.centre[0];
         moments[1] += p * piece.centre[1];
@@ -247,8 +255,13 @@ fn mean_and_moments(squared: &SquaredPressure, divisions: &[Piece], line: bool) 
     (mean, moments)
 }
 
-/// Mean of √max(p², 0) over a piece, from `count` points along each side.
-pub(super) fn mean_root(squared: &SquaredPressure, piece: &Piece, count: usize, line: bool) -> f64 {
+/// Mean of the pressure near an edge over a piece, from `count` points along each side.
+pub(super) fn mean_root(
+    (squared, law): (&SquaredPressure, &EdgeLaw),
+    piece: &Piece,
+    count: usize,
+    line: bool,
+) -> f64 {
     let half = piece.half.map(|half| half / count as f64);
     // Twice the variation, so that curvature does not hide the edge.
     let variation = 2.0 * squared.variation(half);
@@ -261,20 +274,20 @@ pub(super) fn mean_root(squared: &SquaredPressure, piece: &Piece, count: usize, 
             let v = piece.centre[1] + half[1] * (2 * b + 1) as f64 - half[1] * count as f64;
             let value = squared.at(u, v);
             if value > variation {
-                sum += value.sqrt();
+                sum += value.sqrt() * law.factor(squared, [u, v]);
             } else if value > -variation {
-                sum += mean_root_at_edge(squared, [u, v], half, line);
+                sum += mean_root_at_edge((squared, law), [u, v], half, line);
             }
         }
     }
     sum / (rows * count) as f64
 }
 
-/// Mean of √max(p², 0) over the rectangle of half sides (hu, hv) around (u, v), which the edge may cross,
+/// Mean of the pressure over the rectangle of half sides (hu, hv) around (u, v), which the edge may cross,
 /// from four points along each side.
 #[cold]
 fn mean_root_at_edge(
-    squared: &SquaredPressure,
+    (squared, law): (&SquaredPressure, &EdgeLaw),
     [u, v]: [f64; 2],
     [hu, hv]: [f64; 2],
     line: bool,
@@ -284,7 +297,7 @@ fn mean_root_at_edge(
     let mut sum = 0.0;
     for a in along {
         for b in &PLACES {
-            sum += squared.at(u + a * hu, v + b * hv).max(0.0).sqrt();
+            sum += law.pressure(squared, [u + a * hu, v + b * hv]);
         }
     }
     sum / (along.len() * PLACES.len()) as f64
@@ -457,7 +470,7 @@ mod tests {
     fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
         let threads = Threads::new(Some(2))?;
         let mut progress = |_| ControlFlow::Continue(());
-        match Reconstruction::new(pressure, shape, true, &threads, &mut progress) {
+        match Reconstruction::new(pressure, shape, Some(EdgeLaw::default()), &threads, &mut progress) {
             ControlFlow::Continue(reconstruction) => Ok(reconstruction),
             ControlFlow::Break(()) => panic!("nothing stops it"),
         }
