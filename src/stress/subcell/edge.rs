@@ -2,7 +2,7 @@
 //! interior.
 //!
 //! A polynomial of second or of third degree is fitted to p² of cells that are [`BAND`] cells from the
-//! edge and farther ([`NormalEquations`]), and continued to the edge. The outermost two cells carry the
+//! edge and farther ([`FitWindow`]), and continued to the edge. The outermost two cells carry the
 //! staircase of the solver's contact; those farther inside determine the edge within some thousandths
 //! of a cell. A cell keeps its uniform pressure
 //!
@@ -167,15 +167,16 @@ fn accepted_fit(
     if !may_be_fitted(known, shape, cell) {
         return None;
     }
+    let window = FitWindow::around(shape, cell, |number| known[number].is_some());
+    let equations: Vec<_> = DEGREES.iter().filter_map(|degree| window.equations(*degree)).collect();
     let mut last: Option<Fit> = None;
     for _ in 0..law.passes() {
+        let profile = last.as_ref().map(|fit| law.profile(&fit.polynomial));
         let squared = |number: usize, at: [f64; 2]| {
-            let factor = last.map_or(1.0, |fit| law.factor(&fit.polynomial, at));
-            Some((known[number]? / factor).powi(2))
+            let factor = profile.as_ref().map_or(1.0, |profile| profile.factor_at(at));
+            (known[number].unwrap_or_default() / factor).powi(2)
         };
-        let equations = NormalEquations::around(shape, cell, squared);
-        let fits = DEGREES.into_iter().filter_map(|degree| equations.fit(degree));
-        last = Some(fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })?);
+        last = Some(window.fit(&equations, squared)?);
     }
     let Fit { polynomial, uncertainty } = last?;
     // Distance of the cell's centre from the edge, positive inside.
@@ -236,22 +237,16 @@ impl SquaredPressure {
         self
     }
 
-    /// Distance to the edge from a point inside, if the slope changes evenly on the way, with cells of these sides.
-    pub(super) fn distance(&self, at @ [u, v]: [f64; 2], sides: [f64; 2]) -> f64 {
-        let [_, _, _, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
-        let value = self.at(u, v);
-        if value <= 0.0 {
-            return 0.0;
-        }
-        let slopes = self.gradient(at);
-        let [su, sv] = [0, 1].map(|axis| slopes[axis] / sides[axis]);
+    /// Slope towards the inside at the edge nearest to the cell's centre, and its change per length, with cells of these sides: if
+    /// the slope changes evenly on the way.
+    pub(super) fn slope_at_edge(&self, sides: [f64; 2]) -> [f64; 2] {
+        let [value, cu, cv, cuu, cuv, cvv, ..] = self.0;
+        let [su, sv] = [cu / sides[0], cv / sides[1]];
         let square = su * su + sv * sv;
         let [along, across] = [su / sides[0], sv / sides[1]];
-        let curvature = along * along * 2.0 * (cuu + 3.0 * u * cuuu + v * cuuv)
-            + across * across * 2.0 * (cvv + 3.0 * v * cvvv + u * cuvv)
-            + 2.0 * along * across * (cuv + 2.0 * (u * cuuv + v * cuvv));
-        let end = square - 2.0 * value * curvature / square;
-        2.0 * value / (square.sqrt() + end.max(0.0).sqrt())
+        let bend = along * along * cuu + across * across * cvv + along * across * cuv;
+        let curvature = 2.0 * bend / square;
+        [(square - 2.0 * value * curvature).max(0.0).sqrt(), curvature]
     }
 
     /// Change from the centre to a corner of a rectangle of half sides (a, b), at the slope of the
@@ -288,92 +283,112 @@ pub(super) fn may_be_fitted(values: &[Option<f64>], shape: [usize; 2], cell: [us
     around(shape, cell, WINDOW).filter(known).count() >= fewest_values(terms, line)
 }
 
-/// Normal equations of the values around one cell.
-pub(super) struct NormalEquations {
+/// The cells around one cell to whose values polynomials are fitted, by normal equations.
+pub(super) struct FitWindow {
     line: bool,
+    cells: Vec<FittedCell>,
     /// Lower triangle of the matrix.
     matrix: [[f64; TERMS]; TERMS],
-    right: [f64; TERMS],
-    /// Weighted sum of the squares of the values.
-    values_squared: f64,
     weights: f64,
-    count: usize,
 }
 
-impl NormalEquations {
-    /// Sums over the known values of the cells around `cell`, nearer ones weighing more. `value` gives that of a cell, from
-    /// its number and its place in cells from `cell`.
+/// A cell to whose value polynomials are fitted.
+struct FittedCell {
+    number: usize,
+    /// Distances from the window's middle, in cells.
+    at: [f64; 2],
+    weight: f64,
+    /// The terms of a polynomial there.
+    basis: [f64; TERMS],
+}
+
+/// The normal equations of one degree, factored.
+pub(super) struct FactoredEquations {
+    powers: Vec<usize>,
+    factor: Vec<Vec<f64>>,
+    /// The first entry of the inverse: the variance of the value at the middle, over that of values.
+    spread: f64,
+}
+
+impl FitWindow {
+    /// The known cells around `cell`, nearer ones weighing more.
     pub(super) fn around(
         shape: [usize; 2],
         cell @ [i, j]: [usize; 2],
-        value: impl Fn(usize, [f64; 2]) -> Option<f64>,
+        is_known: impl Fn(usize) -> bool,
     ) -> Self {
         let scale = 1.0 / WINDOW as f64;
-        let mut equations = Self {
-            line: shape[0] == 1,
-            matrix: [[0.0; TERMS]; TERMS],
-            right: [0.0; TERMS],
-            values_squared: 0.0,
-            weights: 0.0,
-            count: 0,
-        };
-        for [k, l] in around(shape, cell, WINDOW) {
+        let fitted = |[k, l]: [usize; 2]| {
+            let number = k * shape[1] + l;
             let at = [k as f64 - i as f64, l as f64 - j as f64];
-            let Some(value) = value(k * shape[1] + l, at) else {
-                continue;
-            };
             let [u, v] = at.map(|cells| cells * scale);
             let (uu, vv) = (u * u, v * v);
             let rest = WEIGHT_RADIUS_SQUARED - (uu + vv);
-            if rest > 0.0 {
-                let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
-                equations.add(rest * rest, basis, value);
+            let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
+            let counts = rest > 0.0 && is_known(number);
+            counts.then_some(FittedCell { number, at, weight: rest * rest, basis })
+        };
+        let cells: Vec<FittedCell> = around(shape, cell, WINDOW).filter_map(fitted).collect();
+        let mut matrix = [[0.0; TERMS]; TERMS];
+        for FittedCell { weight, basis, .. } in &cells {
+            for (a, row) in matrix.iter_mut().enumerate() {
+                let along = weight * basis[a];
+                for (sum, across) in row[..=a].iter_mut().zip(basis) {
+                    *sum += along * across;
+                }
             }
         }
-        equations
+        let weights = cells.iter().map(|cell| cell.weight).sum();
+        Self { line: shape[0] == 1, cells, matrix, weights }
     }
 
-    fn add(&mut self, weight: f64, basis: [f64; TERMS], value: f64) {
-        for (a, row) in self.matrix.iter_mut().enumerate() {
-            let along = weight * basis[a];
-            for (sum, across) in row[..=a].iter_mut().zip(&basis) {
-                *sum += along * across;
-            }
-            self.right[a] += along * value;
-        }
-        self.values_squared += weight * value * value;
-        self.weights += weight;
-        self.count += 1;
-    }
-
-    /// The polynomial of `degree` that fits best; none where there are too few values, or they do not
-    /// determine it.
-    pub(super) fn fit(&self, degree: u8) -> Option<Fit> {
+    /// The equations of a polynomial of `degree`; none where there are too few values, or they do not determine it.
+    pub(super) fn equations(&self, degree: u8) -> Option<FactoredEquations> {
         let used = |[a, b]: [u8; 2]| a + b <= degree && !(self.line && a > 0);
         let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
         let terms = powers.len();
-        if self.count < fewest_values(terms, self.line) {
+        if self.cells.len() < fewest_values(terms, self.line) {
             return None;
         }
-        let right: Vec<f64> = powers.iter().map(|row| self.right[*row]).collect();
         let factor = cholesky(terms, PIVOT_LIMIT, |a, b| self.matrix[powers[a]][powers[b]])?;
-        let solution = backward(&factor, forward(&factor, right.clone()));
         let mut first = vec![0.0; terms];
         first[0] = 1.0;
-        // The first entry of the inverse: the variance of the value at the centre, over that of values.
         let spread = backward(&factor, forward(&factor, first))[0];
-        let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
-        let count = self.count as f64;
-        let free = count / (count - terms as f64);
-        let variance = ((self.values_squared - product) / self.weights * free).max(0.0);
-        let mut polynomial = SquaredPressure([0.0; TERMS]);
-        for (value, k) in solution.iter().zip(&powers) {
-            let [a, b] = POWERS[*k];
-            polynomial.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+        Some(FactoredEquations { powers, factor, spread })
+    }
+
+    /// The most certain of the polynomials that fit best to the values of the cells, which `value` gives from their numbers and
+    /// places in cells from the middle.
+    pub(super) fn fit(
+        &self,
+        equations: &[FactoredEquations],
+        value: impl Fn(usize, [f64; 2]) -> f64,
+    ) -> Option<Fit> {
+        let (mut right, mut squares) = ([0.0; TERMS], 0.0);
+        for FittedCell { number, at, weight, basis } in &self.cells {
+            let value = value(*number, *at);
+            let along = weight * value;
+            right.iter_mut().zip(basis).for_each(|(sum, across)| *sum += along * across);
+            squares += along * value;
         }
-        let deviation = (variance * spread * self.weights / count).sqrt();
-        let uncertainty = deviation / polynomial.slope();
-        uncertainty.is_finite().then_some(Fit { polynomial, uncertainty })
+        let fits = equations.iter().filter_map(|of_degree| {
+            let FactoredEquations { powers, factor, spread } = of_degree;
+            let right: Vec<f64> = powers.iter().map(|row| right[*row]).collect();
+            let solution = backward(factor, forward(factor, right.clone()));
+            let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
+            let count = self.cells.len() as f64;
+            let free = count / (count - powers.len() as f64);
+            let variance = ((squares - product) / self.weights * free).max(0.0);
+            let mut polynomial = SquaredPressure([0.0; TERMS]);
+            for (value, k) in solution.iter().zip(powers) {
+                let [a, b] = POWERS[*k];
+                polynomial.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+            }
+            let deviation = (variance * spread * self.weights / count).sqrt();
+            let uncertainty = deviation / polynomial.slope();
+            uncertainty.is_finite().then_some(Fit { polynomial, uncertainty })
+        });
+        fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })
     }
 }
 
@@ -516,7 +531,9 @@ mod tests {
                     continue;
                 }
                 let cell @ [i, j] = place(cell);
-                let Some(fit) = NormalEquations::around(SHAPE, cell, |k, _| known[k]).fit(degree) else {
+                let window = FitWindow::around(SHAPE, cell, |k| known[k].is_some());
+                let equations: Vec<_> = window.equations(degree).into_iter().collect();
+                let Some(fit) = window.fit(&equations, |k, _| known[k].unwrap_or_default()) else {
                     panic!("too few values around {cell:?}")
                 };
                 let (x, y) = (i as f64 - 20.3, j as f64 - 21.1);

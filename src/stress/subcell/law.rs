@@ -23,13 +23,16 @@ use super::edge::SquaredPressure;
 use crate::numerics::dense::Factors;
 use crate::numerics::rounding;
 
-/// Nodes of distance and of wavenumber per factor e, between which functions are linear.
-const DISTANCES: f64 = 7.0;
+/// Wavenumbers per factor e, between which the response is linear.
 const WAVES: f64 = 25.0;
 
-/// Shortest and longest distances that matter, in cells: parts of the smallest piece, and several windows of a fit.
-const SHORTEST: f64 = 1e-3;
-const LONGEST: f64 = 300.0;
+/// Distances from the edge, in cells, between which Φ is linear: so many from each power of 2 to the next.
+const PER_OCTAVE: usize = 8;
+const NODES: usize = 18 * PER_OCTAVE + 1;
+
+/// Shortest and longest of these distances, powers of 2.
+const SHORTEST: f64 = 1.0 / 1024.0;
+const LONGEST: f64 = 256.0;
 
 /// Passes of a fit whose distances from the edge are needed for the fit itself.
 const PASSES: usize = 4;
@@ -65,8 +68,7 @@ impl EdgeLaw {
         if !changes.iter().any(|m| m.abs() > UNCHANGED) {
             return Self::default();
         }
-        let distances: Vec<f64> =
-            std::iter::once(0.0).chain(grown(SHORTEST, LONGEST, DISTANCES)).collect();
+        let distances: Vec<f64> = std::iter::once(0.0).chain((0..NODES).map(node)).collect();
         let kernel = SecondIntegral::new(&waves, &changes);
         let pressures = step_pressures(&distances, &kernel, 0.5 * PI * changes[0]);
         let at = |d: &f64| mean_of_steps(&distances, &pressures, *d) / pressures[0];
@@ -79,26 +81,70 @@ impl EdgeLaw {
         if self.values.is_empty() { 1 } else { PASSES }
     }
 
-    /// The pressure at a point, from its square without Φ.
-    pub(super) fn pressure(&self, squared: &SquaredPressure, at @ [u, v]: [f64; 2]) -> f64 {
-        let value = squared.at(u, v);
-        if value > 0.0 { value.sqrt() * self.factor(squared, at) } else { 0.0 }
-    }
-
-    /// Φ at a point.
-    pub(super) fn factor(&self, squared: &SquaredPressure, at: [f64; 2]) -> f64 {
-        if self.values.is_empty() { 1.0 } else { self.at(squared.distance(at, self.sides)) }
+    /// The pressure whose square is a polynomial times Φ².
+    pub(super) fn profile<'a>(&'a self, squared: &'a SquaredPressure) -> EdgeProfile<'a> {
+        let [slope, curvature] = squared.slope_at_edge(self.sides);
+        EdgeProfile { law: self, squared, slope, curvature }
     }
 
     /// Φ at a distance from the edge, in shorter sides of a cell.
     fn at(&self, distance: f64) -> f64 {
-        let Some(last) = self.values.len().checked_sub(1) else { return 1.0 };
-        let place = (distance.max(SHORTEST) / SHORTEST).ln() * DISTANCES;
-        let before = (place as usize).min(last);
-        let after = (before + 1).min(last);
-        let part = place - before as f64;
-        self.values[before] + part.min(1.0) * (self.values[after] - self.values[before])
+        let distance = distance.clamp(node(0), node(NODES - 1));
+        let before = number_of(distance).min(NODES - 2);
+        let [from, to] = [node(before), node(before + 1)];
+        let part = (distance - from) / (to - from);
+        self.values[before] + part * (self.values[before + 1] - self.values[before])
     }
+}
+
+/// The pressure near an edge.
+#[derive(Debug)]
+pub(super) struct EdgeProfile<'a> {
+    law: &'a EdgeLaw,
+    /// p² without Φ.
+    pub(super) squared: &'a SquaredPressure,
+    /// Slope of that at the edge, per shorter side of a cell, and its change per side.
+    slope: f64,
+    curvature: f64,
+}
+
+impl EdgeProfile<'_> {
+    /// The pressure at a point.
+    pub(super) fn at(&self, [u, v]: [f64; 2]) -> f64 {
+        self.root(self.squared.at(u, v))
+    }
+
+    /// The pressure where its square without Φ has this value; 0 beyond the edge.
+    pub(super) fn root(&self, value: f64) -> f64 {
+        if value > 0.0 { value.sqrt() * self.factor(value) } else { 0.0 }
+    }
+
+    /// Φ at a point.
+    pub(super) fn factor_at(&self, [u, v]: [f64; 2]) -> f64 {
+        self.factor(self.squared.at(u, v).max(0.0))
+    }
+
+    /// Φ where p² without it has this value.
+    fn factor(&self, value: f64) -> f64 {
+        if self.law.values.is_empty() {
+            return 1.0;
+        }
+        let end = (self.slope * self.slope + 2.0 * self.curvature * value).max(0.0).sqrt();
+        self.law.at(2.0 * value / (self.slope + end))
+    }
+}
+
+/// Digits of the binary form of a distance behind those that tell its node: exponent and leading digits.
+const DIGITS: u32 = f64::MANTISSA_DIGITS - 1 - PER_OCTAVE.ilog2();
+
+/// Distance of a node.
+fn node(number: usize) -> f64 {
+    f64::from_bits(((SHORTEST.to_bits() >> DIGITS) + number as u64) << DIGITS)
+}
+
+/// Number of the last node that is not beyond a distance, which is not below the first.
+fn number_of(distance: f64) -> usize {
+    ((distance.to_bits() >> DIGITS) - (SHORTEST.to_bits() >> DIGITS)) as usize
 }
 
 /// Values from the first to the last, so many per factor e.
@@ -119,6 +165,7 @@ impl SecondIntegral {
     fn new(waves: &[f64], changes: &[f64]) -> Self {
         let panels = waves.windows(2).zip(changes.windows(2));
         let slopes: Vec<[f64; 3]> = panels
+            .filter(|(_, m)| (m[1] - m[0]).abs() > UNCHANGED * UNCHANGED)
             .map(|(alpha, m)| {
                 let width = alpha[1] - alpha[0];
                 [(m[1] - m[0]) / width, 0.5 * (alpha[0] + alpha[1]), 0.5 * width]
@@ -129,9 +176,9 @@ impl SecondIntegral {
             let of = |[slope, middle, half]: &[f64; 3]| slope * (middle * x).sin() * (half * x).sin();
             -2.0 * slopes.iter().map(of).sum::<f64>() / (x * x)
         };
-        let first = 1e-2 * SHORTEST;
+        let first = 0.1 * SHORTEST;
         let mut distances = vec![0.0];
-        distances.extend(grown(first, 1.1 * LONGEST, 3.0 * DISTANCES));
+        distances.extend(grown(first, 1.1 * LONGEST, 0.6 * WAVES));
         let mut values: Vec<[f64; 3]> = vec![[n(first), 0.0, 0.0]];
         for k in 1..distances.len() {
             let (step, [before, once, twice]) = (distances[k] - distances[k - 1], values[k - 1]);
@@ -206,9 +253,9 @@ mod tests {
             let coated = HalfSpace::new(below, [Layer::new(coat, 1.0)?])?;
             let law = EdgeLaw::new(&BodyPair(vec![&coated]), [1.0; 2]);
             let limit = (below.plane_strain_modulus() / coat.plane_strain_modulus()).sqrt();
-            println!("{modulus} {:?} {limit}", [0.0, 0.01, 0.1, 1.0, 10.0, 100.0, 300.0].map(|d| law.at(d)));
+            println!("{modulus} {:?} {limit}", [0.0, 0.01, 0.1, 1.0, 10.0, 100.0, 250.0].map(|d| law.at(d)));
             assert!((law.at(0.0) - 1.0).abs() < 1e-3, "{modulus}: {}", law.at(0.0));
-            assert!((law.at(300.0) / limit - 1.0).abs() < 5e-3, "{modulus}: {}", law.at(300.0));
+            assert!((law.at(LONGEST) / limit - 1.0).abs() < 5e-3, "{modulus}: {}", law.at(LONGEST));
         }
         Ok(())
     }

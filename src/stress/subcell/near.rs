@@ -274,8 +274,8 @@ impl NearPlan {
     /// Pressures on the pieces of a cut, less the cell's mean, and linearly corrected: their first
     /// moments are those that the shares in the convolution stand for.
     fn piece_pressures(&self, cell: &RootCell, cut: &Cut) -> Vec<f64> {
-        let law = &self.reconstruction.law;
-        let pressure = |piece| mean_root((&cell.squared, law), piece, cut.points, self.line);
+        let profile = self.reconstruction.law.profile(&cell.squared);
+        let pressure = |piece| mean_root(&profile, piece, cut.points, self.line);
         let mut pressures: Vec<f64> = cut.pieces.iter().map(pressure).collect();
         let (mut mean, mut missing) = (0.0, cell.moments);
         for (pressure, piece) in pressures.iter().zip(&cut.pieces) {
@@ -378,8 +378,9 @@ impl NearPlan {
                         [0, 1].iter().all(|k| (at[*k] - piece.centre[*k]).abs() < piece.half[*k])
                     };
                     if let Some(own) = cut.pieces.iter().position(has_point) {
-                        let mean = mean_root((&root.squared, law), &cut.pieces[own], 1, self.line);
-                        pressures[own] += law.pressure(&root.squared, at) - mean;
+                        let profile = law.profile(&root.squared);
+                        let mean = mean_root(&profile, &cut.pieces[own], 1, self.line);
+                        pressures[own] += profile.at(at) - mean;
                     }
                     (pressures, root.moments)
                 }
@@ -420,7 +421,7 @@ impl NearPlan {
     ) -> f64 {
         let Reconstruction { interior, roots, law, .. } = &self.reconstruction;
         if let Ok(root) = roots.binary_search_by_key(&cell, |root| root.cell) {
-            return law.pressure(&roots[root].squared, [u, v]);
+            return law.profile(&roots[root].squared).at([u, v]);
         }
         let number = self.number(cell);
         let along = |axis: usize, u: f64| {
@@ -433,7 +434,7 @@ impl NearPlan {
     /// Cells near the edge, and the pressure at their centres.
     pub(super) fn central_pressures(&self) -> impl Iterator<Item = (usize, f64)> {
         let Reconstruction { roots, law, .. } = &self.reconstruction;
-        roots.iter().map(|root| (self.number(root.cell), law.pressure(&root.squared, [0.0; 2])))
+        roots.iter().map(|root| (self.number(root.cell), law.profile(&root.squared).at([0.0; 2])))
     }
 
     /// Points of the edge, at most one in a cell.

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::edge::{
     BAND, EdgeCell, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
 };
-use super::law::EdgeLaw;
+use super::law::{EdgeLaw, EdgeProfile};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -208,9 +208,10 @@ fn balancing_raises(
 impl RootCell {
     fn new(edge: EdgeCell, law: &EdgeLaw, divisions: &[Piece], line: bool) -> Self {
         let EdgeCell { cell, squared } = edge;
-        let (mean, moments) = mean_and_moments(&squared, law, divisions, line);
+        let (mean, moments) = mean_and_moments(&law.profile(&squared), divisions, line);
         let step = RATE_STEP * squared.variation([1.0, 1.0]);
-        let (higher, _) = mean_and_moments(&squared.raised(step), law, divisions, line);
+        let higher = squared.raised(step);
+        let (higher, _) = mean_and_moments(&law.profile(&higher), divisions, line);
         Self { cell, squared, mean, moments, rate: (higher - mean) / step }
     }
 
@@ -233,21 +234,20 @@ impl RootCell {
             return None;
         }
         let squared = self.squared.raised(by);
-        let (mean, moments) = mean_and_moments(&squared, law, divisions, line);
+        let (mean, moments) = mean_and_moments(&law.profile(&squared), divisions, line);
         Some(Self { squared, mean, moments, ..self })
     }
 }
 
 /// Mean and first moments of the pressure over the cell.
 fn mean_and_moments(
-    squared: &SquaredPressure,
-    law: &EdgeLaw,
+    profile: &EdgeProfile,
     divisions: &[Piece],
     line: bool,
 ) -> (f64, [f64; 2]) {
     let (mut mean, mut moments) = (0.0, [0.0; 2]);
     for piece in divisions {
-        let p = piece.area() * mean_root((squared, law), piece, 1, line);
+        let p = piece.area() * mean_root(profile, piece, 1, line);
         mean += p;
         moments[0] += p * piece.centre[0];
         moments[1] += p * piece.centre[1];
@@ -257,14 +257,14 @@ fn mean_and_moments(
 
 /// Mean of the pressure near an edge over a piece, from `count` points along each side.
 pub(super) fn mean_root(
-    (squared, law): (&SquaredPressure, &EdgeLaw),
+    profile: &EdgeProfile,
     piece: &Piece,
     count: usize,
     line: bool,
 ) -> f64 {
     let half = piece.half.map(|half| half / count as f64);
     // Twice the variation, so that curvature does not hide the edge.
-    let variation = 2.0 * squared.variation(half);
+    let variation = 2.0 * profile.squared.variation(half);
     let rows = if line { 1 } else { count };
     let mut sum = 0.0;
     for a in 0..rows {
@@ -272,11 +272,11 @@ pub(super) fn mean_root(
             let u = piece.centre[0] + half[0] * (2 * a + 1) as f64 - half[0] * count as f64;
             let u = if line { 0.0 } else { u };
             let v = piece.centre[1] + half[1] * (2 * b + 1) as f64 - half[1] * count as f64;
-            let value = squared.at(u, v);
+            let value = profile.squared.at(u, v);
             if value > variation {
-                sum += value.sqrt() * law.factor(squared, [u, v]);
+                sum += profile.root(value);
             } else if value > -variation {
-                sum += mean_root_at_edge((squared, law), [u, v], half, line);
+                sum += mean_root_at_edge(profile, [u, v], half, line);
             }
         }
     }
@@ -287,7 +287,7 @@ pub(super) fn mean_root(
 /// from four points along each side.
 #[cold]
 fn mean_root_at_edge(
-    (squared, law): (&SquaredPressure, &EdgeLaw),
+    profile: &EdgeProfile,
     [u, v]: [f64; 2],
     [hu, hv]: [f64; 2],
     line: bool,
@@ -297,7 +297,7 @@ fn mean_root_at_edge(
     let mut sum = 0.0;
     for a in along {
         for b in &PLACES {
-            sum += law.pressure(squared, [u + a * hu, v + b * hv]);
+            sum += profile.at([u + a * hu, v + b * hv]);
         }
     }
     sum / (along.len() * PLACES.len()) as f64
