@@ -318,6 +318,47 @@ impl Tensor {
         (self.xx + self.yy + self.zz) / 3.0
     }
 
+    /// Whether the largest principal stress may be larger than `least`, given von Mises' stress; never false where it is.
+    ///
+    /// It is at most the mean plus ⅔ of von Mises' stress, and it is less than t where t I − σ is positive definite: where its
+    /// leading minors are positive.
+    pub(super) fn may_pull(&self, least: f64, mises: f64) -> bool {
+        let mean = self.mean();
+        if mean + 0.67 * mises <= least {
+            return false;
+        }
+        let t = least - MINORS * (mean.abs() + mises);
+        let Self { xy, yz, xz, .. } = *self;
+        let [a, b, c] = [t - self.xx, t - self.yy, t - self.zz];
+        let plane = a * b - xy * xy;
+        let whole = c * plane - a * yz * yz - b * xz * xz - 2.0 * xy * yz * xz;
+        !(a > 0.0 && plane > 0.0 && whole > 0.0) && !mises.is_nan()
+    }
+
+    /// Whether the largest shear stress may be larger than `least`, given von Mises' stress; never false where it is.
+    ///
+    /// ```text
+    /// τ = √J₂ cos φ     |sin 3φ| = √(27/4) |J₃| J₂^(−3/2)     |φ| ≤ π/6
+    /// τ > u √J₂  ⟺  sin² 3φ < (1 − u²) (4u² − 1)²             ½√3 ≤ u ≤ 1
+    /// ```
+    pub(super) fn may_shear(&self, least: f64, mises: f64) -> bool {
+        if 0.58 * mises <= least {
+            return false;
+        }
+        let per_root = 3.0_f64.sqrt() / mises;
+        let u = least * per_root - MINORS;
+        let square = u * u;
+        if u < 0.0 || square <= 0.75 {
+            return !mises.is_nan();
+        }
+        let mean = self.mean();
+        let [a, b, c] = [self.xx, self.yy, self.zz].map(|s| (s - mean) * per_root);
+        let [d, e, f] = [self.xy, self.yz, self.xz].map(|s| s * per_root);
+        let third = a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f);
+        let limit = (1.0 - square) * (4.0 * square - 1.0).powi(2);
+        6.75 * third * third <= limit
+    }
+
     /// Principal stresses, the largest first, by Jacobi's rotations, which lose no digits where two
     /// are equal: Golub & Van Loan, Matrix Computations, 4th ed. (2013), §8.5.
     pub(crate) fn principal(&self) -> [f64; 3] {
@@ -338,6 +379,10 @@ impl Tensor {
         values
     }
 }
+
+/// Part of the stress by which limits of principal stresses are too wide: the square of it, which minors are where two principal
+/// stresses are equal, is far above their rounding.
+const MINORS: f64 = 1e-5;
 
 /// Applies the rotation in the plane (p, q) that makes `a[p][q]` zero.
 fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
@@ -468,6 +513,12 @@ pub(super) struct LargestWithError {
 impl LargestWithError {
     pub(super) const NONE: Self = Self { value: Largest::NONE, bound: Largest::NONE };
 
+    /// What is exceeded by all that are as large as these.
+    pub(super) fn or_equal(self) -> Self {
+        let below = |Largest { value, cell }: Largest| Largest { value: value.next_down(), cell };
+        Self { value: below(self.value), bound: below(self.bound) }
+    }
+
     pub(super) fn offer(&mut self, value: f64, error: f64, cell: usize) {
         self.value.offer(value, cell);
         self.bound.offer(value + error, cell);
@@ -514,5 +565,41 @@ mod tests {
             assert!((value - exact).abs() < 10.0 * ROUNDING, "{value} {exact}");
         }
         assert!((von_mises(turned) - 3.0).abs() < 10.0 * ROUNDING);
+    }
+
+    /// No stress is ruled out whose largest principal or shear stress is above a limit, and hardly any other: where two or three
+    /// principal stresses are equal, in all directions, and of any size.
+    #[test]
+    fn what_rules_out_stresses_keeps_the_largest() {
+        const ABOVE: f64 = 1e-4;
+        let turned = |[p, q, r]: [f64; 3], (s, t): (f64, f64)| {
+            let first = [s.cos() * t.cos(), s.sin() * t.cos(), t.sin()];
+            let second = [-s.sin(), s.cos(), 0.0];
+            let of = |i: usize, j: usize| {
+                let both = p * first[i] * first[j] + q * second[i] * second[j];
+                let third = |i: usize| {
+                    let [k, l] = [(i + 1) % 3, (i + 2) % 3];
+                    first[k] * second[l] - first[l] * second[k]
+                };
+                both + r * third(i) * third(j)
+            };
+            Tensor::new([of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(1, 2), of(0, 2)])
+        };
+        let levels = [-4.0, -1.0, -1.0 + 1e-9, 0.0, 0.3, 2.0];
+        for number in 0..levels.len().pow(3) {
+            let value = |k: u32| levels[number / levels.len().pow(k) % levels.len()];
+            for turn in 0..20 {
+                for size in [1e-80, 1.0, 1e80] {
+                    let principal = [0, 1, 2].map(|k| size * value(k));
+                    let tensor = turned(principal, (0.37 * turn as f64, 0.21 * turn as f64));
+                    let ([first, _, last], mises) = (tensor.principal(), tensor.von_mises());
+                    let (shear, above) = (0.5 * (first - last), ABOVE * 4.0 * size);
+                    assert!(tensor.may_pull(first.next_down(), mises), "{tensor:?}");
+                    assert!(tensor.may_shear(shear.next_down(), mises), "{tensor:?}");
+                    assert!(!tensor.may_pull(first + above, mises), "{tensor:?}");
+                    assert!(!tensor.may_shear(shear + above, mises), "{tensor:?}");
+                }
+            }
+        }
     }
 }
