@@ -13,13 +13,14 @@ use super::half_space::{
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
 use super::subcell::{
-    BodyPair, CellPoint, LocalSteps, PointStress, STRESSES, StepErrors, SubcellStress, Tractions,
+    BodyPair, CellPoint, EdgeFit, ErrorOf, LocalSteps, PointStress, STRESSES, StepErrors, SubcellStress, Tractions,
 };
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window, full_window};
+use crate::numerics::rounding;
 use crate::numerics::parallel::{Threads, check_memory, memory_of};
 
 /// Weights of the components σ_xx … σ_xz in each cell, in C order.
@@ -271,7 +272,7 @@ impl StressPlan {
         within: bool,
     ) -> Option<Array1<f64>> {
         let steps = self.whole.steps(window);
-        let errors = |place| Some(self.errors(place, friction, within)?.at(&steps));
+        let errors = |place| Some(self.errors(place, friction, within)?.at(&steps, ErrorOf::Any));
         places.iter().map(errors).collect()
     }
 
@@ -303,6 +304,11 @@ impl StressPlan {
         let is_shallow = self.is_within_a_cell(place);
         let elsewhere = if is_shallow { errors.without_points() } else { errors };
         Some([if points { errors.beside_points() } else { elsewhere }, elsewhere])
+    }
+
+    /// Largest errors of extremes at `place` where values between the centres of cells near an edge are not looked at.
+    pub(super) fn errors_between(&self, place: &Place, friction: [f64; 2]) -> Option<StepErrors> {
+        Some(self.errors(place, friction, false)?.without_points())
     }
 
     /// Whether a place is less than a cell deep.
@@ -337,7 +343,7 @@ impl StressPlan {
             let place = place(body, *depth, options.side)?;
             let points = place.layer == 0 && !points.is_empty();
             let errors = self.errors_of_extremes(&place, friction, (points, self));
-            Ok(errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&steps)))
+            Ok(errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&steps, ErrorOf::Any)))
         };
         depths.iter().map(error).collect()
     }
@@ -374,7 +380,10 @@ impl StressPlan {
     /// the edge.
     pub(super) fn along_edge(&self, points: &[CellPoint], from: usize, step: f64) -> Vec<usize> {
         let Some(solved) = &self.whole.solved else { return Vec::new() };
-        let Some([tx, ty]) = solved.subcell.tangent(&points[from]) else { return Vec::new() };
+        if self.whole.grid.is_line() {
+            return Vec::new();
+        }
+        let Some([nx, ny]) = solved.subcell.inward(&points[from]) else { return Vec::new() };
         let [x, y] = self.position(&points[from]);
         let nearest = |[x, y]: [f64; 2]| {
             let far = |k: &usize| {
@@ -383,8 +392,21 @@ impl StressPlan {
             };
             (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
         };
-        let places = [step, -step].map(|step| [x + step * tx, y + step * ty]);
+        let places = [step, -step].map(|step| [x + step * ny, y - step * nx]);
         places.into_iter().filter_map(nearest).filter(|k| *k != from).collect()
+    }
+
+    /// A point at this distance from one of the edge, towards the inside; none beyond the grid.
+    pub(super) fn inside_of(&self, point: &CellPoint, by: f64) -> Option<CellPoint> {
+        let inward = self.whole.solved.as_ref()?.subcell.inward(point)?;
+        let (grid, mut moved) = (&self.whole.grid, *point);
+        for axis in 0..2 {
+            let at = point.within[axis] + by * inward[axis] / grid.spacing()[axis];
+            let cells = rounding::round(at);
+            moved.cell[axis] = point.cell[axis].checked_add_signed(cells as isize)?;
+            moved.within[axis] = at - cells;
+        }
+        (0..2).all(|axis| moved.cell[axis] < grid.shape()[axis]).then_some(moved)
     }
 
     /// Points of the edge that the body has.
@@ -410,6 +432,8 @@ pub(super) struct Evaluation<'a> {
     plan: &'a StressPlan,
     loading: Loading,
     displacement: bool,
+    /// Whether stresses without what pressure within cells adds are kept.
+    pub(super) keeps_smooth: bool,
     whole: Option<PlaneMemory>,
     parts: Vec<Option<PlaneMemory>>,
 }
@@ -420,6 +444,7 @@ impl<'a> Evaluation<'a> {
             plan,
             loading: Loading::new(friction, displacement),
             displacement,
+            keeps_smooth: false,
             whole: None,
             parts: plan.parts.iter().map(|_| None).collect(),
         }
@@ -436,12 +461,21 @@ impl<'a> Evaluation<'a> {
         let (plan, loading) = (self.plan, &self.loading);
         let memory = || plan.whole.plane_memory(loading);
         let memory = self.whole.get_or_insert_with(memory);
+        memory.keep_within_cells(self.keeps_smooth);
         plan.whole.plane(loading, place, memory, outputs, progress)?;
         for (part, memory) in plan.parts.iter().zip(&mut self.parts) {
             part.plane(place, self.displacement, memory, outputs, progress)?;
         }
         outputs.iter_mut().for_each(|output| plan.span.blank(output));
         ControlFlow::Continue(())
+    }
+
+    /// The `fields` of the plane that was evaluated last, without what pressure within cells adds.
+    pub(super) fn smooth(&self, fields: &[Vec<f64>; STRESSES]) -> Option<[Vec<f64>; STRESSES]> {
+        let within = self.whole.as_ref()?.within_cells()?;
+        Some(std::array::from_fn(|k| {
+            fields[k].iter().zip(&within[k]).map(|(field, within)| field - within).collect()
+        }))
     }
 
     /// Components at `place` in each of the `cells`; with displacements, nine. `progress` is told 0.
@@ -470,13 +504,13 @@ impl<'a> Evaluation<'a> {
         &self,
         place: &Place,
         at: &PointStress,
-        point: &CellPoint,
+        (point, fit): (&CellPoint, EdgeFit),
         progress: &mut StressProgress,
     ) -> ControlFlow<(), [f64; STRESSES]> {
         progress(0.0)?;
         let plan = self.plan;
-        let mut sum = plan.whole.threads.run(|| at.at(point));
-        if plan.known.is_some() {
+        let mut sum = plan.whole.threads.run(|| at.at(point, fit));
+        if plan.known.is_some() || at.is_from_cells(point) {
             return ControlFlow::Continue(sum);
         }
         let around = plan.span.around(point, plan.whole.grid.shape());
@@ -685,7 +719,7 @@ impl<'a> Request<'a> {
         if let Some(point) = self.known_point(evaluation.plan)
             && let Some(at) = evaluation.point_stress(place)
         {
-            let components = evaluation.at_point(place, &at, &point, progress)?;
+            let components = evaluation.at_point(place, &at, (&point, EdgeFit::Best), progress)?;
             here.iter_mut().zip(components).for_each(|(value, component)| value[0] = component);
         }
         ControlFlow::Continue(())

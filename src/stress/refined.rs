@@ -31,7 +31,7 @@ use super::options::{StressOptions, StressProgress, WatchedStress};
 use super::outside_patch::{OutsidePatch, Sampled};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::section::Span;
-use super::subcell::BodyPair;
+use super::subcell::{BodyPair, ErrorOf};
 use super::summary::{Extremes, Scope, Strengths, StressSummary, SummaryRequest, place_of};
 use crate::compliance::response::Body;
 use crate::compliance::response::interior::Place;
@@ -450,7 +450,7 @@ impl Refined<'_> {
                     start..end
                 });
                 let errors = plan.whole.errors(&suspect.place, (friction, false));
-                let errors = errors.unwrap_or_default().by_axis(&plan.whole.steps(&near));
+                let errors = errors.unwrap_or_default().by_axis(&plan.whole.steps(&near), ErrorOf::Any);
                 for (coarse, error) in coarse.iter_mut().zip(errors) {
                     *coarse |= error > suspect.allowed;
                 }

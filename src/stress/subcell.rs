@@ -70,13 +70,13 @@ mod near;
 mod reconstruction;
 mod uncertainty;
 
-use edge::BAND;
+use edge::{BAND, Fitting};
 pub(super) use edge::around;
 pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};
 pub(super) use uncertainty::BodyPair;
-pub(super) use uncertainty::{LocalSteps, StepErrors};
+pub(super) use uncertainty::{ErrorOf, LocalSteps, StepErrors};
 use uncertainty::{STEP_REACH, Uncertainty};
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
@@ -87,6 +87,8 @@ pub(super) struct SubcellStress {
     /// Kernels down to the smallest pieces at a point, made at the first.
     point_kernels: OnceLock<Kernels>,
     near: NearPlan,
+    /// The pressure within cells by wider fits near the edge, made where it is asked for.
+    wider: OnceLock<NearPlan>,
     uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
     solver_pressure: Vec<f64>,
@@ -106,7 +108,7 @@ impl SubcellStress {
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
-        let law = pair.edge_law(grid);
+        let law = pair.edge_law(grid).map(|law| (law, Fitting::BEST));
         let margin = Margin::of(grid);
         let wide = margin.wide(grid);
         let pressure = &*margin.around(pressure);
@@ -126,6 +128,7 @@ impl SubcellStress {
             point_kernels: OnceLock::new(),
             uncertainty,
             near,
+            wider: OnceLock::new(),
             solver_pressure: pressure.to_vec(),
         })
     }
@@ -191,9 +194,25 @@ impl SubcellStress {
         self.margin.middle(&marked(&mut lost, STEP_REACH))
     }
 
-    /// Unit vector along the edge at one of its points; none where it has no direction, as in line contact.
-    pub(super) fn tangent(&self, point: &CellPoint) -> Option<[f64; 2]> {
-        self.near.tangent(point)
+    /// Unit vector towards the inside of the contact at one of the points of its edge.
+    pub(super) fn inward(&self, point: &CellPoint) -> Option<[f64; 2]> {
+        self.near.inward(point)
+    }
+
+    /// Makes the pressure within cells by wider fits near the edge, of a grid that does not repeat.
+    pub(super) fn make_wider(
+        &self,
+        grid: &Grid,
+        threads: &Threads,
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        if self.wider.get().is_none() {
+            let law = (self.near.reconstruction.law.clone(), Fitting::WIDER);
+            let plan = NearPlan::new(&self.solver_pressure, grid, Some(law), threads, progress)?;
+            // Another thread may have made the same.
+            let _ = self.wider.set(plan);
+        }
+        ControlFlow::Continue(())
     }
 
     /// Sets the tractions at the surface, in the cells near an edge, to those at their centres: a cell that the edge crosses has
@@ -227,7 +246,7 @@ impl SubcellStress {
         let kernels = || threads.run(|| Kernels::new(body, grid, SMALLEST_AT_POINT, lx.hypot(ly)));
         let kernels = self.point_kernels.get_or_init(kernels);
         let stresses = threads.run(|| rectangle_stresses(kernels, place, tractions.act()));
-        PointStress { subcell: self, grid, depth: place.depth, tractions, stresses }
+        PointStress { subcell: self, grid, depth: place.depth, tractions, stresses, around: None }
     }
 
     /// Adds the stresses of a table to those of the uniform part, one plane of each component; at the
@@ -287,21 +306,115 @@ impl Tractions<'_> {
 type RectangleStresses<'a> = Box<dyn Fn([f64; 2], [f64; 2]) -> [Components; 3] + Send + Sync + 'a>;
 
 /// Stresses at one depth below any point.
-pub(super) struct PointStress<'a> {
+pub(in crate::stress) struct PointStress<'a> {
     subcell: &'a SubcellStress,
     grid: &'a Grid,
     depth: f64,
     tractions: Tractions<'a>,
     stresses: RectangleStresses<'a>,
+    around: Option<SmoothFields>,
+}
+
+/// Stresses in all cells at the depth of points, but for what pressure within cells adds: that of cells farther off than
+/// [`AROUND`] is interpolated between centres.
+struct SmoothFields {
+    fields: [Vec<f64>; STRESSES],
+    /// Stresses of a unit load on one cell, by the offset to the target.
+    table: Vec<[Components; 3]>,
+}
+
+/// Cells to each side of a point whose loads are summed: those beyond are at least five cells from all centres between which their
+/// stresses are interpolated by cubics, which errs by less than 1e-4 of the pressure there.
+const AROUND: usize = 8;
+
+/// Cells to each side of a point between whose centres stresses are interpolated.
+const STENCIL: usize = 2;
+
+impl SmoothFields {
+    fn new(fields: [Vec<f64>; STRESSES], grid: &Grid, stresses: &RectangleStresses) -> Self {
+        let (spacing, half) = (grid.spacing(), grid.spacing().map(|d| 0.5 * d));
+        let reach = (AROUND + STENCIL) as isize;
+        let rows = if grid.is_line() { 0..=0 } else { -reach..=reach };
+        let offset = |i: isize, j: isize| stresses([i as f64 * spacing[0], j as f64 * spacing[1]], half);
+        let table = rows.flat_map(|i| (-reach..=reach).map(move |j| [i, j]));
+        Self { fields, table: table.map(|[i, j]| offset(i, j)).collect() }
+    }
+
+    /// Stress of the loads farther off than [`AROUND`] at a point; none where the cells around it do not all have stresses.
+    fn beyond(
+        &self,
+        grid: &Grid,
+        point: &CellPoint,
+        load: &impl Fn(usize) -> [f64; 3],
+    ) -> Option<Components> {
+        let ([nx, ny], line) = (grid.shape(), grid.is_line());
+        let along = |axis: usize| -> Option<Vec<(usize, f64)>> {
+            if line && axis == 0 {
+                return Some(vec![(0, 1.0)]);
+            }
+            let (within, count) = (point.within[axis], grid.shape()[axis]);
+            let first = if within < 0.0 { -2 } else { -1 };
+            (first..first + 4)
+                .map(|k| {
+                    let others = (first..first + 4).filter(|other| *other != k);
+                    let weight = others.map(|o| (within - o as f64) / (k - o) as f64).product();
+                    let cell = point.cell[axis].checked_add_signed(k)?;
+                    (cell < count).then_some((cell, weight))
+                })
+                .collect()
+        };
+        let (rows, columns) = (along(0)?, along(1)?);
+        let reach = (AROUND + STENCIL) as isize;
+        let near = around([nx, ny], point.cell, AROUND);
+        let loads: Vec<_> = near.map(|cell| (cell, load(cell[0] * ny + cell[1]))).collect();
+        let mut sum = [0.0; STRESSES];
+        for (i, row) in &rows {
+            for (j, column) in &columns {
+                let mut own = self.fields.each_ref().map(|field| field[i * ny + j]);
+                for ([k, l], load) in &loads {
+                    let by = [*i as isize - *k as isize, *j as isize - *l as isize];
+                    let row = if line { 0 } else { by[0] + reach };
+                    let number = row * (2 * reach + 1) + by[1] + reach;
+                    let stress = under(*load, self.table[number as usize]);
+                    own.iter_mut().zip(stress).for_each(|(own, stress)| *own -= stress);
+                }
+                sum = added(sum, own.map(|value| row * column * value));
+            }
+        }
+        sum.iter().all(|value| value.is_finite()).then_some(sum)
+    }
+}
+
+/// Which fits near the edge the pressure within cells is by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::stress) enum EdgeFit {
+    Best,
+    Wider,
 }
 
 impl PointStress<'_> {
-    /// Stresses below a point: a sum over all loaded cells, and over the pieces of those nearby, ever finer towards the
+    /// The same from stresses in all cells at this depth, but for what pressure within cells adds. On the threads of the caller.
+    pub(super) fn from_cells(mut self, fields: [Vec<f64>; STRESSES]) -> Self {
+        self.around = Some(SmoothFields::new(fields, self.grid, &self.stresses));
+        self
+    }
+
+    /// Whether what adds to the whole half-space's stress is part of [`PointStress::at`]: where all cells around have stresses.
+    pub(super) fn is_from_cells(&self, point: &CellPoint) -> bool {
+        let none = |_: usize| [0.0; 3];
+        self.around.as_ref().is_some_and(|cells| cells.beyond(self.grid, point, &none).is_some())
+    }
+
+    /// Stresses below a point: a sum over loaded cells, and over the pieces of those nearby, ever finer towards the
     /// point. On the threads of the caller.
     ///
     /// Known tractions follow the pressure within the cells around the point, with their ratio to it in the point's cell.
-    pub(super) fn at(&self, point: &CellPoint) -> Components {
+    pub(super) fn at(&self, point: &CellPoint, fit: EdgeFit) -> Components {
         let Self { subcell, stresses, .. } = self;
+        let near = match fit {
+            EdgeFit::Best => &subcell.near,
+            EdgeFit::Wider => subcell.wider.get().unwrap_or(&subcell.near),
+        };
         // No piece may end at the point itself.
         let farthest = 0.5 - SMALLEST_AT_POINT;
         let within = point.within.map(|u| u.clamp(-farthest, farthest));
@@ -310,7 +423,7 @@ impl PointStress<'_> {
         let half = spacing.map(|d| 0.5 * d);
         let friction = self.friction_at(point.cell);
         let load = |cell: usize| {
-            let p = subcell.uniform[cell];
+            let p = near.reconstruction.uniform[cell];
             match self.tractions {
                 Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
                 // What is moved between cells goes with the pressure.
@@ -320,9 +433,24 @@ impl PointStress<'_> {
                 }
             }
         };
+        let of_plane = |cell: usize| {
+            let p = subcell.uniform[cell];
+            match self.tractions {
+                Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
+                Tractions::Known([qx, qy]) => [p, qx[cell], qy[cell]],
+            }
+        };
+        let cells = self.around.as_ref();
+        let beyond = cells.and_then(|cells| cells.beyond(self.grid, point, &of_plane));
+        let within = |at: usize, count: usize| match beyond {
+            Some(_) => at.saturating_sub(AROUND)..(at + AROUND + 1).min(count),
+            None => 0..count,
+        };
+        let [i, j] = point.cell;
+        let (rows, columns) = (within(i, nx), within(j, ny));
         let row = |i: usize| {
             let mut sum = [0.0; STRESSES];
-            let loads = (0..ny).map(|j| (j, load(i * ny + j)));
+            let loads = columns.clone().map(|j| (j, load(i * ny + j)));
             for (j, load) in loads.filter(|(_, load)| load.iter().any(|part| *part != 0.0)) {
                 let from = [0, 1].map(|axis| {
                     let cells = point.cell[axis] as f64 - [i, j][axis] as f64;
@@ -332,16 +460,16 @@ impl PointStress<'_> {
             }
             sum
         };
-        let rows: Vec<Components> = (0..nx).into_par_iter().map(row).collect();
+        let rows: Vec<Components> = rows.into_par_iter().map(row).collect();
         // In the order of the rows, whatever the number of threads.
-        let mut sum = rows.into_iter().fold([0.0; STRESSES], added);
-        if subcell.near.reaches(self.depth) {
+        let mut sum = rows.into_iter().fold(beyond.unwrap_or_default(), added);
+        if near.reaches(self.depth) {
             let stress = |at, half| under(sliding(friction), stresses(at, half));
-            sum = added(sum, subcell.near.sum_at_point(point, self.depth, stress));
+            sum = added(sum, near.sum_at_point(point, self.depth, stress));
         }
         if self.depth == 0.0 {
-            let mean = subcell.solver_pressure[subcell.near.number(point.cell)];
-            let p = subcell.near.pressure_at(point, mean);
+            let mean = subcell.solver_pressure[near.number(point.cell)];
+            let p = near.pressure_at(point, mean);
             for (k, factor) in tractions(friction) {
                 sum[k] = -factor * p;
             }

@@ -37,6 +37,20 @@ pub(in crate::stress) struct PlaneMemory {
     workspace: TransformMemory,
     /// Components of a part, on its own cells.
     fields: Vec<Vec<f64>>,
+    /// What pressure within cells added to the last plane, if that is kept.
+    within_cells: Option<[Vec<f64>; STRESSES]>,
+}
+
+impl PlaneMemory {
+    /// Keeps what pressure within cells adds to a plane, or no longer.
+    pub(in crate::stress) fn keep_within_cells(&mut self, keep: bool) {
+        self.within_cells = keep.then(|| self.within_cells.take().unwrap_or_default());
+    }
+
+    /// What pressure within cells added to the last plane, if that is kept.
+    pub(in crate::stress) fn within_cells(&self) -> Option<&[Vec<f64>; STRESSES]> {
+        self.within_cells.as_ref()
+    }
 }
 
 /// Arrays of cells of [`PlaneMemory`]: coefficients of each load and component, and of the components that are convolved
@@ -65,6 +79,7 @@ impl HalfSpacePlan {
             rows: loading.loads.iter().map(rows).collect(),
             workspace: self.transform.workspace(),
             fields: Vec::new(),
+            within_cells: None,
         }
     }
 
@@ -99,7 +114,12 @@ impl HalfSpacePlan {
         }
         if let (Some(solved), Some(near)) = (&self.solved, near) {
             let stresses = &mut outputs[..STRESSES];
+            let kept = memory.within_cells.iter_mut().flatten();
+            kept.zip(&*stresses).for_each(|(kept, stress)| kept.clone_from(&stress.to_vec()));
             self.threads.run(|| solved.subcell.add(&near, friction, stresses));
+            for (kept, stress) in memory.within_cells.iter_mut().flatten().zip(stresses) {
+                kept.iter_mut().zip(&**stress).for_each(|(kept, stress)| *kept = stress - *kept);
+            }
         }
         ControlFlow::Continue(())
     }

@@ -28,8 +28,21 @@ use crate::stress::options::StressProgress;
 /// the fitted pressure. Two cells carry the staircase.
 pub(super) const BAND: u8 = 3;
 
-/// Degrees of the polynomials that are tried: at the second, Hertz' contact is exact.
-const DEGREES: [u8; 2] = [2, 3];
+/// Which polynomials are fitted, and to which cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Fitting {
+    /// Cells to each side of a cell that its fit uses: over more of them p² of a small
+    /// contact is no polynomial, over fewer the solver's staircase is felt more.
+    window: usize,
+    /// Degrees of the polynomials that are tried: at the second, Hertz' contact is exact.
+    degrees: &'static [u8],
+}
+
+impl Fitting {
+    pub(super) const BEST: Self = Self { window: 8, degrees: &[2, 3] };
+    /// Another one, whose differences from the best tell what the fit leaves uncertain.
+    pub(super) const WIDER: Self = Self { window: 12, degrees: &[3] };
+}
 
 /// Distance, in cells, around a cell without a fit in which no other cell takes its own.
 const NEIGHBOURS: usize = 3;
@@ -59,7 +72,7 @@ pub(super) fn edge_cells(
     pressure: &[f64],
     distances: &[u8],
     shape: [usize; 2],
-    law: &EdgeLaw,
+    (law, fitting): (&EdgeLaw, Fitting),
     threads: &Threads,
     progress: &mut StressProgress,
 ) -> ControlFlow<(), Vec<EdgeCell>> {
@@ -79,7 +92,7 @@ pub(super) fn edge_cells(
         progress(0.0)?;
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();
-        let fit = |k: &usize| accepted_fit(&known, pressure, (shape, band[*k]), law);
+        let fit = |k: &usize| accepted_fit(&known, pressure, (shape, band[*k]), (law, fitting));
         let fits: Vec<_> = threads.run(|| needed.par_iter().map(fit).collect());
         for (k, squared) in needed.into_iter().zip(fits) {
             if squared.is_none() {
@@ -162,13 +175,14 @@ fn accepted_fit(
     known: &[Option<f64>],
     pressure: &[f64],
     (shape, cell @ [i, j]): ([usize; 2], [usize; 2]),
-    law: &EdgeLaw,
+    (law, fitting): (&EdgeLaw, Fitting),
 ) -> Option<SquaredPressure> {
-    if !may_be_fitted(known, shape, cell) {
+    if !may_be_fitted(known, (shape, cell), fitting.window) {
         return None;
     }
-    let window = FitWindow::around(shape, cell, |number| known[number].is_some());
-    let equations: Vec<_> = DEGREES.iter().filter_map(|degree| window.equations(*degree)).collect();
+    let window = FitWindow::around(shape, cell, fitting.window, |number| known[number].is_some());
+    let degrees = fitting.degrees.iter();
+    let equations: Vec<_> = degrees.filter_map(|degree| window.equations(*degree)).collect();
     let mut last: Option<Fit> = None;
     for _ in 0..law.passes() {
         let profile = last.as_ref().map(|fit| law.profile(&fit.polynomial));
@@ -188,10 +202,6 @@ fn accepted_fit(
     };
     (uncertainty <= UNCERTAINTY_LIMIT && agrees).then_some(polynomial)
 }
-
-/// Cells to each side of a cell that its fit uses: over more of them p² of a small
-/// contact is no polynomial, over fewer the solver's staircase is felt more.
-const WINDOW: usize = 8;
 
 /// Square of the distance, in windows, at which the weight (1.1 − r²)² of a value falls to 0: cells at
 /// the window's sides still count a little.
@@ -276,16 +286,22 @@ fn fewest_values(terms: usize, line: bool) -> usize {
 
 /// Whether there may be values enough around a cell for a polynomial of second degree. They are
 /// counted in a square, and the fit uses a circle within it: counting is far cheaper than summing.
-pub(super) fn may_be_fitted(values: &[Option<f64>], shape: [usize; 2], cell: [usize; 2]) -> bool {
+fn may_be_fitted(
+    values: &[Option<f64>],
+    (shape, cell): ([usize; 2], [usize; 2]),
+    window: usize,
+) -> bool {
     let line = shape[0] == 1;
     let terms = if line { 3 } else { 6 };
     let known = |[i, j]: &[usize; 2]| values[i * shape[1] + j].is_some();
-    around(shape, cell, WINDOW).filter(known).count() >= fewest_values(terms, line)
+    around(shape, cell, window).filter(known).count() >= fewest_values(terms, line)
 }
 
 /// The cells around one cell to whose values polynomials are fitted, by normal equations.
 pub(super) struct FitWindow {
     line: bool,
+    /// Cells to each side.
+    reach: usize,
     cells: Vec<FittedCell>,
     /// Lower triangle of the matrix.
     matrix: [[f64; TERMS]; TERMS],
@@ -315,9 +331,10 @@ impl FitWindow {
     pub(super) fn around(
         shape: [usize; 2],
         cell @ [i, j]: [usize; 2],
+        reach: usize,
         is_known: impl Fn(usize) -> bool,
     ) -> Self {
-        let scale = 1.0 / WINDOW as f64;
+        let scale = 1.0 / reach as f64;
         let fitted = |[k, l]: [usize; 2]| {
             let number = k * shape[1] + l;
             let at = [k as f64 - i as f64, l as f64 - j as f64];
@@ -328,7 +345,7 @@ impl FitWindow {
             let counts = rest > 0.0 && is_known(number);
             counts.then_some(FittedCell { number, at, weight: rest * rest, basis })
         };
-        let cells: Vec<FittedCell> = around(shape, cell, WINDOW).filter_map(fitted).collect();
+        let cells: Vec<FittedCell> = around(shape, cell, reach).filter_map(fitted).collect();
         let mut matrix = [[0.0; TERMS]; TERMS];
         for FittedCell { weight, basis, .. } in &cells {
             for (a, row) in matrix.iter_mut().enumerate() {
@@ -339,7 +356,7 @@ impl FitWindow {
             }
         }
         let weights = cells.iter().map(|cell| cell.weight).sum();
-        Self { line: shape[0] == 1, cells, matrix, weights }
+        Self { line: shape[0] == 1, reach, cells, matrix, weights }
     }
 
     /// The equations of a polynomial of `degree`; none where there are too few values, or they do not determine it.
@@ -382,7 +399,7 @@ impl FitWindow {
             let mut polynomial = SquaredPressure([0.0; TERMS]);
             for (value, k) in solution.iter().zip(powers) {
                 let [a, b] = POWERS[*k];
-                polynomial.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+                polynomial.0[*k] = value / (self.reach as f64).powi(i32::from(a + b));
             }
             let deviation = (variance * spread * self.weights / count).sqrt();
             let uncertainty = deviation / polynomial.slope();
@@ -486,7 +503,14 @@ mod tests {
             let distances = edge_distances(pressure, SHAPE, BAND + 1);
             let threads = Threads::new(Some(2))?;
             let mut progress = |_| ControlFlow::Continue(());
-            match edge_cells(pressure, &distances, SHAPE, &EdgeLaw::default(), &threads, &mut progress) {
+            match edge_cells(
+                pressure,
+                &distances,
+                SHAPE,
+                (&EdgeLaw::default(), Fitting::BEST),
+                &threads,
+                &mut progress,
+            ) {
                 ControlFlow::Continue(cells) => Ok(cells),
                 ControlFlow::Break(()) => panic!("nothing stops it"),
             }
@@ -531,7 +555,7 @@ mod tests {
                     continue;
                 }
                 let cell @ [i, j] = place(cell);
-                let window = FitWindow::around(SHAPE, cell, |k| known[k].is_some());
+                let window = FitWindow::around(SHAPE, cell, 8, |k| known[k].is_some());
                 let equations: Vec<_> = window.equations(degree).into_iter().collect();
                 let Some(fit) = window.fit(&equations, |k, _| known[k].unwrap_or_default()) else {
                     panic!("too few values around {cell:?}")

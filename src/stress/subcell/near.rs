@@ -10,10 +10,11 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::edge::around;
+use super::edge::{Fitting, around};
 use super::law::EdgeLaw;
 use super::reconstruction::{
-    CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, SHIFT_LIMIT, mean_root,
+    CUTS, Cut, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, SHIFT_LIMIT,
+    SMALLEST_AT_POINT, mean_root,
 };
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -55,6 +56,9 @@ const INTERIOR_REACH: usize = 2;
 /// Largest number of cells along the shorter side to which a load is followed, which bounds the time:
 /// cells more than 3.3 times as long as wide lose some. Twelve times is tested (`tests/stress/edge.rs`).
 const REACH_LIMIT: usize = 10;
+
+/// Side of the smallest piece around a point over its depth.
+const SMALLEST_OF_DEPTH: f64 = 0.125;
 
 /// Cells near the edge whose stresses are held at a time, which bounds the memory.
 const CELLS_HELD: usize = 512;
@@ -130,7 +134,7 @@ impl NearPlan {
     pub(super) fn new(
         pressure: &[f64],
         grid: &Grid,
-        law: Option<EdgeLaw>,
+        law: Option<(EdgeLaw, Fitting)>,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -366,7 +370,9 @@ impl NearPlan {
             if root.is_none() && curved == [[0.0; 2]; 2] {
                 continue;
             }
-            let graded = by.iter().all(|by| by.abs() <= 1).then(|| Cut::towards(at, self.line));
+            let smallest = (SMALLEST_OF_DEPTH * depth / self.shorter()).max(SMALLEST_AT_POINT);
+            let graded =
+                by.iter().all(|by| by.abs() <= 1).then(|| Cut::towards(at, smallest, self.line));
             let seen = self.cuts.cut_number(by, depth / self.shorter());
             let cut = graded.as_ref().unwrap_or_else(|| self.cuts.get(seen));
             let (pressures, moments) = match root {
@@ -462,14 +468,14 @@ impl NearPlan {
         self.reconstruction.roots.iter().map(|root| root.cell)
     }
 
-    /// Unit vector along the edge at one of its points; none in line contact.
-    pub(super) fn tangent(&self, &CellPoint { cell, within }: &CellPoint) -> Option<[f64; 2]> {
+    /// Unit vector towards the inside of the contact at one of the points of its edge.
+    pub(super) fn inward(&self, &CellPoint { cell, within }: &CellPoint) -> Option<[f64; 2]> {
         let roots = &self.reconstruction.roots;
         let root = roots.binary_search_by_key(&cell, |root| root.cell).ok()?;
-        let [u, v] = roots[root].squared.gradient(within);
-        let [x, y] = [v * self.sides[0], -u * self.sides[1]];
+        let slopes = roots[root].squared.gradient(within);
+        let [x, y] = [0, 1].map(|axis| slopes[axis] / self.sides[axis]);
         let length = x.hypot(y);
-        (!self.line && length > 0.0).then(|| [x / length, y / length])
+        (length > 0.0).then(|| [x / length, y / length])
     }
 
     /// Number of a cell in the order of the grid.

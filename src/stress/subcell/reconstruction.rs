@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::edge::{
-    BAND, EdgeCell, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
+    BAND, EdgeCell, Fitting, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
 };
 use super::law::{EdgeLaw, EdgeProfile};
 use crate::numerics::parallel::Threads;
@@ -89,7 +89,7 @@ impl Reconstruction {
     pub(super) fn new(
         pressure: &[f64],
         shape: [usize; 2],
-        law: Option<EdgeLaw>,
+        law: Option<(EdgeLaw, Fitting)>,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -99,10 +99,12 @@ impl Reconstruction {
         let interior = Interior::new(pressure, &distances, shape);
         progress(0.0)?;
         let edges = match &law {
-            Some(law) => edge_cells(pressure, &distances, shape, law, threads, progress)?,
+            Some((law, fitting)) => {
+                edge_cells(pressure, &distances, shape, (law, *fitting), threads, progress)?
+            }
             None => Vec::new(),
         };
-        let law = law.unwrap_or_default();
+        let law = law.map(|(law, _)| law).unwrap_or_default();
         let divisions = pieces(Piece::CELL, MEAN_DIVISIONS, line);
         let root = |edge| RootCell::new(edge, &law, &divisions, line);
         let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
@@ -336,18 +338,42 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// A cell cut ever finer towards a point (u, v) from its centre, which is the middle of the smallest piece: products of
-    /// steps along both axes that grow by the factor [`GROWTH`].
-    pub(super) fn towards(point: [f64; 2], line: bool) -> Self {
-        let [along, across] = [0, 1].map(|axis| match line && axis == 0 {
-            true => vec![[0.0, 0.5]],
-            false => steps_towards(point[axis]),
-        });
-        let pieces = along.iter().flat_map(|[u, hu]| {
-            let piece = |[v, hv]: &[f64; 2]| Piece { centre: [*u, *v], half: [*hu, *hv] };
-            across.iter().map(piece)
-        });
-        Self::new(pieces.collect(), 1)
+    /// A cell cut ever finer towards a point (u, v) from its centre, which is the middle of the `smallest` piece: squares in rings
+    /// around it, each as large as half its distance.
+    pub(super) fn towards(point: [f64; 2], smallest: f64, line: bool) -> Self {
+        let mut pieces = Vec::new();
+        let mut add = |[left, right]: [f64; 2], [low, high]: [f64; 2]| {
+            let ends = [[point[0] + left, point[0] + right], [point[1] + low, point[1] + high]];
+            let [along, across] = ends.map(|ends| ends.map(|end| end.clamp(-0.5, 0.5)));
+            let along = if line { [-0.5, 0.5] } else { along };
+            if along[0] < along[1] && across[0] < across[1] {
+                let middle = [along, across].map(|[a, b]| 0.5 * (a + b));
+                let centre = if line { [0.0, middle[1]] } else { middle };
+                let half = [along, across].map(|[a, b]| 0.5 * (b - a));
+                pieces.push(Piece { centre, half });
+            }
+        };
+        let mut hole = 0.5 * smallest;
+        add([-hole, hole], [-hole, hole]);
+        let farthest = 0.5 + point[0].abs().max(point[1].abs());
+        while hole < farthest {
+            let side = 0.5 * hole;
+            let step = |k: i32| [f64::from(k) * side, f64::from(k + 1) * side];
+            let is_inner = |k: i32| (-2..2).contains(&k);
+            for k in -4..4 {
+                if line {
+                    if !is_inner(k) {
+                        add([-0.5, 0.5], step(k));
+                    }
+                } else {
+                    for l in (-4..4).filter(|l| !(is_inner(k) && is_inner(*l))) {
+                        add(step(k), step(l));
+                    }
+                }
+            }
+            hole *= 2.0;
+        }
+        Self::new(pieces, 1)
     }
 
     fn new(pieces: Vec<Piece>, points: usize) -> Self {
@@ -363,22 +389,6 @@ impl Cut {
 /// Side of the smallest piece at a point, in cells. What pressure c √d adds within it to the stress of a traction is missed:
 /// (2/π) c √(2 s) of μ. With a side d of cells, that is 0.02 √(d/a) μ p0 for Hertz' pressure on a half-width a.
 pub(super) const SMALLEST_AT_POINT: f64 = 1.0 / 4096.0;
-
-/// Growth of steps away from a point. Uniform pressure on a step from d to 1.5 d makes the stress of c √d there by 0.7 % too large.
-const GROWTH: f64 = 1.5;
-
-/// Middles and half lengths of the steps of a cell, along one axis, that grow away from the distance `at` from its centre.
-fn steps_towards(at: f64) -> Vec<[f64; 2]> {
-    let mut ends = vec![-0.5, 0.5];
-    let mut distance = 0.5 * SMALLEST_AT_POINT;
-    while distance < 0.5 + at.abs() {
-        ends.extend([at - distance, at + distance].into_iter().filter(|end| end.abs() < 0.5));
-        distance *= GROWTH;
-    }
-    ends.sort_by(f64::total_cmp);
-    let step = |pair: &[f64]| [0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0])];
-    ends.windows(2).map(step).filter(|[_, half]| *half > 0.0).collect()
-}
 
 pub(super) const CUTS: usize = 3;
 
@@ -470,7 +480,7 @@ mod tests {
     fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
         let threads = Threads::new(Some(2))?;
         let mut progress = |_| ControlFlow::Continue(());
-        match Reconstruction::new(pressure, shape, Some(EdgeLaw::default()), &threads, &mut progress) {
+        match Reconstruction::new(pressure, shape, Some((EdgeLaw::default(), Fitting::BEST)), &threads, &mut progress) {
             ControlFlow::Continue(reconstruction) => Ok(reconstruction),
             ControlFlow::Break(()) => panic!("nothing stops it"),
         }

@@ -156,17 +156,48 @@ pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
 /// Errors of the stress at one depth per unit of the steps around a place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::stress) struct StepErrors {
-    /// Under pressure and the friction in proportion to it, and under tractions that are uniform over cells.
-    factors: [AxisSteps; 2],
+    /// Of each component, under pressure and the friction in proportion to it, and under tractions that are uniform over cells.
+    factors: [[AxisSteps; 2]; COMPONENTS_APART],
     /// Error that does not depend on the steps.
     everywhere: f64,
 }
 
+/// What an error is of: components whose errors differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::stress) enum ErrorOf {
+    /// σ_zz.
+    Normal,
+    /// σ_xz and σ_yz.
+    Shear,
+    /// σ_xx, σ_yy and σ_xy.
+    Lateral,
+    /// All components.
+    Any,
+}
+
+/// Number of components whose errors differ.
+const COMPONENTS_APART: usize = 3;
+
+impl ErrorOf {
+    /// Numbers of its components.
+    fn numbers(self) -> std::ops::Range<usize> {
+        match self {
+            Self::Any => 0..COMPONENTS_APART,
+            of => of as usize..of as usize + 1,
+        }
+    }
+}
+
 impl StepErrors {
     /// Errors \[Pa\] from waves along x and along y, where the pressure has these steps.
-    pub(in crate::stress) fn by_axis(&self, LocalSteps(steps): &LocalSteps) -> [f64; 2] {
+    pub(in crate::stress) fn by_axis(&self, steps: &LocalSteps, of: ErrorOf) -> [f64; 2] {
+        let parts = self.factors[of.numbers()].iter().map(|part| self.of_part(part, steps));
+        parts.fold([0.0; 2], |a, b| [0, 1].map(|axis| f64::max(a[axis], b[axis])))
+    }
+
+    fn of_part(&self, factors: &[AxisSteps; 2], LocalSteps(steps): &LocalSteps) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let errors = self.factors[axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
+            let errors = factors[axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
             let mut largest = [0.0; 2];
             for (k, error) in errors.enumerate() {
                 let largest = &mut largest[usize::from(k >= OF_TRACTION)];
@@ -177,16 +208,19 @@ impl StepErrors {
     }
 
     /// The error \[Pa\] where the pressure has these steps.
-    pub(in crate::stress) fn at(&self, steps: &LocalSteps) -> f64 {
-        let [along, across] = self.by_axis(steps);
+    pub(in crate::stress) fn at(&self, steps: &LocalSteps, of: ErrorOf) -> f64 {
+        let [along, across] = self.by_axis(steps, of);
         along.max(across)
     }
 
     /// The larger of two errors.
     pub(in crate::stress) fn larger(self, other: Self) -> Self {
-        let larger = |axis: usize, k: usize| self.factors[axis][k].max(other.factors[axis][k]);
+        let larger = |part: usize, axis: usize, k: usize| {
+            self.factors[part][axis][k].max(other.factors[part][axis][k])
+        };
+        let of_part = |part| [0, 1].map(|axis| std::array::from_fn(|k| larger(part, axis, k)));
         Self {
-            factors: [0, 1].map(|axis| std::array::from_fn(|k| larger(axis, k))),
+            factors: std::array::from_fn(of_part),
             everywhere: self.everywhere.max(other.everywhere),
         }
     }
@@ -197,10 +231,15 @@ impl StepErrors {
         self
     }
 
+    /// The error that does not depend on the steps.
+    pub(in crate::stress) fn everywhere(&self) -> f64 {
+        self.everywhere
+    }
+
     /// The errors of values in cells of the layer at the surface, whose larger values at an edge that is known are found at
     /// points of the edge. What is not in proportion to the pressure there stays uniform over cells.
     pub(in crate::stress) fn beside_points(mut self) -> Self {
-        for factors in &mut self.factors {
+        for factors in self.factors.as_flattened_mut() {
             factors[OF_TRACTION + Known::Edge as usize] = 0.0;
         }
         self
@@ -209,7 +248,7 @@ impl StepErrors {
     /// The errors of values in cells at depths of less than a cell, where larger ones may lie between centres at an edge that is
     /// known, but has no points. Farther below, stresses are smooth enough for parabolas.
     pub(in crate::stress) fn without_points(mut self) -> Self {
-        for factors in &mut self.factors {
+        for factors in self.factors.as_flattened_mut() {
             factors[Known::Edge as usize] = factors[Known::Mean as usize];
         }
         self
@@ -365,6 +404,8 @@ impl Uncertainty {
         let uniform = self.tractions.is_some() && !within;
         let material = place.material;
         let mut errors = StepErrors::default();
+        // Numbers of p, τ and the two lateral stresses of a wave, by part.
+        let parts = |part: usize| part..(if part == ErrorOf::Lateral as usize { 4 } else { part + 1 });
         for axis in 0..2 {
             for wave in &self.waves[axis] {
                 let fields = wave.column.at(body, place);
@@ -373,35 +414,41 @@ impl Uncertainty {
                     [state.p, state.tau, along, across].map(f64::abs)
                 });
                 let (q, u) = fields.twist;
-                let twisted = q.abs().max((material.shear() * u).abs());
-                // The largest error with these shares of the pressure and of the tractions.
-                let largest = |of_pressure: f64, of_tractions: f64| {
-                    let pairs = pressed.iter().zip(&sheared);
-                    let sums = pairs.map(|(p, s)| of_pressure * p + of_tractions * friction * s);
-                    sums.fold(of_tractions * friction * twisted, f64::max)
-                };
-                let factors = &mut errors.factors[axis];
+                let twisted = [0.0, q.abs(), (material.shear() * u).abs()];
+                let factors = &mut errors.factors;
                 let [well, edge, mean] = wave.shares;
                 let shares = [well, if within { wave.at_point } else { edge }, mean];
-                for (known, (error, share)) in factors.iter_mut().zip(shares).enumerate() {
+                for (known, share) in shares.into_iter().enumerate() {
                     let of_tractions = match known == Known::Mean as usize {
                         _ if uniform => 0.0,
                         true => wave.tractions[1],
                         false => share,
                     };
-                    *error = error.max(largest(share, of_tractions));
+                    // With these shares of the pressure and of the tractions.
+                    for (part, factors) in factors.iter_mut().enumerate() {
+                        let sums = parts(part).map(|k| {
+                            share * pressed[k] + of_tractions * friction * sheared[k]
+                        });
+                        let twist = of_tractions * friction * twisted[part];
+                        let error = &mut factors[axis][known];
+                        *error = sums.fold(twist.max(*error), f64::max);
+                    }
                 }
-                let sheared = sheared.into_iter().fold(twisted, f64::max);
                 let first = if uniform { OF_TRACTION } else { OF_RATIO };
-                for (k, error) in factors.iter_mut().enumerate().skip(first) {
-                    let is_cusp = k == OF_RATIO || k == OF_TRACTION + Known::Mean as usize;
-                    *error = error.max(wave.tractions[usize::from(is_cusp)] * sheared);
+                for (part, factors) in factors.iter_mut().enumerate() {
+                    let sheared = parts(part).map(|k| sheared[k]).fold(twisted[part], f64::max);
+                    for (k, error) in factors[axis].iter_mut().enumerate().skip(first) {
+                        let is_cusp = k == OF_RATIO || k == OF_TRACTION + Known::Mean as usize;
+                        *error = error.max(wave.tractions[usize::from(is_cusp)] * sheared);
+                    }
                 }
             }
             let distance = place.depth.max(self.followed) / self.spacing[axis];
             let left_out = LEFT_OUT / distance.powi(3) * (1.0 + friction);
-            let edge = &mut errors.factors[axis][Known::Edge as usize];
-            *edge = edge.max(left_out);
+            for factors in &mut errors.factors {
+                let edge = &mut factors[axis][Known::Edge as usize];
+                *edge = edge.max(left_out);
+            }
         }
         errors
     }
