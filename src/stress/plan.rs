@@ -509,8 +509,9 @@ impl<'a> Evaluation<'a> {
     ) -> ControlFlow<(), [f64; STRESSES]> {
         progress(0.0)?;
         let plan = self.plan;
-        let mut sum = plan.whole.threads.run(|| at.at(point, fit));
-        if plan.known.is_some() || at.is_from_cells(point) {
+        let beyond = at.beyond(point);
+        let mut sum = plan.whole.threads.run(|| at.at(point, fit, beyond));
+        if plan.known.is_some() || beyond.is_some() {
             return ControlFlow::Continue(sum);
         }
         let around = plan.span.around(point, plan.whole.grid.shape());

@@ -87,8 +87,8 @@ pub(super) struct SubcellStress {
     /// Kernels down to the smallest pieces at a point, made at the first.
     point_kernels: OnceLock<Kernels>,
     near: NearPlan,
-    /// The pressure within cells by wider fits near the edge, made where it is asked for.
-    wider: OnceLock<NearPlan>,
+    /// The pressure within cells by simpler fits near the edge, made where it is asked for.
+    simpler: OnceLock<NearPlan>,
     uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
     solver_pressure: Vec<f64>,
@@ -128,7 +128,7 @@ impl SubcellStress {
             point_kernels: OnceLock::new(),
             uncertainty,
             near,
-            wider: OnceLock::new(),
+            simpler: OnceLock::new(),
             solver_pressure: pressure.to_vec(),
         })
     }
@@ -199,18 +199,18 @@ impl SubcellStress {
         self.near.inward(point)
     }
 
-    /// Makes the pressure within cells by wider fits near the edge, of a grid that does not repeat.
-    pub(super) fn make_wider(
+    /// Makes the pressure within cells by simpler fits near the edge, of a grid that does not repeat.
+    pub(super) fn make_simpler(
         &self,
         grid: &Grid,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
-        if self.wider.get().is_none() {
-            let law = (self.near.reconstruction.law.clone(), Fitting::WIDER);
+        if self.simpler.get().is_none() {
+            let law = (self.near.reconstruction.law.clone(), Fitting::SIMPLER);
             let plan = NearPlan::new(&self.solver_pressure, grid, Some(law), threads, progress)?;
             // Another thread may have made the same.
-            let _ = self.wider.set(plan);
+            let _ = self.simpler.set(plan);
         }
         ControlFlow::Continue(())
     }
@@ -389,7 +389,7 @@ impl SmoothFields {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::stress) enum EdgeFit {
     Best,
-    Wider,
+    Simpler,
 }
 
 impl PointStress<'_> {
@@ -399,21 +399,33 @@ impl PointStress<'_> {
         self
     }
 
-    /// Whether what adds to the whole half-space's stress is part of [`PointStress::at`]: where all cells around have stresses.
-    pub(super) fn is_from_cells(&self, point: &CellPoint) -> bool {
-        let none = |_: usize| [0.0; 3];
-        self.around.as_ref().is_some_and(|cells| cells.beyond(self.grid, point, &none).is_some())
+    /// Stress of loads farther off from a point than are summed there, with all that adds to the whole half-space's stress; none
+    /// where that is not known from the cells around.
+    pub(super) fn beyond(&self, point: &CellPoint) -> Option<Components> {
+        let load = |cell: usize| {
+            let p = self.subcell.uniform[cell];
+            match self.tractions {
+                Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
+                Tractions::Known([qx, qy]) => [p, qx[cell], qy[cell]],
+            }
+        };
+        self.around.as_ref()?.beyond(self.grid, point, &load)
     }
 
-    /// Stresses below a point: a sum over loaded cells, and over the pieces of those nearby, ever finer towards the
-    /// point. On the threads of the caller.
+    /// Stresses below a point: a sum over loaded cells, or what is `beyond` those around it, and over the pieces of those nearby,
+    /// ever finer towards the point. On the threads of the caller.
     ///
     /// Known tractions follow the pressure within the cells around the point, with their ratio to it in the point's cell.
-    pub(super) fn at(&self, point: &CellPoint, fit: EdgeFit) -> Components {
+    pub(super) fn at(
+        &self,
+        point: &CellPoint,
+        fit: EdgeFit,
+        beyond: Option<Components>,
+    ) -> Components {
         let Self { subcell, stresses, .. } = self;
         let near = match fit {
             EdgeFit::Best => &subcell.near,
-            EdgeFit::Wider => subcell.wider.get().unwrap_or(&subcell.near),
+            EdgeFit::Simpler => subcell.simpler.get().unwrap_or(&subcell.near),
         };
         // No piece may end at the point itself.
         let farthest = 0.5 - SMALLEST_AT_POINT;
@@ -433,15 +445,6 @@ impl PointStress<'_> {
                 }
             }
         };
-        let of_plane = |cell: usize| {
-            let p = subcell.uniform[cell];
-            match self.tractions {
-                Tractions::Sliding([fx, fy]) => [p, fx * p, fy * p],
-                Tractions::Known([qx, qy]) => [p, qx[cell], qy[cell]],
-            }
-        };
-        let cells = self.around.as_ref();
-        let beyond = cells.and_then(|cells| cells.beyond(self.grid, point, &of_plane));
         let within = |at: usize, count: usize| match beyond {
             Some(_) => at.saturating_sub(AROUND)..(at + AROUND + 1).min(count),
             None => 0..count,

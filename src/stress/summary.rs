@@ -678,7 +678,13 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// The error of a cell at the place that was evaluated last; 0 where it is not known.
     fn error(&self, cell: usize, of: ErrorOf) -> f64 {
         let is_lost = self.feels_lost_edge.get(cell).copied().unwrap_or_default();
-        self.errors.map_or(0.0, |errors| errors[usize::from(is_lost)].at(&self.steps(cell), of))
+        let by_points = self.by_points && self.near_edge[cell] && !is_lost;
+        let error = |[beside, elsewhere]: [StepErrors; 2]| match (by_points, is_lost) {
+            (true, _) => beside.without_edges(),
+            (_, true) => elsewhere,
+            (_, false) => beside,
+        };
+        self.errors.map_or(0.0, |errors| error(errors).at(&self.steps(cell), of))
     }
 
     /// Whether larger values at `place` are searched around points of the edge.
@@ -777,27 +783,29 @@ impl<'a, 'b> Planes<'a, 'b> {
             })
             .collect();
         let errors = self.plan.errors_between(place, self.friction);
+        let mut search = EdgeSearch::new(self, &at, place, &points);
         for which in 0..N {
+            let largest = best[which].max(peaks[which].value);
             let may_exceed = |k: &usize| {
                 let [i, j] = points[*k].cell;
-                let error = errors.map_or(0.0, |e| e.at(&self.steps(i * ny + j), kinds[which]));
-                beside[*k][which] + error > best[which].max(peaks[which].value)
+                let steps = search.planes.steps(i * ny + j);
+                let error = errors.map_or(0.0, |errors| errors.at(&steps, kinds[which]));
+                beside[*k][which] + error > largest
             };
             let mut starts: Vec<usize> = (0..points.len()).filter(may_exceed).collect();
             starts.sort_by(|a, b| beside[*b][which].total_cmp(&beside[*a][which]));
             starts.truncate(EDGE_STARTS);
-            if starts.is_empty() {
-                continue;
-            }
-            let mut search = EdgeSearch { planes: self, at: &at, place, points: &points };
-            let (point, value) = search.largest(&starts, |tensor| of(tensor)[which])?;
-            let error = search.error(&point, (value, kinds[which]), |tensor| of(tensor)[which])?;
-            let [x, y] = self.plan.position(&point);
+            let of = |tensor: &Tensor| of(tensor)[which];
+            let Some((place_at, value)) = search.largest(&starts, of)? else { continue };
+            let error = search.error(place_at, (value, kinds[which]), of)?;
+            let Some(point) = search.point(place_at) else { continue };
+            let planes = &mut *search.planes;
+            let [x, y] = planes.plan.position(&point);
             let extreme = Extreme::of(value, [x, y, place.depth], error);
             peaks[which] = peaks[which].with(extreme);
             let mut bounds = [f64::NEG_INFINITY; N];
             bounds[which] = value + error.unwrap_or(0.0);
-            self.record(from, point.cell[0] * ny + point.cell[1], bounds);
+            planes.record(from, point.cell[0] * ny + point.cell[1], bounds);
         }
         ControlFlow::Continue(peaks)
     }
@@ -949,16 +957,42 @@ fn three(tensor: &Tensor) -> [f64; OF_LAYER] {
 /// Cells of a plane of which one is evaluated before all are: a prime number, so that their columns differ from row to row.
 const SAMPLED: usize = 61;
 
-/// A search for the largest value at a depth around points of the edge of the contact.
+/// A search for the largest values at a depth around points of the edge of the contact.
 struct EdgeSearch<'s, 'a, 'b> {
     planes: &'s mut Planes<'a, 'b>,
     at: &'s PointStress<'a>,
     place: &'s Place,
     points: &'s [CellPoint],
+    /// Length over which stresses change: the depth and, at the surface, the thickness of the layer, but not more than a cell.
+    length: f64,
+    /// Stresses that were evaluated.
+    known: BTreeMap<AcrossEdge, Tensor>,
 }
 
-impl EdgeSearch<'_, '_, '_> {
-    /// The stress at a point.
+/// A place near the edge: number of a point of the edge, and the distance from it towards the inside, in parts of a length.
+type AcrossEdge = (usize, i32);
+
+impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
+    fn new(
+        planes: &'s mut Planes<'a, 'b>,
+        at: &'s PointStress<'a>,
+        place: &'s Place,
+        points: &'s [CellPoint],
+    ) -> Self {
+        let whole = &planes.plan.whole;
+        let cell = whole.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
+        let layer = whole.body.layers().get(place.layer).map_or(cell, Layer::thickness);
+        let length = if place.depth > 0.0 { place.depth } else { layer.min(cell) };
+        Self { planes, at, place, points, length, known: BTreeMap::new() }
+    }
+
+    /// The point at a place, if it counts.
+    fn point(&self, (k, across): AcrossEdge) -> Option<CellPoint> {
+        let distance = f64::from(across) * self.length * LAST_STEP_ACROSS_EDGE;
+        let point = self.planes.plan.inside_of(&self.points[k], distance)?;
+        self.planes.has(point.cell).then_some(point)
+    }
+
     fn tensor(&mut self, point: &CellPoint, fit: EdgeFit) -> ControlFlow<(), Tensor> {
         let planes = &mut *self.planes;
         let part = (planes.done as f64 / planes.planned as f64).min(1.0);
@@ -974,88 +1008,88 @@ impl EdgeSearch<'_, '_, '_> {
         ControlFlow::Continue(Tensor::new(sum))
     }
 
-    /// The largest value, and its point: uphill from the best of the `starts` in steps along the edge and, below the surface,
-    /// across it, which are halved down to half a cell and to a part of the depth.
+    /// The value at a place; none where that does not count.
+    fn value(
+        &mut self,
+        at: AcrossEdge,
+        of: impl Fn(&Tensor) -> f64,
+    ) -> ControlFlow<(), Option<f64>> {
+        if let Some(tensor) = self.known.get(&at) {
+            return ControlFlow::Continue(Some(of(tensor)));
+        }
+        let Some(point) = self.point(at) else { return ControlFlow::Continue(None) };
+        let tensor = self.tensor(&point, EdgeFit::Best)?;
+        let value = of(&tensor);
+        self.known.insert(at, tensor);
+        ControlFlow::Continue(Some(value))
+    }
+
+    /// The largest value, and its place: uphill from the best of the `starts` in steps along the edge and across it,
+    /// which are halved down to half a cell and to a part of the length over which stresses change.
     fn largest(
         &mut self,
         starts: &[usize],
         of: impl Fn(&Tensor) -> f64,
-    ) -> ControlFlow<(), (CellPoint, f64)> {
-        let mut known: BTreeMap<(usize, i32), Option<(CellPoint, f64)>> = BTreeMap::new();
-        let part_of_depth = self.place.depth * LAST_STEP_ACROSS_EDGE;
-        let mut value = |search: &mut Self, k: usize, across: i32| {
-            if let Some(known) = known.get(&(k, across)) {
-                return ControlFlow::Continue(*known);
+    ) -> ControlFlow<(), Option<(AcrossEdge, f64)>> {
+        let mut best: Option<(AcrossEdge, f64)> = None;
+        let better = |best: &mut Option<(AcrossEdge, f64)>, at, value: Option<f64>| {
+            let is_better = value.is_some_and(|value| best.is_none_or(|(_, best)| value > best));
+            if is_better {
+                *best = value.map(|value| (at, value));
             }
-            let point = search.planes.plan.inside_of(
-                &search.points[k],
-                f64::from(across) * part_of_depth,
-            );
-            let counted = point.filter(|point| search.planes.has(point.cell));
-            let found = match counted {
-                Some(point) => Some((point, of(&search.tensor(&point, EdgeFit::Best)?))),
-                None => None,
-            };
-            known.insert((k, across), found);
-            ControlFlow::Continue(found)
+            is_better
         };
-        let mut best = (starts[0], 0, self.points[starts[0]], f64::NEG_INFINITY);
         for k in starts {
-            if let Some((point, value)) = value(self, *k, 0)?
-                && value > best.3
-            {
-                best = (*k, 0, point, value);
-            }
+            let value = self.value((*k, 0), &of)?;
+            better(&mut best, (*k, 0), value);
         }
-        let half_width = self.planes.plan.whole.half_width();
         let spacing = self.planes.plan.whole.grid.spacing();
         let shortest = 0.5 * spacing.into_iter().fold(f64::INFINITY, f64::min);
-        let mut step = half_width * FIRST_STEP_ALONG_EDGE;
-        let mut across = if part_of_depth > 0.0 { FIRST_STEP_ACROSS_EDGE } else { 0 };
-        while step > shortest || across > 0 {
-            let (k, offset, ..) = best;
+        let mut step = self.planes.plan.whole.half_width() * FIRST_STEP_ALONG_EDGE;
+        let mut across = FIRST_STEP_ACROSS_EDGE;
+        while let Some(((k, offset), _)) = best
+            && (step > shortest || across > 0)
+        {
             let along = match step > shortest {
                 true => self.planes.plan.along_edge(self.points, k, step),
                 false => Vec::new(),
             };
-            let mut candidates: Vec<(usize, i32)> = along.iter().map(|k| (*k, offset)).collect();
+            let mut places: Vec<AcrossEdge> = along.iter().map(|k| (*k, offset)).collect();
             if across > 0 {
-                candidates.extend([(k, offset + across), (k, offset - across)]);
+                places.extend([(k, offset + across), (k, offset - across)]);
             }
-            let before = best.3;
-            for (k, offset) in candidates {
-                if let Some((point, value)) = value(self, k, offset)?
-                    && value > best.3
-                {
-                    best = (k, offset, point, value);
-                }
+            let mut rises = false;
+            for at in places {
+                let value = self.value(at, &of)?;
+                rises |= better(&mut best, at, value);
             }
-            if best.3 <= before {
+            if !rises {
                 step *= 0.5;
                 across /= 2;
             }
         }
-        ControlFlow::Continue((best.2, best.3))
+        ControlFlow::Continue(best)
     }
 
-    /// The error of a value at a point: what it changes by with wider fits near the edge, a share of it, the width of the contact,
-    /// and what the tractions and free ends leave uncertain.
+    /// The error of a value: what it changes by with simpler fits near the edge, a share of it, the width of the contact,
+    /// and what known tractions and free ends leave uncertain.
     fn error(
         &mut self,
-        point: &CellPoint,
+        at: AcrossEdge,
         (value, kind): (f64, ErrorOf),
         of: impl Fn(&Tensor) -> f64,
     ) -> ControlFlow<(), Option<f64>> {
         let plan = self.planes.plan;
-        let Some(solved) = &plan.whole.solved else { return ControlFlow::Continue(None) };
+        let errors = plan.errors(self.place, self.planes.friction, true);
+        let (Some(solved), Some(errors)) = (&plan.whole.solved, errors) else {
+            return ControlFlow::Continue(None);
+        };
+        let Some(point) = self.point(at) else { return ControlFlow::Continue(None) };
         let part = (self.planes.done as f64 / self.planes.planned as f64).min(1.0);
         let mut progress = |_| (self.planes.progress)(part);
         let (grid, threads) = (&plan.whole.grid, &plan.whole.threads);
-        solved.subcell.make_wider(grid, threads, &mut progress)?;
-        let change = (of(&self.tensor(point, EdgeFit::Wider)?) - value).abs();
-        let Some(errors) = plan.errors(self.place, self.planes.friction, true) else {
-            return ControlFlow::Continue(None);
-        };
+        solved.subcell.make_simpler(grid, threads, &mut progress)?;
+        let change = (of(&self.tensor(&point, EdgeFit::Simpler)?) - value).abs();
         let ny = grid.shape()[1];
         let others = match plan.known {
             Some(_) => errors.at(&self.planes.steps(point.cell[0] * ny + point.cell[1]), kind),
@@ -1069,7 +1103,7 @@ impl EdgeSearch<'_, '_, '_> {
     }
 }
 
-/// Changes of a value by wider fits, and share of it, that make its error: at the surface, where pieces under friction are steps of
+/// Changes of a value by simpler fits, and share of it, that make its error: at the surface, where pieces under friction are steps of
 /// the traction, and below. Chosen on 70 random coated balls, of which they cover 99 %, and tried on others (`tests/stress/coats.rs`).
 const FIT_AT_SURFACE: [f64; 2] = [2.0, 0.005];
 const FIT_BELOW: [f64; 2] = [1.0, 0.002];
@@ -1077,12 +1111,12 @@ const FIT_BELOW: [f64; 2] = [1.0, 0.002];
 /// Stress over the largest pressure below which errors are shares of that pressure.
 const LEAST_PART: f64 = 0.2;
 
-/// Last step of a search across the edge, over the depth, and the first one, in last ones.
+/// Last step of a search across the edge, over the length in which stresses change, and the first one, in last ones.
 const LAST_STEP_ACROSS_EDGE: f64 = 0.125;
 const FIRST_STEP_ACROSS_EDGE: i32 = 8;
 
 /// Points of the edge from the cells with the largest values, at which a search along the edge starts.
-const EDGE_STARTS: usize = 4;
+const EDGE_STARTS: usize = 2;
 
 /// First step of a search along the edge, in half-widths of the contact; steps are halved down to half a cell.
 const FIRST_STEP_ALONG_EDGE: f64 = 0.25;

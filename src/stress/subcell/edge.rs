@@ -40,8 +40,8 @@ pub(super) struct Fitting {
 
 impl Fitting {
     pub(super) const BEST: Self = Self { window: 8, degrees: &[2, 3] };
-    /// Another one, whose differences from the best tell what the fit leaves uncertain.
-    pub(super) const WIDER: Self = Self { window: 12, degrees: &[3] };
+    /// Simpler ones, whose differences from the best tell what the fit leaves uncertain.
+    pub(super) const SIMPLER: Self = Self { degrees: &[2], ..Self::BEST };
 }
 
 /// Distance, in cells, around a cell without a fit in which no other cell takes its own.
@@ -58,6 +58,9 @@ const UNCERTAINTY_LIMIT: f64 = 0.05;
 /// Largest distance, in cells, of the fitted edge from the centres of the outermost cells of the
 /// contact: half a cell where the solver's contact ends with the pressure, and a tenth for the fit.
 const OFFSET_LIMIT: f64 = 0.6;
+
+/// Change of the place of the edge from one pass of a fit to the next, in cells, at which it is taken.
+const PASS_TOLERANCE: f64 = 1e-3;
 
 /// A cell near the edge, and the polynomial for p² in it.
 #[derive(Debug, Clone, Copy)]
@@ -184,17 +187,23 @@ fn accepted_fit(
     let degrees = fitting.degrees.iter();
     let equations: Vec<_> = degrees.filter_map(|degree| window.equations(*degree)).collect();
     let mut last: Option<Fit> = None;
+    let mut edge = f64::NAN;
     for _ in 0..law.passes() {
         let profile = last.as_ref().map(|fit| law.profile(&fit.polynomial));
         let squared = |number: usize, at: [f64; 2]| {
             let factor = profile.as_ref().map_or(1.0, |profile| profile.factor_at(at));
             (known[number].unwrap_or_default() / factor).powi(2)
         };
-        last = Some(window.fit(&equations, squared)?);
+        let fit = window.fit(&equations, squared)?;
+        let before = std::mem::replace(&mut edge, fit.polynomial.offset());
+        last = Some(fit);
+        if (edge - before).abs() < PASS_TOLERANCE {
+            break;
+        }
     }
     let Fit { polynomial, uncertainty } = last?;
     // Distance of the cell's centre from the edge, positive inside.
-    let distance = polynomial.at(0.0, 0.0) / polynomial.slope();
+    let distance = polynomial.offset();
     let agrees = if pressure[i * shape[1] + j] > 0.0 {
         distance > -OFFSET_LIMIT
     } else {
@@ -263,6 +272,11 @@ impl SquaredPressure {
     /// cell's centre.
     pub(super) fn variation(&self, [a, b]: [f64; 2]) -> f64 {
         self.0[1].abs() * a + self.0[2].abs() * b
+    }
+
+    /// Distance of the cell's centre from the edge in cells, positive inside, at the slope there.
+    fn offset(&self) -> f64 {
+        self.at(0.0, 0.0) / self.slope()
     }
 
     /// Magnitude of the gradient at the cell's centre.

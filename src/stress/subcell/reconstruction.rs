@@ -387,8 +387,8 @@ impl Cut {
 }
 
 /// Side of the smallest piece at a point, in cells. What pressure c √d adds within it to the stress of a traction is missed:
-/// (2/π) c √(2 s) of μ. With a side d of cells, that is 0.02 √(d/a) μ p0 for Hertz' pressure on a half-width a.
-pub(super) const SMALLEST_AT_POINT: f64 = 1.0 / 4096.0;
+/// (2/π) c √(2 s) of μ. With a side d of cells, that is 0.005 √(d/a) μ p0 for Hertz' pressure on a half-width a.
+pub(super) const SMALLEST_AT_POINT: f64 = 1.0 / 65536.0;
 
 pub(super) const CUTS: usize = 3;
 

@@ -245,6 +245,14 @@ impl StepErrors {
         self
     }
 
+    /// The errors of values in cells whose errors due to an edge that is known are those of points around it.
+    pub(in crate::stress) fn without_edges(mut self) -> Self {
+        for factors in self.factors.as_flattened_mut() {
+            factors[Known::Edge as usize] = 0.0;
+        }
+        self
+    }
+
     /// The errors of values in cells at depths of less than a cell, where larger ones may lie between centres at an edge that is
     /// known, but has no points. Farther below, stresses are smooth enough for parabolas.
     pub(in crate::stress) fn without_points(mut self) -> Self {
