@@ -323,9 +323,9 @@ struct SmoothFields {
     table: Vec<[Components; 3]>,
 }
 
-/// Cells to each side of a point whose loads are summed: those beyond are at least five cells from all centres between which their
-/// stresses are interpolated by cubics, which errs by less than 1e-4 of the pressure there.
-const AROUND: usize = 8;
+/// Cells to each side of a point whose loads are summed: those beyond are more than four cells from all centres between which their
+/// stresses are interpolated by cubics, which errs by some 1e-4 of the pressure there.
+const AROUND: usize = 6;
 
 /// Cells to each side of a point between whose centres stresses are interpolated.
 const STENCIL: usize = 2;

@@ -629,8 +629,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         let progress = &mut self.progress;
         let mut progress = |fraction: f64| progress(((done + fraction) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
-        let is_shallow = self.plan.is_within_a_cell(place);
-        self.evaluation.keeps_smooth = is_shallow && points && self.scope.beside.is_none();
+        self.evaluation.keeps_smooth = points && self.scope.beside.is_none();
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
         self.smooth = self.evaluation.smooth(&self.fields);
         if let Some(beside) = &mut self.scope.beside {
@@ -640,8 +639,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         for field in &mut self.fields[..2] {
             field.iter_mut().for_each(|s| *s += residual);
         }
-        self.by_points = points && is_shallow;
-        let of = (points, self.scope.contact);
+        self.by_points = self.is_near_edges(place);
+        let of = (!self.edge.is_empty(), self.scope.contact);
         self.errors = self.plan.errors_of_extremes(place, self.friction, of);
         self.done += 1;
         ControlFlow::Continue(())
@@ -687,9 +686,22 @@ impl<'a, 'b> Planes<'a, 'b> {
         self.errors.map_or(0.0, |errors| error(errors).at(&self.steps(cell), of))
     }
 
-    /// Whether larger values at `place` are searched around points of the edge.
+    /// Whether larger values at `place` are searched around points of the edge: at the faces of layers and half way between
+    /// them, where these are less than [`SEARCHED`] cells deep.
     fn has_points(&self, place: &Place) -> bool {
-        !self.edge.is_empty() && (place.layer == 0 || self.plan.is_within_a_cell(place))
+        let whole = &self.plan.whole;
+        let layer = whole.body.layers().get(place.layer).map(Layer::thickness);
+        let part = layer.map_or(place.below_top, |thickness| place.below_top / thickness);
+        let is_chosen = [0.0, 0.5, 1.0].iter().any(|chosen| (part - chosen).abs() < ONE_DEPTH);
+        self.is_near_edges(place) && is_chosen
+    }
+
+    /// Whether values at `place` change between the centres of cells near the edge, of which the largest are searched there or at
+    /// depths beside.
+    fn is_near_edges(&self, place: &Place) -> bool {
+        let spacing = self.plan.whole.grid.spacing();
+        let cell = if self.plan.whole.grid.is_line() { spacing[1] } else { spacing[0].max(spacing[1]) };
+        !self.edge.is_empty() && place.depth < SEARCHED * cell
     }
 
     /// The largest von Mises stress, principal stress and shear stress at `place`.
@@ -761,7 +773,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     ) -> ControlFlow<(), [Extreme; N]> {
         let points: Vec<_> =
             self.edge.iter().filter(|point| self.has(point.cell)).copied().collect();
-        if points.is_empty() || !self.by_points {
+        if points.is_empty() || !self.has_points(place) {
             return ControlFlow::Continue(peaks);
         }
         let Some(at) = self.evaluation.point_stress(place) else {
@@ -1097,19 +1109,21 @@ impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
         };
         let width = self.planes.scope.contact.whole.width_error(self.place);
         let peak = plan.whole.pressure.iter().copied().fold(0.0, f64::max);
-        let [changes, share] = if self.place.depth > 0.0 { FIT_BELOW } else { FIT_AT_SURFACE };
         let size = value.abs().max(LEAST_PART * peak);
-        ControlFlow::Continue(Some(changes * change + share * size + others + width))
+        ControlFlow::Continue(Some(FIT_CHANGES * change + FIT_SHARE * size + others + width))
     }
 }
 
-/// Changes of a value by simpler fits, and share of it, that make its error: at the surface, where pieces under friction are steps of
-/// the traction, and below. Chosen on 70 random coated balls, of which they cover 99 %, and tried on others (`tests/stress/coats.rs`).
-const FIT_AT_SURFACE: [f64; 2] = [2.0, 0.005];
-const FIT_BELOW: [f64; 2] = [1.0, 0.002];
+/// Changes of a value by simpler fits, and share of it, that make its error. Chosen on 70 random coated balls, and tried on others
+/// (`tests/stress/coats.rs`).
+const FIT_CHANGES: f64 = 2.0;
+const FIT_SHARE: f64 = 0.005;
 
 /// Stress over the largest pressure below which errors are shares of that pressure.
 const LEAST_PART: f64 = 0.2;
+
+/// Depth in cells down to which larger values are searched between the centres of cells.
+const SEARCHED: f64 = 1.5;
 
 /// Last step of a search across the edge, over the length in which stresses change, and the first one, in last ones.
 const LAST_STEP_ACROSS_EDGE: f64 = 0.125;
