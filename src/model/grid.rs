@@ -300,11 +300,13 @@ impl Grid {
     /// Coordinates of cell centres along `axis`. They are computed from the centre of the grid, so
     /// that they are exactly symmetric about it.
     pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {
-        let n = self.shape[axis];
-        let spacing = self.spacing()[axis];
-        Array1::from_shape_fn(n, |i| {
-            self.center[axis] + (i as f64 - 0.5 * (n - 1) as f64) * spacing
-        })
+        Array1::from_shape_fn(self.shape[axis], |i| self.coordinate(axis, i))
+    }
+
+    /// The coordinate of one cell centre along `axis`.
+    pub(crate) fn coordinate(&self, axis: usize, cell: usize) -> f64 {
+        let middle = 0.5 * (self.shape[axis] - 1) as f64;
+        self.center[axis] + (cell as f64 - middle) * self.spacing()[axis]
     }
 }
 

@@ -365,9 +365,10 @@ impl StressPlan {
 
     /// Coordinates x and y of a point.
     pub(super) fn position(&self, point: &CellPoint) -> [f64; 2] {
-        let grid = &self.whole.grid;
-        let (centres, spacing) = ([grid.x(), grid.y()], grid.spacing());
-        [0, 1].map(|axis| centres[axis][point.cell[axis]] + point.within[axis] * spacing[axis])
+        let (grid, spacing) = (&self.whole.grid, self.whole.grid.spacing());
+        [0, 1].map(|axis| {
+            grid.coordinate(axis, point.cell[axis]) + point.within[axis] * spacing[axis]
+        })
     }
 
     /// Numbers of the `points` of the edge that are nearest to places a `step` away from one of them, to both sides along
