@@ -16,7 +16,7 @@ use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive, refuse_if};
 use crate::model::body::{HalfSpace, Layer};
-use crate::model::grid::{Grid, Window};
+use crate::model::grid::{Grid, Window, full_window};
 use crate::numerics::parallel::{check_memory, memory_of};
 
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
@@ -546,6 +546,9 @@ struct Planes<'a, 'b> {
     /// Errors of the components by those steps, in cells that feel no other edges than those with points and in the others; none
     /// where they are not known.
     errors: Option<[StepErrors; 2]>,
+    /// Largest error in all cells at the place that was evaluated last, and the largest steps.
+    most_error: f64,
+    most_steps: LocalSteps,
     /// Whether each cell feels a stretch of an edge without points.
     feels_lost_edge: Vec<bool>,
     /// Bounds of each extreme in each cell, where they are recorded.
@@ -594,6 +597,8 @@ impl<'a, 'b> Planes<'a, 'b> {
             by_points: false,
             steps: plan.steps_by_cell(),
             errors: None,
+            most_error: 0.0,
+            most_steps: plan.whole.steps(&full_window(shape)),
             bounds: Vec::new(),
             beyond_grid: Vec::new(),
             first: 0,
@@ -642,6 +647,10 @@ impl<'a, 'b> Planes<'a, 'b> {
         self.by_points = self.is_near_edges(place);
         let of = (!self.edge.is_empty(), self.scope.contact);
         self.errors = self.plan.errors_of_extremes(place, self.friction, of);
+        let largest = |errors: [StepErrors; 2]| {
+            errors.map(|errors| errors.at(&self.most_steps, ErrorOf::Any)).into_iter().fold(0.0, f64::max)
+        };
+        self.most_error = self.errors.map_or(0.0, largest);
         self.done += 1;
         ControlFlow::Continue(())
     }
@@ -734,21 +743,27 @@ impl<'a, 'b> Planes<'a, 'b> {
         records: bool,
     ) -> [LargestWithError; OF_LAYER] {
         for cell in cells {
-            let (tensor, error) = (self.tensor(cell), self.error(cell, ErrorOf::Any));
+            let tensor = self.tensor(cell);
             let mises = tensor.von_mises();
-            largest[0].offer(mises, error, cell);
-            if records {
-                self.record(0, cell, [mises + error]);
-            }
-            let least = |which: usize| {
-                let LargestWithError { value, bound } = largest[which];
-                let recorded = |bounds: &Vec<f64>| bounds[cell].max(value.value);
-                let recorded = self.bounds.get(self.first + which).filter(|_| records).map(recorded);
-                let bound = recorded.map_or(bound.value, |recorded| bound.value.min(recorded));
-                value.value.min(bound - error)
+            // Which of the three may be, with an error, larger than those that matter.
+            let may_count = |error: f64| {
+                let least = |which: usize| {
+                    let LargestWithError { value, bound } = largest[which];
+                    let bounds = self.bounds.get(self.first + which).filter(|_| records);
+                    let recorded = bounds.map(|bounds| bounds[cell].max(value.value));
+                    let bound = recorded.map_or(bound.value, |most| bound.value.min(most));
+                    value.value.min(bound - error)
+                };
+                let shears = || tensor.may_shear(least(2), mises);
+                [mises > least(0), tensor.may_pull(least(1), mises) || shears()]
             };
-            // Most cells need no principal stresses.
-            if tensor.may_pull(least(1), mises) || tensor.may_shear(least(2), mises) {
+            if may_count(self.most_error) == [false; 2] {
+                continue;
+            }
+            let error = self.error(cell, ErrorOf::Any);
+            let [_, needs_principal] = may_count(error);
+            largest[0].offer(mises, error, cell);
+            if needs_principal {
                 let values = three(&tensor);
                 for (largest, value) in largest.iter_mut().zip(values).skip(1) {
                     largest.offer(value, error, cell);
@@ -756,6 +771,8 @@ impl<'a, 'b> Planes<'a, 'b> {
                 if records {
                     self.record(0, cell, values.map(|value| value + error));
                 }
+            } else if records {
+                self.record(0, cell, [mises + error]);
             }
         }
         largest
