@@ -364,7 +364,7 @@ impl StressPlan {
     /// Points (x, y) of the smooth edge of a solved contact, at most one in a cell, in the order of the grid. There
     /// the stress that friction and pressure make at the surface has a kink, and its largest values:
     /// [`Section::Axis`](crate::Section::Axis) gives them. Empty where the edge is not known within cells: sharp edges, rough
-    /// surfaces, contacts of few cells, coatings as thick as a cell, pressures that were given, and periodic grids.
+    /// surfaces, contacts of few cells, springs at the surface, pressures that were given, and periodic grids.
     pub fn edge(&self) -> Vec<[f64; 2]> {
         self.edge_points_on_body().iter().map(|point| self.position(point)).collect()
     }

@@ -7,7 +7,8 @@
 //! contact has in place of a smooth edge. But the pressure of a smooth contact is known better than
 //! that: where the surfaces part smoothly it falls as p = √d (c0 + c1 d + …) at the distance d from
 //! the edge (Johnson, Contact Mechanics (1985), §5.1, doi:10.1017/CBO9781139171731), so that p² is
-//! smooth up to the edge, and a polynomial can be continued from the interior to it.
+//! smooth up to the edge, and a polynomial can be continued from the interior to it. On layers a factor Φ(d) of
+//! the bodies alone joins the law of the coat near the edge to that of what is below (`law`).
 //!
 //! # Formulas
 //!
@@ -15,7 +16,7 @@
 //!
 //! ```text
 //! interior      p = p_cell + s_x u + s_y v + ½ k_x (u² − 1/12) + ½ k_y (v² − 1/12)
-//! edge          p = √max(q(u, v), 0)       q a polynomial of degree 2 or 3, fitted to p²
+//! edge          p = √max(q(u, v), 0) Φ(d)  q a polynomial of degree 2 or 3, fitted to (p/Φ)²
 //! elsewhere     p = p_cell
 //! ```
 //!
@@ -45,9 +46,10 @@
 //! | file | what it makes |
 //! |---|---|
 //! | `edge` | the cells near the edge where a polynomial, fitted by least squares, is certain enough |
+//! | `law` | the factor Φ by which layers change the pressure near an edge |
 //! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots; cells cut into rectangles |
 //! | `near` | the sum of the third part over the cells around |
-//! | `uncertainty` | whether cells resolve the law at an edge; the error that their size leaves, at a depth |
+//! | `uncertainty` | the error that the size of the cells leaves, at a depth |
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;

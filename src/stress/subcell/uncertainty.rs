@@ -1,18 +1,9 @@
-//! What cells resolve of the pressure of a solved contact: whether the law at a smooth edge, and with which error.
-//!
-//! # The law at an edge
-//!
-//! p = √d (c0 + c1 d + …) is the law of bodies that respond alike at all wavelengths. On a coating it
-//! holds at distances d that are short compared with its thickness, with the coating's response, and at
-//! distances that are long, with the response of what is below; in between it is another one, as p ∝ d
-//! on a thin soft coating. A polynomial fitted to p² over some cells finds the edge if one of the two
-//! holds from the cells inside the edge to within a cell of it.
+//! With which error cells resolve the pressure of a solved contact; whether it has a law at its smooth edges.
 //!
 //! # The error
 //!
 //! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
-//! taken as uniform. Where an edge is reconstructed it is a thirtieth, and as much more as the bodies
-//! respond otherwise to a wave than to waves of a cell, from which the edge was found; a hundredth in the
+//! taken as uniform. Where an edge is reconstructed it is a thirtieth; a hundredth in the
 //! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half, and three
 //! quarters where they may grow as a root within a cell: at an edge that is not located, and at the border of a zone that sticks.
 //! Steps of known tractions are their own. A step on cells of side d
@@ -531,9 +522,6 @@ impl BodyPair<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Result;
-    use crate::model::body::{HalfSpace, Layer};
-    use crate::model::material::Elastic;
 
     /// Steps of each cell by itself are those of a window of one cell, in a plane and in a line.
     #[test]
