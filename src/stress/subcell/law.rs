@@ -243,7 +243,7 @@ mod tests {
     use crate::model::material::Elastic;
 
     /// Far inside, the law is that of what is below the coat: √(E₂*/E₁*) times as large as at the edge. It gets there as the
-    /// inverse of the distance, which is 300 thicknesses here.
+    /// inverse of the distance, which is 2560 thicknesses here; at the edge, nodes are 1/100 of one apart.
     #[test]
     fn both_limits_are_those_of_one_material() -> Result<()> {
         let below = Elastic::new(1.0, 0.3)?;
@@ -251,12 +251,11 @@ mod tests {
         assert_eq!(EdgeLaw::new(&BodyPair(vec![&bare]), [1.0; 2]), EdgeLaw::default());
         for modulus in [0.2, 0.5, 1.233, 2.0, 5.0] {
             let coat = Elastic::new(modulus, 0.25)?;
-            let coated = HalfSpace::new(below, [Layer::new(coat, 1.0)?])?;
+            let coated = HalfSpace::new(below, [Layer::new(coat, 0.1)?])?;
             let law = EdgeLaw::new(&BodyPair(vec![&coated]), [1.0; 2]);
             let limit = (below.plane_strain_modulus() / coat.plane_strain_modulus()).sqrt();
-            println!("{modulus} {:?} {limit}", [0.0, 0.01, 0.1, 1.0, 10.0, 100.0, 250.0].map(|d| law.at(d)));
-            assert!((law.at(0.0) - 1.0).abs() < 1e-3, "{modulus}: {}", law.at(0.0));
-            assert!((law.at(LONGEST) / limit - 1.0).abs() < 5e-3, "{modulus}: {}", law.at(LONGEST));
+            assert!((law.at(0.0) - 1.0).abs() < 5e-3, "{modulus}: {}", law.at(0.0));
+            assert!((law.at(LONGEST) / limit - 1.0).abs() < 2e-3, "{modulus}: {}", law.at(LONGEST));
         }
         Ok(())
     }
