@@ -16,6 +16,7 @@ Examples
 3.86
 """
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -130,14 +131,18 @@ _HOMES = {
 """Modules of the names that are imported when they are first used."""
 
 
-class _Method:
-    """Static method of a compiled class that is a function of Python, imported when it is used."""
+class _Reader(staticmethod):  # type: ignore[type-arg]
+    """Static method of a compiled class that `nacre.surfaces` has, imported when it is used."""
 
-    def __init__(self, module: str, name: str) -> None:
-        self.module, self.name = module, name
+    def __init__(self, name: str) -> None:
+        super().__init__(_Reader)
+        self.name = name
 
-    def __get__(self, surface: object, owner: type) -> object:
-        return getattr(import_module(self.module), self.name)
+    def __get__(self, surface: object, owner: type | None = None) -> Callable[..., object]:
+        from nacre import surfaces
+
+        read: Callable[..., object] = getattr(surfaces, self.name)
+        return read
 
 
 def _markup(surface: HeightMap) -> str:
@@ -148,8 +153,8 @@ def _markup(surface: HeightMap) -> str:
 
 # Of the compiled classes, whose files are read and whose pictures are drawn in Python.
 HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
-HeightMap.read = _Method("nacre.surfaces", "read_map")  # type: ignore[assignment, method-assign]
-SampledProfile.read = _Method("nacre.surfaces", "read_profile")  # type: ignore[assignment, method-assign]
+HeightMap.read = _Reader("read_map")  # type: ignore[method-assign]
+SampledProfile.read = _Reader("read_profile")  # type: ignore[method-assign]
 
 
 def _imported(name: str) -> object:
