@@ -65,8 +65,8 @@ def coating_chart(
     refine
         Largest estimated error of a stress, as a fraction of it, True for 0.01:
         `Solution.stress_summary` then solves finer cells around the most loaded places, which can
-        take several times as long. None keeps the cells of the grid, as do contacts that cannot be refined: periodic ones and those
-        with a hardness or given coefficients.
+        take several times as long. None keeps the cells of the grid, as do contacts that cannot be
+        refined: periodic ones and those with a hardness or given coefficients.
     options
         Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 
