@@ -111,7 +111,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         highest = scale.factor * solution.peak_pressure or 1.0
         cells, sides = _cells_within(window, ends, grid.spacing)
         pressure = scale.factor * solution.pressure[cells]
-        loaded = np.where(solution.in_contact[cells], pressure.astype(np.float32), np.nan)
+        loaded = np.where(solution.in_contact[cells], pressure, np.nan)
         left, right, bottom, top = (
             length.factor * end for length, pair in zip(scales, sides, strict=True) for end in pair
         )
