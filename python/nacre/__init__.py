@@ -16,10 +16,10 @@ Examples
 3.86
 """
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from nacre import types as types
 from nacre._core import (
     FREE,
     RIGID,
@@ -41,22 +41,6 @@ from nacre._core import (
     Spring,
     __version__,
 )
-from nacre._tools.units import display_units
-from nacre.cards import materials as materials
-from nacre.contact import Contact, roll, slide, solve, wear
-from nacre.contact.compliance import (
-    Convolution,
-    frequency_response,
-    graded_layers,
-    influence_coefficients,
-    surface_compliance,
-)
-from nacre.contact.solution import Solution
-from nacre.contact.stresses import stress
-from nacre.friction import creep_coefficients
-from nacre.results.files import load
-from nacre.studies import sweep
-from nacre.surfaces import read_map, read_profile
 
 if TYPE_CHECKING:
     from nacre import bearing as bearing
@@ -70,7 +54,23 @@ if TYPE_CHECKING:
     from nacre import plot as plot
     from nacre import rough as rough
     from nacre import torch as torch
+    from nacre import types as types
     from nacre import verify as verify
+    from nacre._tools.units import display_units
+    from nacre.cards import materials as materials
+    from nacre.contact import Contact, roll, slide, solve, wear
+    from nacre.contact.compliance import (
+        Convolution,
+        frequency_response,
+        graded_layers,
+        influence_coefficients,
+        surface_compliance,
+    )
+    from nacre.contact.solution import Solution
+    from nacre.contact.stresses import stress
+    from nacre.friction import creep_coefficients
+    from nacre.results.files import load
+    from nacre.studies import sweep
 
 __all__ = [
     "FREE",
@@ -111,6 +111,40 @@ __all__ = [
 ]
 
 
+_MODULES = (
+    *("bearing", "case", "design", "fatigue", "friction", "hertz"),
+    *("indent", "jax", "plot", "rough", "torch", "types", "verify"),
+)
+"""Modules that are imported when they are first used, as `nacre.plot`."""
+_HOMES = {
+    **dict.fromkeys(("Contact", "roll", "slide", "solve", "wear"), "contact"),
+    **dict.fromkeys(("Convolution", "frequency_response", "graded_layers"), "contact.compliance"),
+    **dict.fromkeys(("influence_coefficients", "surface_compliance"), "contact.compliance"),
+    "Solution": "contact.solution",
+    "stress": "contact.stresses",
+    "creep_coefficients": "friction",
+    "display_units": "_tools.units",
+    "load": "results.files",
+    "materials": "cards",
+    "sweep": "studies",
+}
+"""Modules of the names that are imported when they are first used."""
+
+
+class _Reader(staticmethod):  # type: ignore[type-arg]
+    """Static method of a compiled class that `nacre.surfaces` has, imported when it is used."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(_Reader)
+        self.name = name
+
+    def __get__(self, surface: object, owner: type | None = None) -> Callable[..., object]:
+        from nacre import surfaces
+
+        read: Callable[..., object] = getattr(surfaces, self.name)
+        return read
+
+
 def _markup(surface: HeightMap) -> str:
     from nacre import rough
 
@@ -119,21 +153,21 @@ def _markup(surface: HeightMap) -> str:
 
 # Of the compiled classes, whose files are read and whose pictures are drawn in Python.
 HeightMap._repr_html_ = _markup  # type: ignore[attr-defined]
-HeightMap.read = staticmethod(read_map)  # type: ignore[method-assign]
-SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
-
-_LAZY = (
-    *("bearing", "case", "design", "fatigue", "friction", "hertz"),
-    *("indent", "jax", "plot", "rough", "torch", "verify"),
-)
-"""Modules that are imported when they are first used, as `nacre.plot`."""
+HeightMap.read = _Reader("read_map")  # type: ignore[method-assign]
+SampledProfile.read = _Reader("read_profile")  # type: ignore[method-assign]
 
 
 def _imported(name: str) -> object:
-    if name in _LAZY:
+    if name in _MODULES:
         return import_module(f"nacre.{name}")
-    if name in types.__all__:  # as the docstrings of the compiled module name them
-        return getattr(types, name)
+    if name in _HOMES:
+        value = globals()[name] = getattr(import_module(f"nacre.{_HOMES[name]}"), name)
+        return value
+    if name[:1].isupper():
+        from nacre import types
+
+        if name in types.__all__:  # as the docstrings of the compiled module name them
+            return getattr(types, name)
     raise AttributeError(f"module 'nacre' has no attribute {name!r}")
 
 
@@ -142,4 +176,4 @@ if not TYPE_CHECKING:  # a type checker would take any name
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *_LAZY, "materials", "types"})
+    return sorted({*__all__, *_MODULES, "materials"})

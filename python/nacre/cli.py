@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -36,12 +37,12 @@ def _run(arguments: Sequence[str] | None) -> int:
     if argv == ["--version"]:  # soon, without the libraries of all commands
         print(f"nacre {nacre.__version__}")
         return 0
-    try:
-        import typer
+    for name in ("typer", "pydantic"):
+        if find_spec(name) is None:
+            return _fail(f"the command line needs {name}: pip install 'nacre-contact[cli]'", 2)
+    import typer
 
-        from nacre.verify.command import commands
-    except ModuleNotFoundError as missing:
-        return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
+    from nacre.verify.command import commands
 
     try:
         if not argv:

@@ -182,6 +182,7 @@ def errors(kind: Any, calls: dict[str, str]) -> list[tuple[str, type[Exception],
 
 def refused(call: str, kind: type[Exception], words: str, names: dict[str, Any]) -> None:
     """Evaluate a call, which has to raise with these words."""
-    known = vars(nacre) | {"nacre": nacre, "hertz": nacre.hertz} | vars(bodies) | names
+    own = {name: getattr(nacre, name) for name in nacre.__all__}
+    known = own | {"nacre": nacre, "hertz": nacre.hertz} | vars(bodies) | names
     with pytest.raises(kind, match=words):
         eval(call, known)

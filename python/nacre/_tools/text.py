@@ -39,7 +39,7 @@ UNIT_LAST = (
     re.compile(r"(.+?)(?:\s*,\s*|\s+in\s+|[_\s]+)(\S+)"),
 )
 """Names that end in a unit: ``Depth (nm)``, ``h/µm``, and ``h_nm``, ``Load, mN``, ``h in µm``."""
-CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x19\x1c-\x1f]")
+CONTROLS = bytes([*range(0x09), *range(0x0E, 0x1A), *range(0x1C, 0x20)])
 """Bytes that no text has but for its padding: those of white space, end of file and escape are."""
 LONGEST_HEADING = 200
 """Most characters of a heading with a unit: the time that it takes grows with a power of it."""
@@ -59,7 +59,11 @@ class Column(NamedTuple):
 def is_text(content: bytes) -> bool:
     """Return whether the bytes of a file are text, in an encoding that `decoded` knows."""
     is_wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or wide(content)
-    return bool(is_wide) or not CONTROLS.search(content.rstrip(b"\0\x1a\r\n "))
+    return bool(is_wide) or _is_clean(content) or _is_clean(content.rstrip(b"\0\x1a\r\n "))
+
+
+def _is_clean(content: bytes) -> bool:
+    return len(content.translate(None, CONTROLS)) == len(content)
 
 
 def wide(content: bytes) -> str | None:

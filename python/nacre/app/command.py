@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-import webbrowser
 from pathlib import Path
-from threading import Timer
 from typing import Annotated
 
 import typer
 
-from nacre.app.cards import cards, own_card
-from nacre.app.server import open_server
 from nacre.case.commands import Command
 from nacre.case.commands import app as commands
 
@@ -34,6 +30,12 @@ def app(
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open a page for bearings, contacts and indentations, on this computer alone, until Ctrl-C."""
+    import webbrowser
+    from threading import Timer
+
+    from nacre.app.cards import cards, own_card
+    from nacre.app.server import open_server
+
     own = {} if case is None else {"own": own_card(case)}
     server = open_server(port, cards() | own)
     if server.server_port != port:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
+from collections import deque
 from typing import Literal, NamedTuple
 
 import nacre._core as core
@@ -61,6 +62,8 @@ PRECISION = 1e-4
 
 STEPS = 20
 """Solves for a load after which a contact counts as one without a limit; five are usual."""
+KEPT: deque[tuple[RollerBearing, float | None]] = deque(maxlen=64)
+"""Bearings of bare steel, and the loads at which their contacts have `LIMIT`."""
 
 Element = Literal["ball", "roller"]
 
@@ -328,11 +331,17 @@ def _size_factor(bearing: Bearing) -> float:
 def _roller_load(bearing: RollerBearing) -> float | None:
     """Return the load at which a contact of a profiled roller has `LIMIT` [N], the smaller one.
 
-    None where the pressure at its ends has no limit.
+    None where the pressure at its ends has no limit. That of an equal bearing is kept: profiles
+    have no hash.
     """
     bare = dataclasses.replace(bearing, element=STEEL, inner=STEEL, outer=STEEL)
+    for known, load in [*KEPT]:
+        if known == bare:
+            return load
     loads = [_contact_load(bare, ring) for ring in RINGS]
-    return min((load for load in loads if load is not None), default=None)
+    least = min((load for load in loads if load is not None), default=None)
+    KEPT.append((bare, least))
+    return least
 
 
 def _contact_load(bearing: RollerBearing, ring: Ring) -> float | None:

@@ -77,6 +77,8 @@ LARGEST_CONTACT = 0.5
 SOFTEST = 1e-6
 """Least limit of a material over its modulus: annealed metals yield at 1e-4 of it."""
 UNFINISHED = "stopped before all depths were done"
+REFINED = 0.01
+"""Largest estimated error of extremes where `refine` is True."""
 AXES = ("z", "x", "y")
 """Axes of a field, in their order."""
 
@@ -874,7 +876,7 @@ class Stressed:
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
-        refine: float | None = None,
+        refine: bool | float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> StressSummary:
@@ -898,13 +900,13 @@ class Stressed:
             Shear and tension that the interfaces bear [Pa], for the verdict: a pair for all, or
             ``{0: (shear, tension)}`` by number, or the name of the layer above. One of them may be
             None.
-        refine : float, optional
-            Largest estimated error of the extremes, as a part of them, such as 0.05. Patches that
-            hold the places where value and error together exceed an extreme by more are solved
-            again on finer cells, until the error is below it or a patch has as many cells as the
-            grid or 512 × 512, whichever is more. By default the cells of the grid are used. Not for
-            `nacre.slide` and `nacre.roll`, periodic grids, surfaces that have yielded, given
-            coefficients.
+        refine : bool or float, optional
+            Largest estimated error of the extremes, as a part of them, such as 0.05; True is 0.01.
+            Patches that hold the places where value and error together exceed an extreme by more
+            are solved again on finer cells, until the error is below it or a patch has as many
+            cells as the grid or 512 × 512, whichever is more. By default, and with False, the cells
+            of the grid are used. Not for `nacre.slide` and `nacre.roll`, periodic grids, surfaces
+            that have yielded, given coefficients.
         friction, direction, residual, threads, progress : optional
             As in `stress`; without `progress`, a terminal or a notebook shows a bar after two
             seconds.
@@ -939,7 +941,8 @@ class Stressed:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, refine)
+        error = (REFINED if refine else None) if isinstance(refine, bool) else refine
+        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, error)
         member = _check_limits_of(self, body, limits)
         bonds = _bond_strengths(self, body, bond_strength)
         with lasting("stresses", progress) as tell:
@@ -960,7 +963,7 @@ class Stressed:
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
-        refine: float | None = None,
+        refine: bool | float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Verdict:

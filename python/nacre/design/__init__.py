@@ -38,7 +38,7 @@ def coating_chart(
     poisson: float = 0.3,
     friction: float = 0.0,
     direction: Direction | None = None,
-    refine: float | None = 0.2,
+    refine: bool | float | None = 0.2,
     **options: Any,
 ) -> xarray.Dataset:
     """Peak pressure and stresses for thicknesses and moduli of a single coating.
@@ -63,10 +63,10 @@ def coating_chart(
         shape rolls, as in `Solution.stress`; for shapes without one it must be given where
         `friction` is above 0.
     refine
-        Largest estimated error of a stress, as a fraction of it: `Solution.stress_summary` then
-        solves finer cells around the most loaded places, which can take several times as long. None
-        keeps the cells of the grid, as do contacts that cannot be refined: periodic ones and those
-        with a hardness or given coefficients.
+        Largest estimated error of a stress, as a fraction of it, True for 0.01:
+        `Solution.stress_summary` then solves finer cells around the most loaded places, which can
+        take several times as long. None keeps the cells of the grid, as do contacts that cannot be
+        refined: periodic ones and those with a hardness or given coefficients.
     options
         Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 

@@ -110,17 +110,21 @@ def extent(solution: Solution) -> npt.NDArray[np.float64]:
 
 def outline(axes: Axes, solution: Solution, factors: Sequence[float]) -> None:
     """Draw the outline of the contact; a patch gets a line of a sixth of its mean width at most."""
-    inside = solution.in_contact
-    if not inside.any():
+    touching = solution.in_contact
+    if not touching.any():
         return
+    # The cells of the contact, and those beside them.
+    ends = [np.flatnonzero(touching.any(axis=axis))[[0, -1]] for axis in (1, 0)]
+    block = tuple(slice(max(first - 1, 0), last + 2) for first, last in ends)
+    inside = touching[block]
     # Cells of contact per run of such cells, along each side, in points of the picture.
     width = min(
         inside.sum() / (np.diff(inside.astype(np.int8), axis=axis, prepend=0) == 1).sum() * points
         for axis, points in enumerate(_points_per_cell(axes, solution, factors))
     )
     axes.contour(
-        factors[0] * solution.x,
-        factors[1] * solution.y,
+        factors[0] * solution.x[block[0]],
+        factors[1] * solution.y[block[1]],
         inside.T.astype(float),
         levels=[0.5],
         colors="black",

@@ -139,7 +139,8 @@ def pictures(draw: Callable[[], Axes]) -> dict[str, Callable[[Path], object]]:
     def write(path: Path) -> None:
         axes = draw()
         try:
-            figure_of(axes).savefig(path, dpi=300)
+            fast: Any = {"pil_kwargs": {"compress_level": 2}} if path.suffix == ".png" else {}
+            figure_of(axes).savefig(path, dpi=300, **fast)
         finally:
             from matplotlib import pyplot
 

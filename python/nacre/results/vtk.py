@@ -16,6 +16,9 @@ from nacre.results.tables import Gridded, fields
 
 Array = npt.NDArray[np.float64]
 
+Values = npt.NDArray[Any] | tuple[npt.NDArray[Any], ...]
+"""A scalar at all points, or the components of a vector."""
+KINDS = {np.ndarray: "scalars", tuple: "vectors"}
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 OPTIONS = ("body", "friction", "direction", "residual", "displacement", "threads")
 """Keywords of `Solution.stress` that `Solution.save` takes."""
@@ -57,9 +60,6 @@ class Stressed(Protocol):
 
 def write_surface(result: Gridded, path: Path) -> None:
     """Write the fields of a contact as the cells of a plane."""
-    with extra("files"):
-        from pyevtk.hl import gridToVTK
-
     grid = result.grid
     edges = [
         c + side * (np.arange(cells + 1) / cells - 0.5)
@@ -68,16 +68,16 @@ def write_surface(result: Gridded, path: Path) -> None:
 
     def cell_data(field: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
         plain = field.astype(np.int8) if field.dtype == bool else field
-        return np.asfortranarray(plain[..., np.newaxis])
+        return plain[..., np.newaxis]
 
-    cells: dict[str, npt.NDArray[np.generic] | tuple[npt.NDArray[np.generic], ...]] = {}
+    cells: dict[str, Values] = {}
     for row, values in fields(result).items():
         if row.dims == VECTOR:
             components = [cell_data(component) for component in values]
             cells[row.name] = (*components, np.zeros_like(components[0]))
         else:
             cells[row.name] = cell_data(values)
-    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
+    _write(path, (*edges, np.zeros(1)), "Cell", cells)
 
 
 def write_stress(
@@ -87,24 +87,56 @@ def write_stress(
 
     A depth on an interface has two planes of points, above and below the interface.
     """
-    with extra("files"):
-        from pyevtk.hl import gridToVTK
-
     if unknown := set(options) - set(OPTIONS):
         names = ", ".join(OPTIONS)
         raise TypeError(f"options must be among {names}, got {', '.join(sorted(unknown))}")
     depths = core.real_array("depths", depths)
     z, planes = _planes(solution, np.atleast_1d(depths), options)
     shape = (*solution.pressure.shape, z.size)
-    points: dict[str, Array | tuple[Array, ...]] = {
-        name: np.asfortranarray(np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape))
+    points: dict[str, Values] = {
+        name: np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape)
         for name in ("pressure", "gap")
     }
     points |= {f"stress_{name}": planes[name] for name in COMPONENTS}
     points |= {name: planes[name] for name in ("von_mises", "max_shear", "tension")}
     if "ux" in planes:
         points["displacement"] = tuple(planes[name] for name in ("ux", "uy", "uz"))
-    gridToVTK(str(path.with_suffix("")), solution.x, solution.y, z, pointData=points)
+    _write(path, (solution.x, solution.y, z), "Point", points)
+
+
+def _write(path: Path, axes: tuple[Array, ...], place: str, fields: Mapping[str, Values]) -> None:
+    """Write fields at the points of a rectilinear grid, or at its cells.
+
+    The numbers are written here, at once: pyevtk packs them one by one.
+    """
+    with extra("files"):
+        from pyevtk.vtk import VtkFile, VtkRectilinearGrid
+
+    first = {
+        kind: next((n for n, f in fields.items() if isinstance(f, kind)), None) for kind in KINDS
+    }
+    file = VtkFile(str(path.with_suffix("")), VtkRectilinearGrid)
+    ends: Any = {"start": (0, 0, 0), "end": tuple(axis.size - 1 for axis in axes)}
+    file.openGrid(**ends)
+    file.openPiece(**ends)
+    file.openElement("Coordinates")
+    for letter, axis in zip("xyz", axes, strict=True):
+        file.addData(f"{letter}_coordinates", axis)
+    file.closeElement("Coordinates")
+    file.openData(place, **{word: first[kind] for kind, word in KINDS.items()})
+    for name, field in fields.items():
+        file.addData(name, field)
+    file.closeData(place)
+    file.closePiece()
+    file.closeGrid()
+    for values in (*axes, *fields.values()):
+        parts = [
+            part.ravel(order="F") for part in (values if isinstance(values, tuple) else [values])
+        ]
+        file.appendHeader(parts[0].dtype.name, parts[0].size, len(parts))
+        numbers = parts[0] if len(parts) == 1 else np.stack(parts, axis=-1)
+        file.xml.stream.write(np.ascontiguousarray(numbers).data)
+    file.save()
 
 
 def _planes(
@@ -133,6 +165,5 @@ def _planes(
     planes = {name: [getattr(stress, name) for stress in stresses] for name in names}
     planes["tension"] = [stress.principal[0] for stress in stresses]
     return z[order], {
-        name: np.asfortranarray(np.concatenate(fields)[order].transpose(1, 2, 0))
-        for name, fields in planes.items()
+        name: np.concatenate(fields)[order].transpose(1, 2, 0) for name, fields in planes.items()
     }

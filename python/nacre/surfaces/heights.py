@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -83,8 +83,10 @@ MARKS = frozenset("\"'*!>?")
 """Signs with which programs mark points, as that of the MiniProf does with a quotation mark."""
 FIRST_MARK = re.compile(r"^[\"'*!>?]\s*(?=[+-]?\.?\d)")
 LAST_MARK = re.compile(r"(?<=[\d.])\s+[\"'*!?]$")
-SAMPLE = 1000
-"""Lines from which the separator is found, spread evenly."""
+SAMPLE, LONGEST_SAMPLE = 1000, 200_000
+"""Lines from which the separator is found, spread evenly, and about their characters."""
+BLOCKS = 8
+"""Tables of a file that are read at once if they are the last ones."""
 
 
 class Heights(NamedTuple):
@@ -141,7 +143,8 @@ def text(path: Path, channel: str | int | None = None) -> Heights:
 class Table:
     """Lines of numbers that follow each other."""
 
-    rows: list[list[float]]
+    rows: Any
+    """Lists of numbers, or an array of them."""
     lines: list[int]
     """Line of each row in the file, from 1."""
     title: str = ""
@@ -179,7 +182,7 @@ class Text:
         breaks: dict[int, tuple[int, int, int]] = {}
         near: list[str] = []
         points = False
-        for number, line in lines:
+        for place, (number, line) in enumerate(lines, start=1):
             row, fields = _row(line, mark)
             if row is None or (table is None and np.isnan(row).all()):
                 damaged = table is not None and len(fields) == table.width and line[0] not in "#%"
@@ -218,6 +221,12 @@ class Text:
                 table.headings, table.title = _headings(near, mark, len(row), used)
                 near = []
                 file.tables.append(table)
+                if len(file.tables) <= BLOCKS and not file.has_decimal_commas:
+                    block = _block([text for _, text in lines[place:]], mark, len(row))
+                    if block is not None:
+                        table.rows = np.vstack([*table.rows, row, block])
+                        table.lines += [last for last, _ in lines[place - 1 :]]
+                        break
             table.rows.append(row)
             table.lines.append(number)
         file._check(breaks, lines, mark)
@@ -266,7 +275,7 @@ class Text:
             # Marks at the end of every line separate nothing.
             blank = min(_trailing_marks(texts.get(n, ""), mark) for n in table.lines)
             if blank := min(blank, table.width - 1):
-                table.rows = [row[:-blank] for row in table.rows]
+                table.rows = np.array(table.rows)[:, :-blank]
                 table.headings = table.headings[: table.width]
             if not table.headings:
                 table.headings = self._defined_columns(table.width)
@@ -320,7 +329,7 @@ class Text:
 
     def points(self, table: Table) -> Heights | None:
         """Return heights of points x, y, z on a grid; None where these are no points."""
-        name, values = str(self.path), np.array(table.rows)
+        name, values = str(self.path), np.asarray(table.rows)
         columns = _coordinates(table.headings, values)
         if columns is None:
             if self.path.suffix.lower() != ".xyz":
@@ -344,7 +353,7 @@ class Text:
 
     def matrix(self, table: Table) -> Heights:
         """Return a matrix of heights, as what it cannot be is refused."""
-        name, values, counts = str(self.path), np.array(table.rows), self.counts()
+        name, values, counts = str(self.path), np.asarray(table.rows), self.counts()
         where = f"table from line {table.lines[0]}"
         is_numbered = counts is not None and _extra_columns(table, counts) == 1
         if is_numbered and (np.diff(values[:, 0]) == 1).all():
@@ -373,7 +382,7 @@ class Text:
             for number, line in self.above
         }
         for table in self.tables:
-            for number, row in zip(table.lines, table.rows, strict=True):
+            for number, row in zip(table.lines, np.array(table.rows).tolist(), strict=True):
                 lines[number] = " ".join(map(repr, row))
         return "\n".join(lines[number] for number in sorted(lines)) + "\n"
 
@@ -699,9 +708,9 @@ def _content(path: Path) -> tuple[dict[str, str], list[tuple[int, str]], list[tu
 
 def _numbers_text(line: str) -> str:
     """Return a line without the mark of a point in front of its numbers, or behind them."""
-    if line.count('"') > 1:
+    if not any(mark in line for mark in MARKS) or line.count('"') > 1:
         return line
-    return LAST_MARK.sub("", FIRST_MARK.sub("", line)) if MARKS & set(line) else line
+    return LAST_MARK.sub("", FIRST_MARK.sub("", line))
 
 
 def _row(text: str, mark: str | None) -> tuple[list[float] | None, list[str]]:
@@ -717,9 +726,21 @@ def _row(text: str, mark: str | None) -> tuple[list[float] | None, list[str]]:
     return (row if len(row) == len(fields) else None), fields
 
 
+def _block(texts: Sequence[str], mark: str | None, width: int) -> Array | None:
+    """Return the numbers of lines that are all rows of this width with decimal points, or None."""
+    if not texts or any("_" in text or (mark != "," and "," in text) for text in texts):
+        return None
+    try:
+        block = np.loadtxt(texts, delimiter=mark, comments=None, ndmin=2)
+    except ValueError:
+        return None
+    return block if block.shape == (len(texts), width) else None
+
+
 def _separator(texts: Sequence[str]) -> str | None:
     """Return the mark between fields by which most lines are rows; None stands for blanks."""
-    sample = texts[:: max(1, len(texts) // SAMPLE)]
+    most = max(len(texts) // SAMPLE, sum(map(len, texts)) // LONGEST_SAMPLE)
+    sample = texts[:: max(1, most)]
 
     def rows(mark: str | None) -> int:
         parsed_rows = (_row(text, mark)[0] for text in sample if mark is None or mark in text)

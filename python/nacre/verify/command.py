@@ -8,11 +8,8 @@ from typing import Annotated
 import typer
 
 import nacre
-from nacre import verify
-from nacre._tools.units import printable
 from nacre.app.command import commands
 from nacre.case.commands import Command
-from nacre.results.display import aligned
 
 __all__ = ["commands"]
 
@@ -26,6 +23,10 @@ def check(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
     """Compute printed numbers of other programs, standards and papers again, and compare."""
+    from nacre import verify
+    from nacre._tools.units import printable
+    from nacre.results.display import aligned
+
     rows = list(verify.rows(cases or None))
     wrong = sum(row.verdict == "wrong" for row in rows)
     if as_json:

@@ -34,7 +34,7 @@ from nacre.bearing import (
     simple_fatigue_load_limit,
     static_rating,
 )
-from support import DATA
+from support import DATA, Patch
 
 PRINTED = json.loads((DATA / "printed.json").read_text("utf-8"))
 ROLLERS = CylindricalRoller(
@@ -265,6 +265,30 @@ def test_fatigue_load_limit_of_rollers_is_that_of_the_profiled_contact() -> None
         assert fatigue_load_limit(bearing) == pytest.approx(
             simple_fatigue_load_limit(bearing), rel=0.2
         )
+
+
+def test_the_limit_of_equal_bearings_is_solved_once(monkeypatch: Patch) -> None:
+    solves = []
+
+    class Counted(nacre.Contact):
+        def solve(self, *arguments: Any, **keywords: Any) -> nacre.Solution:
+            solves.append(keywords["load"])
+            return super().solve(*arguments, **keywords)
+
+    monkeypatch.setattr("nacre.bearing.modified.Contact", Counted)
+    x = np.linspace(-0.5, 0.5, 101) * ROLLERS.length
+    rollers = replace(ROLLERS, profile=nacre.SampledProfile(x, 30e-6 * (2e2 * x) ** 4))
+    lives = []
+    for bearing in (rollers, replace(rollers, outer=nacre.Elastic(206e9, 0.3)), replace(rollers)):
+        loaded = bearing.solve(force=(4450.0, 0.0, None), speed=100.0, model="iso16281")
+        lives += [loaded.life(**OIL), loaded.life(**OIL | {"viscosity_ratio": 1.0})]
+        assert 2 < len(solves) < 15
+        if bearing is rollers:
+            first = len(solves)
+    assert len(solves) == first
+    assert len({life.fatigue_load_limit for life in lives}) == 1
+    assert fatigue_load_limit(replace(rollers, diameter=11e-3)) != lives[0].fatigue_load_limit
+    assert len(solves) > first
 
 
 def test_straight_rollers_have_the_simple_limit() -> None:

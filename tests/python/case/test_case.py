@@ -270,6 +270,7 @@ STUDY_ERRORS = {
     '"study.nc" -> "study.txt"': "store must end in .nc",
 }
 STRESS_ERRORS = {
+    'friction = 0.2 -> refine = "fine"': "stress.refine: must be true or false or a finite number",
     "friction = 0.2 -> friction = -1": "stress: friction must be at least 0",
     "friction = 0.2 -> fiction = 1": "stress.fiction: there is no such key; the keys here are fric",
     'friction = 0.2 -> body = "x"': 'stress.body: must be "body" or "counterbody", got',

@@ -683,6 +683,7 @@ OUTSIDE = {
 NAMES = globals() | {
     "plot": nacre.plot,
     "fatigue": nacre.fatigue,
+    "friction": nacre.friction,
     "rollers": made(bearing.CylindricalRoller, ROLLERS | {"clearance": 41e-6}),
     "balls": made(bearing.DeepGrooveBall, BALL_SIZES),
     "barrels": made(bearing.SphericalRoller, BARRELS),

@@ -25,6 +25,17 @@ def imported(script: str = SCRIPT) -> list[str]:
     return run.stdout.split()
 
 
+def test_what_stands_behind_names_and_commands_is_imported_when_it_is_used() -> None:
+    heavy = {"numpy", "pydantic", "typer", "xarray", "matplotlib", "nacre.contact", "nacre.cards"}
+    assert heavy & set(imported("import sys, nacre; print(*sys.modules)")) == set()
+    script = "import sys, atexit; atexit.register(lambda: print(*sys.modules)); sys.argv[1:] = {}\n"
+    run = "from nacre.cli import main; main()"
+    for arguments in (["--help"], ["new"], ["new", "bearing"], ["solve", "--help"]):
+        modules = imported(script.format(arguments) + run)
+        assert "typer" in modules
+        assert (heavy - {"typer", "pydantic"} | {"nacre.case.file"}) & set(modules) == set()
+
+
 def test_nothing_but_numpy_is_imported() -> None:
     modules = imported()
     packages = {name.partition(".")[0] for name in modules}

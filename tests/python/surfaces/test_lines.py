@@ -13,7 +13,8 @@ import pytest
 import nacre
 from nacre._tools.text import unit_of
 from nacre.indent import read as read_curve
-from support import assert_close
+from nacre.surfaces import heights as _heights
+from support import Patch, assert_close
 
 Array = npt.NDArray[np.float64]
 MARK = pytest.mark.parametrize
@@ -36,6 +37,53 @@ def table(*columns: npt.NDArray[Any], head: str = "", mark: str = ",", comma: bo
 def written(path: Path, text: str) -> Path:
     path.write_text(text, encoding="utf-8")
     return path
+
+
+MAP = table(*np.random.default_rng(3).standard_normal((8, 12)))
+ROWS = MAP.splitlines(keepends=True)
+
+
+@MARK(
+    "text",
+    [
+        MAP,
+        MAP.replace(",", ";"),
+        MAP.replace(",", " ; "),
+        MAP.replace(",", " "),
+        MAP.replace(",", ",\u2003"),
+        MAP.replace(",", ";").replace(".", ","),
+        MAP.replace(",", ";").replace(".", ",", 1),
+        MAP.replace("0", "\N{FULLWIDTH DIGIT ZERO}"),
+        MAP.replace("1", "0x1", 1),
+        MAP.replace("1", "1_1"),
+        MAP.replace("2", "nan").replace("3", "bad"),
+        MAP.replace("\n", ",\n"),
+        MAP.replace("\n", ",,\n", 2),
+        MAP.replace("\n", "\n\n# no row\n"),
+        MAP.replace("\n", "\nrest\n", 2),
+        MAP[:-2] + "x\n",
+        MAP + "end\n",
+        MAP + "1,2\n",
+        MAP + "# Channel: other\n" + MAP,
+        "".join(row[: -7 * (k % 2) - 2] + "\n" for k, row in enumerate(ROWS)),
+        '"' + MAP.replace(",", '","').replace("\n", '"\n"')[:-1],
+    ],
+)
+def test_lines_are_read_at_once_as_they_are_one_by_one(
+    text: str, tmp_path: Path, monkeypatch: Patch
+) -> None:
+    path = written(tmp_path / "a.csv", text)
+
+    def outcome() -> tuple[object, ...]:
+        try:
+            heights, *others = _heights.text(path)
+        except ValueError as error:
+            return (str(error),)
+        return (heights.tobytes(), heights.shape, *others)
+
+    at_once = outcome()
+    monkeypatch.setattr(_heights, "_block", lambda *arguments: None)
+    assert outcome() == at_once
 
 
 @MARK("ending", ["csv", "txt", "dat"])
