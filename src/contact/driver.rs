@@ -203,7 +203,7 @@ impl Contact {
             freedoms: &freedoms,
             criteria: options.stop_criteria()?,
         };
-        let mut report = Report::planned(self, steps.shape, motion, options.tolerance);
+        let mut report = Report::planned(self, steps.shape, motion, options);
         let unit = self.convolution().work();
         let mut count = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
             report.count(iterations, work / unit, quality);

@@ -132,6 +132,13 @@ impl Options {
         })
     }
 
+    /// Whether hardness and springs are the same at all places, which have no dents.
+    pub(super) fn is_uniform(&self) -> bool {
+        !matches!(self.hardness, Some(Hardness::Cells(_)))
+            && !matches!(self.compliance, Some(Compliance::Cells(_)))
+            && self.indentation.is_none()
+    }
+
     /// The largest number of cells of a grid that is chosen, checked.
     pub(super) fn largest_grid(&self) -> Result<usize> {
         let most = self.cells.unwrap_or(LARGEST_GRID);
@@ -208,6 +215,12 @@ impl Motion {
             }
         }
         self
+    }
+
+    /// Whether the shape is neither tilted nor loaded beside the origin.
+    pub(crate) fn is_centred(&self) -> bool {
+        let rotations = [self.eccentricity, self.moment, self.tilt];
+        rotations.as_flattened().iter().flatten().all(|value| value.abs() <= 0.0)
     }
 
     /// A prescribed `approach` \[m\], with both tilts locked at 0.

@@ -12,7 +12,7 @@ use crate::compliance::ends::{Ends, FreeEnds};
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::ends::contact_ends;
-use crate::contact::options::Motion;
+use crate::contact::options::{Motion, Options};
 use crate::contact::plan::{Contact, PlannedOperator, check_coefficients};
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
@@ -419,8 +419,8 @@ pub struct Report {
     /// Load or approach and tilts that were asked for.
     pub motion: Motion,
     /// Unit vector along which the shape rolls, and friction acts where no other direction is given: y in
-    /// line contact. `None` where the shape has no such direction, or it is not known, as in files of
-    /// earlier versions.
+    /// line contact, and x of a body of revolution that is pressed on its axis, as all directions are alike. `None` where
+    /// the shape has no such direction, or it is not known, as in files of earlier versions.
     pub rolling_direction: Option<[f64; 2]>,
     /// The tolerance that was asked for.
     pub tolerance: f64,
@@ -470,8 +470,14 @@ impl Report {
         plan: &Contact,
         shape: &dyn Surface,
         motion: &Motion,
-        tolerance: f64,
+        options: &Options,
     ) -> Self {
+        let is_round = shape.is_round()
+            && motion.is_centred()
+            && options.is_uniform()
+            && plan.setup.coefficients.is_none()
+            && plan.grid.is_periodic() == [false; 2];
+        let direction = plan.grid.rolling_direction().or_else(|| shape.rolling_direction());
         Self {
             termination: Termination::Running,
             solver: None,
@@ -486,8 +492,8 @@ impl Report {
             body: plan.body.clone(),
             counterbody: plan.setup.counterbody.clone(),
             motion: *motion,
-            rolling_direction: plan.grid.rolling_direction().or_else(|| shape.rolling_direction()),
-            tolerance,
+            rolling_direction: direction.or_else(|| is_round.then_some([1.0, 0.0])),
+            tolerance: options.tolerance,
             seconds: 0.0,
         }
     }

@@ -98,6 +98,11 @@ pub trait Surface: fmt::Debug + Send + Sync {
         self.base()?.rolling_direction()
     }
 
+    /// Whether the shape is a body of revolution about the z axis. False by default.
+    fn is_round(&self) -> bool {
+        false
+    }
+
     /// Numbers of the shape on which its gaps depend smoothly, by name, with their values. None by default. Lengths at
     /// which a shape is cut off are not among them: cells join and leave there one by one.
     fn parameters(&self) -> Vec<(String, f64)> {
@@ -189,6 +194,10 @@ where
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {
         (**self).rolling_direction()
+    }
+
+    fn is_round(&self) -> bool {
+        (**self).is_round()
     }
 
     fn parameters(&self) -> Vec<(String, f64)> {
@@ -394,6 +403,10 @@ impl<S: Surface> Surface for Superposition<S> {
             marks.dedup();
             marks
         })
+    }
+
+    fn is_round(&self) -> bool {
+        matches!(&self.0[..], [only] if only.is_round())
     }
 
     /// Numbers of the only shape or, of several, each with the prefix `parts[k].`.

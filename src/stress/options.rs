@@ -54,7 +54,8 @@ pub struct StressOptions {
     /// Direction of the traction on the body, a vector of any length above 0; a counterbody gets the
     /// opposite. Default: the direction in which the shape rolls
     /// ([`Report::rolling_direction`](crate::Report::rolling_direction)), across the axis of a roller, and
-    /// across the strips of a line contact. With friction it must be given for other shapes.
+    /// across the strips of a line contact; x below a body of revolution that is pressed on its axis. With friction it must
+    /// be given for other shapes.
     pub direction: Option<[f64; 2]>,
     /// Residual stress \[Pa\] of each layer from the surface down, then of the substrate; a shorter
     /// list leaves the rest at 0. It is added to σ_xx and σ_yy. Default: none.
@@ -193,7 +194,8 @@ impl SlidingSense {
         }
         let [x, y] = direction.or(self.direction).ok_or(Error::Inconsistent(
             "direction must be given where friction is above 0: only rollers, cylinders and line \
-             contacts have a rolling direction to take instead; (1, 0) is along x",
+             contacts, and bodies of revolution that are pressed on their axis, have one to take instead; \
+             (1, 0) is along x",
         ))?;
         let length = x.hypot(y);
         Ok([x, y].map(|component| friction * (self.sign * component) / length))

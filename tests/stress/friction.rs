@@ -1,8 +1,8 @@
 //! The direction of friction: that in which the shape rolls, or one that is given.
 
 use nacre::{
-    Contact, Cylinder, Elastic, Grid, HeightMap, Member, Motion, Options, Paraboloid, Result,
-    Roller, Setup, Solution, Sphere, Stress, StressOptions, Surface, stress,
+    Contact, Cylinder, Elastic, FlatPunch, Grid, HeightMap, Member, Motion, Options, Paraboloid,
+    Result, Roller, Setup, Solution, Sphere, Stress, StressOptions, Surface, stress,
 };
 use ndarray::{Array2, array};
 
@@ -64,12 +64,32 @@ fn line_contacts_slide_across_the_strips() -> Result<()> {
     Ok(())
 }
 
+/// Below a body of revolution that is pressed on its axis all directions are alike: friction acts along x.
+#[test]
+fn bodies_of_revolution_slide_along_x() -> Result<()> {
+    let shapes: [Box<dyn Surface>; 3] = [
+        Box::new(Sphere::new(1.0)?),
+        Box::new(Paraboloid::new(2.0, 1.0)?.with_counter_radii([None, Some(-2.0)])?),
+        Box::new(FlatPunch::new(0.05)?),
+    ];
+    let contact = Contact::plan(Elastic::new(1.0, 0.3)?, cells()?, Setup::default())?;
+    let tilted = Motion::approach(1e-3).with_tilt([Some(1e-3), None]);
+    for shape in shapes {
+        let solution = press(cells()?, &shape)?;
+        assert_eq!(solution.report.rolling_direction, Some([1.0, 0.0]));
+        assert_eq!(tractions(&solution, None)?, tractions(&solution, Some([1.0, 0.0]))?);
+        let solution = contact.solve(&shape, &tilted, &Options::default())?;
+        assert_eq!(solution.report.rolling_direction, None);
+    }
+    Ok(())
+}
+
 /// Other shapes are asked for the direction, and a pressure whose shape is not known; without friction
 /// they need none. Nor does a solution tell that was saved before reports had the direction.
 #[test]
 fn others_are_asked() -> Result<()> {
     let shapes: [Box<dyn Surface>; 3] = [
-        Box::new(Sphere::new(1.0)?),
+        Box::new(Sphere::new(1.0)?.shifted(0.01, 0.0)?),
         Box::new(Paraboloid::new(3.0, 1.0)?),
         Box::new(HeightMap::new(array![[0.0, 0.0], [0.0, 0.1]], [0.1, 0.1])?),
     ];

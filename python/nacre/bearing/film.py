@@ -206,7 +206,7 @@ def _modulus(solution: Solution) -> float:
 
 def is_line(solution: Solution) -> bool:
     """Return whether a contact is one of a roller, or of strips."""
-    return solution.grid.is_line or solution.report.rolling_direction is not None
+    return solution.grid.is_line or solution.report.rolling_direction == (0.0, 1.0)
 
 
 @with_units(speed="m/s", viscosity="Pa s", pressure_viscosity="1/Pa", roughness="m", radius="m")

@@ -153,9 +153,10 @@ class Report(Result):
     rolling_direction: Pair | None
     """Unit vector ``(x, y)`` along which the shape rolls.
 
-    It is across the axis of a roller, and y in line contact. Friction acts along it where no
-    `direction` is given. `None` where the shape has no such direction, or it is not known, as in
-    files of earlier versions.
+    It is across the axis of a roller, y in line contact, and x of a body of revolution that is
+    pressed on its axis, as all are alike. Friction acts along it where no `direction` is given.
+    `None` where the shape has no such direction, or it is not known, as in files of earlier
+    versions.
     """
     tolerance: float
     """Tolerance that was asked for."""

@@ -816,7 +816,8 @@ class Stressed:
             Direction ``(x, y)`` of the traction on the body, of any length; the traction on the
             counterbody is opposite. By default the direction in which the shape rolls,
             `Report.rolling_direction`: across the axis of a roller or cylinder, and across the
-            strips of a line contact. For other shapes it must be given where `friction` is above 0.
+            strips of a line contact; x below a body of revolution that is pressed on its axis, as
+            all are alike. Else it must be given where `friction` is above 0.
         residual : dict or sequence, optional
             Residual stress [Pa], equal along x and y, that is added in a layer. A dict maps layers
             to it, by number (0 at the surface) or name, and ``"substrate"``; a sequence holds it

@@ -59,9 +59,8 @@ def coating_chart(
     friction
         Coefficient of friction of sliding.
     direction
-        Direction ``(x, y)`` of the traction on the coating. By default the direction in which the
-        shape rolls, as in `Solution.stress`; for shapes without one it must be given where
-        `friction` is above 0.
+        Direction ``(x, y)`` of the traction on the coating. By default that of `Solution.stress`;
+        for shapes without one it must be given where `friction` is above 0.
     refine
         Largest estimated error of a stress, as a fraction of it, True for 0.01:
         `Solution.stress_summary` then solves finer cells around the most loaded places, which can

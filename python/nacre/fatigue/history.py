@@ -109,7 +109,7 @@ class Rolling:
         self.has_tractions = tractions is not None
         self.sign = -1.0 if body == "counterbody" else 1.0
         self.threads = None if threads is None else core.integer("threads", threads)
-        rolls = normal.report.rolling_direction or (0.0, 1.0)
+        rolls = (0.0, 1.0)
         x_part, y_part = rolls if direction is None else core.vector("direction", 2, direction)
         self.direction = core.real("direction", x_part), core.real("direction", y_part)
         self.along = self.sign * self.direction[0], self.sign * self.direction[1]

@@ -310,8 +310,16 @@ def check_direction(
     """Raise a `ValueError` before a solve whose stresses need a direction of friction."""
     grid, shape = arguments.get("grid"), arguments.get("shape")
     rolls = getattr(grid, "is_line", False) or getattr(shape, "rolling_direction", None)
-    if friction > 0 and direction is None and not rolls:
+    if friction > 0 and direction is None and not (rolls or _is_round(arguments)):
         raise ValueError(
             "direction must be given where friction is above 0: only rollers, cylinders and line "
-            "contacts have a rolling direction to take instead; (1, 0) is along x"
+            "contacts, and bodies of revolution that are pressed on their axis, have one to take "
+            "instead; (1, 0) is along x"
         )
+
+
+def _is_round(arguments: Mapping[str, object]) -> bool:
+    """Return whether a body of revolution is pressed on its axis."""
+    rotations: Any = [arguments.get(name) or () for name in ("eccentricity", "moment", "tilt")]
+    is_centred = not any(value for pair in rotations for value in pair)
+    return is_centred and getattr(arguments.get("shape"), "is_round", False)

@@ -90,6 +90,11 @@ impl Surface for Sphere {
         sagitta(self.radius, x * x + y * y) + self.counterpart.gap(x, y)
     }
 
+    fn is_round(&self) -> bool {
+        let [x, y] = self.counter_radii();
+        x == y
+    }
+
     fn extent(&self) -> [Extent; 2] {
         let reach = self.counterpart.reach([self.radius; 2]);
         reach.map(|half| Extent::Within([-half, half]))
@@ -212,6 +217,11 @@ impl Surface for Paraboloid {
     fn gap(&self, x: f64, y: f64) -> f64 {
         let [radius_x, radius_y] = self.equivalent_radii;
         x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y)
+    }
+
+    fn is_round(&self) -> bool {
+        let [x, y] = self.equivalent_radii;
+        (x / y - 1.0).abs() < 4.0 * f64::EPSILON
     }
 
     fn radii(&self) -> [f64; 2] {
@@ -377,6 +387,10 @@ value! {
 impl Surface for FlatPunch {
     fn gap(&self, x: f64, y: f64) -> f64 {
         if x * x + y * y <= self.radius * self.radius { 0.0 } else { f64::INFINITY }
+    }
+
+    fn is_round(&self) -> bool {
+        true
     }
 
     fn extent(&self) -> [Extent; 2] {

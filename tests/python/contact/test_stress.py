@@ -13,6 +13,7 @@ import pytest
 
 import nacre
 from bodies import BALL, COATED, HARD, ROD, STEEL, quiet
+from nacre import fatigue
 from nacre._tools.units import written
 from support import assert_close, interrupted
 
@@ -105,17 +106,46 @@ def test_friction_acts_along_the_rolling_direction(tmp_path: Path) -> None:
     assert pickle.loads(pickle.dumps(solution)).report.rolling_direction == (0.0, 1.0)
 
 
+def test_below_a_body_of_revolution_friction_acts_along_x(
+    solution: nacre.Solution, tmp_path: Path
+) -> None:
+    along: dict[str, Any] = {"friction": 0.3, "direction": (1, 0)}
+    plan = solution.stress_plan()
+    assert BALL.is_round
+    assert solution.report.rolling_direction == (1.0, 0.0)
+    for kept in (solution, nacre.load(solution.save(tmp_path / "ball.nc"))):
+        assert kept.stress(0.0, friction=0.3) == plan.stress(0.0, friction=0.3)
+        assert kept.stress(0.0, friction=0.3) == solution.stress(0.0, **along)
+        assert kept.stress_summary(friction=0.3) == solution.stress_summary(**along)
+    assert solution.verdict(friction=0.3) == solution.verdict(**along)
+    # Rolling has its own: the section along y.
+    assessed = [fatigue.assess(solution, friction=0.3, **d) for d in ({}, {"direction": (0, 1)})]
+    assert assessed[0] == assessed[1]
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_friction_is_asked_for_its_direction(solution: nacre.Solution) -> None:
     message = r"^direction must be given where friction is above 0: only rollers, cylinders and li"
-    plan = solution.stress_plan()
-    for call in (solution.stress, plan.stress):
+    oval, ended = nacre.Paraboloid(5e-3, 4e-3), nacre.HalfSpace(STEEL, ends=(-1e-4, None))
+    assert not oval.is_round
+    for shape, body, motion in (
+        (oval, COATED, {}),
+        (BALL.shifted(1e-5, 0.0), COATED, {}),
+        (BALL, COATED, {"tilt": (1e-3, None)}),
+        (BALL, COATED, {"eccentricity": (1e-5, None)}),
+        (BALL, ended, {}),
+        (BALL, COATED, {"hardness": np.full(GRID.shape, 9e9)}),
+    ):
+        pressed = nacre.solve(shape, body, grid=GRID, load=1.0, **motion)
+        plan = pressed.stress_plan()
+        for call in (pressed.stress, plan.stress):
+            with pytest.raises(ValueError, match=message):
+                call(0.0, friction=0.1)
         with pytest.raises(ValueError, match=message):
-            call(0.0, friction=0.1)
-    with pytest.raises(ValueError, match=message):
-        solution.stress_summary(friction=0.1)
+            pressed.stress_summary(friction=0.1)
+        assert pressed.report.rolling_direction is None
     with pytest.raises(ValueError, match=message):
         nacre.stress(COATED, GRID, solution.pressure, 0.0, friction=0.1)
-    assert solution.report.rolling_direction is None
     # A report of an earlier version does not know it, and reads as one without.
     roller = nacre.solve(nacre.Roller(5e-3, 1e-4, 0.01), COATED, grid=NARROW, load=5.0)
     state = roller.to_dict()

@@ -179,16 +179,26 @@ def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
 
 def test_friction_without_a_direction_is_refused_before_a_solve() -> None:
     message = "direction must be given where friction is above 0"
+    oval = nacre.Paraboloid(5e-3, 4e-3)
     with pytest.warns(nacre.NacreWarning):
         study = nacre.sweep(
-            ball,
+            lambda **parameters: ball(**parameters) | {"shape": oval},
             {"thickness": [2e-5], "young": YOUNG},
             outputs=["tension"],
             stress={"friction": 0.2},
         )
     assert all(message in str(error) for error in study.error.values.ravel())
-    with pytest.raises(ValueError, match=message):
-        design.coating_chart(BALL, STEEL, thickness=[2e-5], young=YOUNG, friction=0.2, load=1.0)
+    ways: list[tuple[nacre.types.Shape, dict[str, Any]]] = [(oval, {}), (BALL, {"tilt": (1e-3, 0)})]
+    for shape, tilt in ways:
+        with pytest.raises(ValueError, match=message):
+            design.coating_chart(
+                shape, STEEL, thickness=[2e-5], young=YOUNG, friction=0.2, load=1.0, **tilt
+            )
+    # Below a ball friction acts along x.
+    study = nacre.sweep(ball, ONE, outputs=["coating_tension"], stress={"friction": 0.2})
+    along = {"friction": 0.2, "direction": (1, 0)}
+    same = nacre.sweep(ball, ONE, outputs=["coating_tension"], stress=along)
+    assert study.coating_tension.item() == same.coating_tension.item()
     # A cylinder has a rolling direction.
     grid = nacre.Grid.line(96, 1.2e-4)
     chart = design.coating_chart(
