@@ -30,7 +30,7 @@ BAR = 0.02
 """Largest part by which a count may rise."""
 NEXT = "next"
 """What the version that is not released is called in the table."""
-VALGRIND = ("valgrind", "--tool=none")
+VALGRIND = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def replaced(
     """Return the rows with those of a release anew, which stand for the version before it."""
     kept = [row for row in rows if row["release"] not in (name, NEXT)]
     for case, work in counts.items():
-        numbers = ["" if count is None else f"{count:.10g}" for count in astuple(work)]
+        numbers = ["" if count is None else str(count) for count in astuple(work)]
         kept.append(dict(zip(COLUMNS, [name, date, case, *numbers, tools], strict=True)))
     return kept
 
@@ -141,18 +141,22 @@ def run(*command: str | Path) -> tuple[str, str]:
 def instructions(program: Path, *words: str) -> int:
     """Return the instructions of a run under Valgrind."""
     log = run(*VALGRIND, program, *words)[1]
-    return int(re.findall(r"Collected : (\d+)", log)[0])
+    return int(re.findall(r"I +refs: +([\d,]+)", log)[0].replace(",", ""))
 
 
 def counted(program: Path, valgrind: bool) -> Counts:
-    """Return the work of all cases, and print it: instructions are those beyond the preparation."""
+    """Return the work of all cases: instructions are those beyond the preparation.
+
+    Runs differ by some 1e-4 of them, as threads of a pool look for work before they sleep.
+    """
     counts = {}
     for case in run(program)[0].split():
-        convolutions = run(program, case)[0]
-        beyond = None
+        convolutions, beyond = run(program, case)[0], None
         if valgrind:
-            beyond = instructions(program, case) - instructions(program, case, "prepare")
-        counts[case] = Work(beyond, float(convolutions) if convolutions else None)
+            total = instructions(program, case) - instructions(program, case, "prepare")
+            beyond = int(float(f"{total:.4g}"))
+        counts[case] = Work(beyond, round(float(convolutions), 2) if convolutions else None)
+        print(case, *astuple(counts[case]), file=sys.stderr, flush=True)
     return counts
 
 

@@ -92,7 +92,7 @@ def machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, Any]:
             return "solve/line\n", ""
         if words[0] == "valgrind":
             total = 1_000_000 + (words[-1] != "prepare") * round(1e7 * state["rise"])
-            return "", f"==7== Collected : {total}\n"
+            return "", f"==7== I   refs:      {total:,}\n"
         return f"{state['convolutions']}\n", ""
 
     monkeypatch.setattr(counts, "run", run)
