@@ -81,7 +81,7 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
 
 # Another load of the machine does not change counts, so that they tell a change of a few per cent, which times do not.
-counts: ## count instructions and convolutions of small problems under Valgrind: benches/counts.csv, in four minutes
+counts: ## count instructions and convolutions of small problems under Valgrind: benches/counts.csv, in two minutes once built
 	$(PYTHON) benches/counts.py
 
 compare-counts: ## compare them with benches/counts.csv: a rise by more than 2 % is an error; changes nothing
