@@ -22,10 +22,10 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers references kappa constants torch develop stubs docs links publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench counts compare-counts fuzz peers references kappa constants torch develop stubs docs links publishable
 
 help: ## list these commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
 demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
 	PYTHONPATH=examples $(BIN)/python -m paper --out out
@@ -79,6 +79,13 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
 	cargo bench --bench '*' -- --save-baseline $(BASELINE)
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
+
+# Another load of the machine does not change counts, so that they tell a change of a few per cent, which times do not.
+counts: ## count instructions and convolutions of small problems under Valgrind: benches/counts.csv, in two minutes once built
+	$(PYTHON) benches/counts.py
+
+compare-counts: ## compare them with benches/counts.csv: a rise by more than 2 % is an error; changes nothing
+	$(PYTHON) benches/counts.py --compare
 
 fuzz: $(WHEEL) $(DEV) ## random contacts, calls, files and indentations: CASES=1000 of each kind, more than ten thousand in all
 	NACRE_FUZZ=$(CASES) cargo test --test contacts --test frictions fuzz -- --include-ignored

@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 
 sys.path.insert(
     0, str(Path(__file__).parent / "extensions")
-)  # claims, drawings, names, provenance
+)  # claims, drawings, names, provenance, work_counts
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
@@ -33,6 +33,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",
     "claims",
+    "work_counts",
     "names",
     "provenance",
 ]
