@@ -634,7 +634,9 @@ impl<'a, 'b> Planes<'a, 'b> {
         let progress = &mut self.progress;
         let mut progress = |fraction: f64| progress(((done + fraction) / planned).min(1.0));
         let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
-        self.evaluation.keeps_smooth = points && self.scope.beside.is_none();
+        // In line contact the sum over all strips is as cheap.
+        let is_line = self.plan.whole.grid.is_line();
+        self.evaluation.keeps_smooth = points && !is_line && self.scope.beside.is_none();
         self.evaluation.plane(place, &mut outputs, &mut progress)?;
         self.smooth = self.evaluation.smooth(&self.fields);
         if let Some(beside) = &mut self.scope.beside {

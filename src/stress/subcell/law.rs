@@ -82,6 +82,14 @@ impl EdgeLaw {
         if self.values.is_empty() { 1 } else { PASSES }
     }
 
+    /// Change of ln Φ from an eighth of a cell to the cells of a fit.
+    pub(super) fn change(&self) -> f64 {
+        match self.values.is_empty() {
+            true => 0.0,
+            false => (self.at(8.0) / self.at(0.125)).ln().abs(),
+        }
+    }
+
     /// The pressure whose square is a polynomial times Φ².
     pub(super) fn profile<'a>(&'a self, squared: &'a SquaredPressure) -> EdgeProfile<'a> {
         let [slope, curvature] = squared.slope_at_edge(self.sides);

@@ -3,8 +3,8 @@
 //! # The error
 //!
 //! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
-//! taken as uniform. Where an edge is reconstructed it is a thirtieth; a hundredth in the
-//! interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half, and three
+//! taken as uniform. Where an edge is reconstructed it is a thirtieth, and on layers as much more as their law
+//! changes over the cells of a fit; a hundredth in the interior, where it is parabolic. Of tractions that are uniform over cells, as those of partial slip are, it is a half, and three
 //! quarters where they may grow as a root within a cell: at an edge that is not located, and at the border of a zone that sticks.
 //! Steps of known tractions are their own. A step on cells of side d
 //! holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
@@ -50,6 +50,10 @@ const POINT_SHARE: f64 = 0.02;
 /// Share of a step that is not known in the interior. Below Hertz' contact of 128 cells to the half-width,
 /// stresses there err by 3.3e-4 of the peak pressure (`tests/stress/edge.rs`), and a step is a 34th of it.
 const INTERIOR_SHARE: f64 = 0.01;
+
+/// Share of a step that is not known where an edge is reconstructed on layers, per change of the law's factor by e over the cells of
+/// a fit. Chosen by trial (`tests/stress/resolution.rs`).
+const SHARE_OF_CHANGE: f64 = 0.1;
 
 /// Share of a step of the tractions that is not known where they are uniform over cells. Under a sliding ball of 21 to 85
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
@@ -271,13 +275,16 @@ impl Uncertainty {
         for root in &reconstruction.roots {
             known[root.cell[0] * shape[1] + root.cell[1]] = Known::Edge;
         }
+        let edge = SHARE_OF_CHANGE * reconstruction.law.change();
+        let [edge, at_point] =
+            [EDGE_SHARE, POINT_SHARE].map(|least| (least + edge).min(UNIFORM_SHARE));
         let waves = |spacing: f64| {
             let wave = |k: u32| {
                 let ratio = HIGHEST_RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
                 let alpha = ratio * LONGEST / spacing;
                 Wave {
-                    shares: [INTERIOR_SHARE, EDGE_SHARE, UNIFORM_SHARE].map(|share| share / ratio),
-                    at_point: POINT_SHARE / ratio,
+                    shares: [INTERIOR_SHARE, edge, UNIFORM_SHARE].map(|share| share / ratio),
+                    at_point: at_point / ratio,
                     tractions: [TRACTION_SHARE, CUSP_SHARE].map(|share| share / ratio),
                     column: Column::new(body, alpha),
                 }
