@@ -157,7 +157,7 @@ class Slices:
         The logarithms of loads over those of the laminae lie on a line over those of the laminae.
         """
         law, own = copy.copy(self), self(places).force[..., 0]
-        law.power, ratio = np.full((*own.shape, 1), LINE), np.ones(own.shape)
+        law.power, ratio = np.full((1, len(RINGS), 1), LINE), np.ones(own.shape)
         lightest = np.zeros(len(RINGS), dtype=int)
         for ring in range(len(RINGS)):
             known = {own[key]: load / own[key] for key, load in loads.items() if key[1] == ring}
@@ -165,7 +165,8 @@ class Slices:
             line = np.polyfit(at, np.log(list(known.values())), min(len(known), 2) - 1)
             inside = np.log(np.clip(own[:, ring], min(known), max(known)))
             ratio[:, ring] = np.exp(np.polyval(line, inside))
-            law.power[:, ring] *= 1 + line[:-1].sum()
+            # Energies of lower powers would not be convex.
+            law.power[:, ring] = max(1.0, LINE * (1 + line[:-1].sum()))
             lightest[ring] = own[:, ring].tolist().index(min(known))
         changed = law(places).force[..., 0]
         share = np.divide(ratio * own, changed, out=np.zeros(own.shape), where=changed > 0)
