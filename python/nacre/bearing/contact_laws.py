@@ -8,6 +8,7 @@ these the stiffness.
 
 from __future__ import annotations
 
+import copy
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -49,6 +50,13 @@ EQUAL = 1e-15
 hundred units in its last place."""
 NARROWEST = 3
 """Largest number of times that a grid is halved for lighter contacts."""
+HELD = 1e-6
+"""Part of its depth by which a contact moves with the stiffness that it had: the stiffness, some
+power of a tenth of the depth, changes by less."""
+LIGHT = 0.1
+"""Part of the heaviest element's load above which an element shows how laminae are to be scaled."""
+ALIKE = 0.8
+"""The same above which it shows nothing that the heaviest does not."""
 
 
 class Reaction(NamedTuple):
@@ -73,13 +81,27 @@ class Several:
 
     def __init__(self, laws: Sequence[Law], counts: Sequence[int]) -> None:
         """Take the laws, and the number of elements of each."""
-        self.laws = laws
+        self.laws, self.counts = laws, counts
         self.slices = slices_of(counts)
         self.costly = any(isinstance(law, Solved) for law in laws)
 
+    @property
+    def guess(self) -> Several:
+        """Formulas like the contacts."""
+        return Several([law.guess for law in self.laws if isinstance(law, Solved)], self.counts)
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether the last stiffness was that of formulas."""
+        return any(isinstance(law, Solved) and law.is_rough for law in self.laws)
+
     def __call__(self, places: Array) -> Reaction:
-        """Return the reaction of all contacts."""
-        reactions = [law(places[rows]) for law, rows in zip(self.laws, self.slices, strict=True)]
+        """Return the reaction of all contacts, those that mirror each other solved once."""
+        reactions: list[Reaction] = []
+        for law, rows in zip(self.laws, self.slices, strict=True):
+            is_mirrored = law is self.laws[0] and bool(reactions)
+            is_mirrored = is_mirrored and are_equal(places[rows], places[self.slices[0]])
+            reactions.append(reactions[0] if is_mirrored else law(places[rows]))
         contacts = {
             (element + rows.start, ring): contact
             for reaction, rows in zip(reactions, self.slices, strict=True)
@@ -99,6 +121,11 @@ class Several:
             }
             energy, force, stiffness = (field[rows] for field in reaction[:3])
             yield Reaction(energy, force, stiffness, contacts)
+
+
+def are_equal(places: Array, others: Array) -> bool:
+    """Return whether places are equal but for rounding."""
+    return places.shape == others.shape and float(np.abs(places - others).max()) <= EQUAL
 
 
 def slices_of(counts: Sequence[int]) -> list[slice]:
@@ -122,6 +149,30 @@ class Slices:
         both = SPRING * (bearing.length * 1e3) ** (8 / 9) * 1e3**LINE / LAMINAE
         moduli = (STANDARD, STANDARD) if standard else bearing.modulus
         self.spring = 2**LINE * both * np.array(moduli)[:, None] / STANDARD
+        self.power = np.full((1, 1, 1), LINE)
+
+    def matched(self, places: Array, loads: Mapping[tuple[int, int], float]) -> Slices:
+        """Return laminae of those exponents and springs that have known loads at their places.
+
+        The logarithms of loads over those of the laminae lie on a line over those of the laminae.
+        """
+        law, own = copy.copy(self), self(places).force[..., 0]
+        law.power, ratio = np.full((1, len(RINGS), 1), LINE), np.ones(own.shape)
+        lightest = np.zeros(len(RINGS), dtype=int)
+        for ring in range(len(RINGS)):
+            known = {own[key]: load / own[key] for key, load in loads.items() if key[1] == ring}
+            at = np.log(np.fromiter(known, float))
+            line = np.polyfit(at, np.log(list(known.values())), min(len(known), 2) - 1)
+            inside = np.log(np.clip(own[:, ring], min(known), max(known)))
+            ratio[:, ring] = np.exp(np.polyval(line, inside))
+            # Energies of lower powers would not be convex.
+            law.power[:, ring] = max(1.0, LINE * (1 + line[:-1].sum()))
+            lightest[ring] = own[:, ring].tolist().index(min(known))
+        changed = law(places).force[..., 0]
+        share = np.divide(ratio * own, changed, out=np.zeros(own.shape), where=changed > 0)
+        share = np.where(changed > 0, share, share[lightest, range(len(RINGS))])
+        law.spring = self.spring * share[..., None]
+        return law
 
     def deflections(self, places: Array) -> Array:
         """Return the deflections of the laminae ``(Z, 2, laminae)`` [m], at least 0."""
@@ -151,12 +202,12 @@ class Slices:
 
     def __call__(self, places: Array) -> Reaction:
         """Return the reaction of all contacts."""
-        deflection = self.deflections(places)
-        loads = self.spring * deflection**LINE
-        slopes = np.where(deflection > 0, LINE * self.spring * deflection ** (LINE - 1), 0.0)
+        deflection, power = self.deflections(places), self.power
+        loads = self.spring * deflection**power
+        slopes = np.where(deflection > 0, power * self.spring * deflection ** (power - 1), 0.0)
         arms = np.stack([np.ones_like(self.x), self.x])
         return Reaction(
-            (self.spring * deflection ** (LINE + 1)).sum(-1) / (LINE + 1),
+            (self.spring * deflection ** (power + 1)).sum(-1) / (power[..., 0] + 1),
             np.einsum("zrk,ak->zra", loads, arms),
             np.einsum("zrk,ak,bk->zrab", slopes, arms, arms),
         )
@@ -233,8 +284,13 @@ class Solved:
         self.shapes = [bearing.shape(ring) for ring in RINGS]
         self.reach = bearing.reach
         self.plans: dict[tuple[int, int], Contact] = {}
-        self.last: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
-        """Place, solution and stiffness of each contact at the last places."""
+        self.last: dict[tuple[int, int], tuple[Array, Solution, Array, Array | None]] = {}
+        """Place, solution and stiffness of each contact at the last places, and where that is
+        exact; None where it is of a formula."""
+        self.guess: Slices | Hertzian = bearing.law("solved")
+        """Formulas like these contacts."""
+        self.is_rough = self.is_begun = False
+        """Whether the last stiffness was that of formulas, and the next one is to be."""
         power = bearing.width_power
         # Widths in steps, so that a small change of the loads does not change the cells.
         steps = int(ceil(STEPS * math.log2(float(lines.max())) / power))
@@ -267,27 +323,76 @@ class Solved:
             self.plans[key] = Contact(body, grid, counterbody, threads=1)
         return self.plans[key]
 
-    def _solve(self, element: int, ring: int, place: Array) -> tuple[Solution, Array]:
-        """Return a contact and its stiffness, of which a warning says nothing yet."""
-        initial = None
-        if (element, ring) in self.last:
-            before, initial, stiffness = self.last[element, ring]
-            if np.array_equal(place, before):
-                return initial, stiffness
+    def match(self, places: Array) -> None:
+        """Make the laminae of rollers like the heaviest and a light contact of either ring."""
+        self.is_begun = True
+        if not isinstance(self.guess, Slices):
+            return
+        loads = self.guess(places).force[..., 0]
+        sums = np.where((loads > 0).all(axis=1), loads.sum(axis=1), 0.0)
+        heaviest = int(sums.argmax())
+        lighter = np.where(sums > LIGHT * sums[heaviest], sums, np.inf)
+        light = int(lighter.argmin())
+        if not sums[heaviest] > 0:
+            return
+        elements = {heaviest, light if sums[light] < ALIKE * sums[heaviest] else heaviest}
+        keys = [(element, ring) for element in sorted(elements) for ring in range(len(RINGS))]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", core.NacreWarning)
+            for key in keys:
+                solution = self._solution(key, places[key], None)
+                self.last[key] = places[key].copy(), solution, np.zeros((2, 2)), None
+        self.guess = self.guess.matched(places, {key: self.last[key][1].load for key in keys})
+
+    def _rough(self, places: Array) -> dict[tuple[int, int], Array]:
+        """Return the stiffness per load of the formulas, at the first places alone."""
+        self.is_rough, self.is_begun = self.is_begun, False
+        if not self.is_rough:
+            return {}
+        reaction = self.guess(places)
+        loads = reaction.force[..., 0]
+        keys = [(int(j), int(r)) for j, r in np.argwhere(loads > 0)]
+        return {key: reaction.stiffness[key] / loads[key] for key in keys}
+
+    def _solve(
+        self, key: tuple[int, int], place: Array, rough: Array | None
+    ) -> tuple[Solution, Array, Array | None]:
+        """Return a contact, its stiffness per place, and where it is exact: nowhere if `rough`.
+
+        Warnings of the contact are for later.
+        """
+        known = self.last.get(key)
+        if known is not None and np.array_equal(place, known[0]):
+            solution = known[1]
+        else:
+            solution = self._solution(key, place, known and known[1])
+        if rough is not None:
+            return solution, rough * solution.load, None
+        exact_at = known and known[3]
+        if known is None or exact_at is None or self._apart(place, exact_at) > HELD:
+            return solution, solution.stiffness()[:2, :2], place.copy()
+        return solution, known[2], exact_at
+
+    def _apart(self, place: Array, other: Array) -> float:
+        """Return how far two places are from each other, over the depth."""
+        reach = max(self.reach, self.bearing.diameter)
+        moved, depth = np.abs(place - other), abs(place[0]) + abs(place[1]) * self.reach
+        return float((moved[0] + moved[1] * reach) / depth)
+
+    def _solution(self, key: tuple[int, int], place: Array, initial: Solution | None) -> Solution:
+        """Return a contact on a grid that holds it."""
         while True:
-            plan = self._plan(element, ring)
-            solution = plan.solve(
-                self.shapes[ring],
+            solution = self._plan(*key).solve(
+                self.shapes[key[1]],
                 approach=float(place[0]),
                 tilt=(float(place[1]), None),
                 tolerance=self.tolerance,
                 initial=initial,
             )
-            halved = self.halved[element, ring]
             if self._within(solution):
-                return solution, solution.stiffness()
-            if halved > 0:
-                self.halved[element, ring] -= 1
+                return solution
+            if self.halved[key] > 0:
+                self.halved[key] -= 1
             else:
                 self._widen()
             initial = None
@@ -338,30 +443,31 @@ class Solved:
         self._foresee(places)
         for element, ring in tasks:  # plans are made one at a time
             self._plan(element, ring)
-        groups = self._equal(tasks, places)
-        solved: dict[tuple[int, int], tuple[Array, Solution, Array]] = {}
+        groups, rough = self._equal(tasks, places), self._rough(places)
+        solved: dict[tuple[int, int], tuple[Array, Solution, Array, Array | None]] = {}
         pool = thread_pool(self.workers)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", core.NacreWarning)
                 futures = [
-                    pool.submit(self._solve, *group[0], places[group[0]]) for group in groups
+                    pool.submit(self._solve, group[0], places[group[0]], rough.get(group[0]))
+                    for group in groups
                 ]
                 for group, future in zip(groups, futures, strict=True):
-                    solution, tangent = future.result()
+                    solution, tangent, exact_at = future.result()
                     for j, r in group:
                         self.halved[j, r] = self.halved[group[0]]
-                        solved[j, r] = places[j, r].copy(), solution, tangent
+                        solved[j, r] = places[j, r].copy(), solution, tangent, exact_at
                         energy[j, r] = solution.elastic_energy
                         force[j, r] = solution.load, solution.moment[0]
-                        stiffness[j, r] = tangent[:2, :2]
+                        stiffness[j, r] = tangent
         finally:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no contact
         if not self.bearing.carries_moments:
             force[..., 1] = 0.0
             stiffness[..., 0, 1] = stiffness[..., 1, 0] = stiffness[..., 1, 1] = 0.0
         self.last = solved
-        solutions = {key: solution for key, (_, solution, _) in solved.items()}
+        solutions = {key: solution for key, (_, solution, *_) in solved.items()}
         return Reaction(energy, force, stiffness, solutions)
 
     def _equal(self, tasks: list[tuple[int, int]], places: Array) -> list[list[tuple[int, int]]]:

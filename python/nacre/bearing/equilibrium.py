@@ -560,6 +560,8 @@ class Problem:
             if tell is not None and tell(done, state.balance) is False:
                 return state, done, "stopped"
             if state.balance <= tolerance:
+                if getattr(self.law, "is_rough", False):
+                    state = self.state(state.ring, state.own)
                 return self.idle_midway(state), done, "converged"
             if done == max_iterations:
                 break

@@ -23,7 +23,7 @@ from nacre._tools.units import rounded
 from nacre.bearing.arguments import BearingKeywords, BearingOptions, Operation, RingConditions
 from nacre.bearing.balls import AngularContactBall
 from nacre.bearing.cone import check_carried
-from nacre.bearing.contact_laws import Law, Reaction, Several
+from nacre.bearing.contact_laws import Law, Reaction, Several, are_equal
 from nacre.bearing.equilibrium import Problem, Shaft, State
 from nacre.bearing.geometry import Ring, above, bearing_from
 from nacre.bearing.iso import Edge
@@ -304,7 +304,11 @@ def _settings(pair: Pair, options: BearingOptions) -> Array:
     settings = np.array([_touching(bearing) for bearing in pair.bearings])
     if pair.preload_force:
         axial = RingConditions((None, None, pair.preload_force), None, None, None)
-        alone = [solve_bearing(bearing, axial, STANDSTILL, options) for bearing in pair.bearings]
+        alone = [solve_bearing(pair.first, axial, STANDSTILL, options)]
+        if pair.second == pair.first:
+            alone *= 2
+        else:
+            alone += [solve_bearing(pair.second, axial, STANDSTILL, options)]
         return np.array([solution.displacement[2] for solution in alone])
     settings += (pair.preload_distance or 0.0) / 2
     if (pair.preload_distance or 0.0) > 0 and pair.first != pair.second:
@@ -341,8 +345,10 @@ def _equilibrium(
     problem = Problem(shaft, Several(laws, counts), loads, free, np.repeat(forces, counts)[:, None])
     check_carried(shaft.generators(), loads, problem.thrust, free, shaft.arm)
 
-    def contacts(state: State) -> Law:
+    def contacts(state: State) -> Several:
         places = [state.places[rows] for rows in shaft.slices]
+        if pair.first == pair.second and are_equal(*places):
+            return Several([solved_contacts(pair.first, laws[0], places[0], options)] * 2, counts)
         each = zip(bearings, laws, places, strict=True)
         return Several([solved_contacts(*contact, options) for contact in each], counts)
 

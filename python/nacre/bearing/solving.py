@@ -22,6 +22,7 @@ from nacre.bearing.contact_laws import (
     Hertzian,
     Law,
     Reaction,
+    Several,
     Slices,
     Solved,
     binned,
@@ -179,18 +180,23 @@ def centrifugal_force(bearing: Bearing, operation: Operation) -> float:
 def solved_contacts(
     bearing: Bearing, law: Slices | Hertzian, places: Array, options: BearingOptions
 ) -> Solved:
-    """Return contacts that nacre solves, on grids for the loads of a first guess."""
+    """Return contacts that nacre solves, on grids for the loads of a first guess.
+
+    Two of them show what the guess lacks.
+    """
     lines = law.largest_loads(places)
     if not lines.any():
         lines = lines + law.touching_loads()
     cells = options.cells or bearing.usual_cells
-    return Solved(bearing, lines, cells, FINER * options.tolerance, options.threads)
+    contacts = Solved(bearing, lines, cells, FINER * options.tolerance, options.threads)
+    contacts.match(places)
+    return contacts
 
 
 def find_equilibrium(
     problem: Problem,
     start: tuple[Array, Array],
-    contacts: Callable[[State], Law],
+    contacts: Callable[[State], Solved | Several],
     check: Callable[[Problem, State, float], None],
     options: BearingOptions,
 ) -> tuple[Problem, State, tuple[int, str]]:
@@ -218,8 +224,11 @@ def find_equilibrium(
         if ending == "converged":
             check(problem, state, rough)
         if model == "solved":
-            problem = replace(problem, law=contacts(state))
+            problem = replace(problem, law=(law := contacts(state)))
             guess, steps = ending, limit if ending == "converged" else 0
+            if steps > 0:
+                matched = replace(problem, law=law.guess)
+                state, _, _ = matched.solve(state.ring, state.own, rough, 10 * limit, None)
             state, done, ending = problem.solve(state.ring, state.own, tolerance, steps, tell)
             if ending == "iteration limit" and guess != "converged":
                 ending = guess

@@ -16,11 +16,13 @@ from nacre.bearing import (
     BearingSolution,
     CylindricalRoller,
     DeepGrooveBall,
+    Pair,
     SphericalRoller,
     TaperedRoller,
     equilibrium,
 )
 from nacre.bearing.contact_laws import Solved
+from nacre.contact.solution import Solution
 from support import assert_close
 
 SIZE: dict[str, Any] = {"count": 14, "diameter": 10e-3, "length": 9.6e-3, "pitch_diameter": 65e-3}
@@ -130,6 +132,22 @@ def test_equal_elements_beside_the_load_are_solved_once(monkeypatch: pytest.Monk
     assert len(contacts) - count > 1.5 * count
     assert_close(mirrored.loads, turned.loads, atol=1e-5)
     np.testing.assert_array_equal(mirrored.loads[1:], mirrored.loads[:0:-1])
+
+
+@pytest.mark.parametrize(("thrust", "bearings"), [(0.0, 1), (2000.0, 2)])
+def test_unlike_contacts_of_a_pair_are_solved_three_times(
+    monkeypatch: pytest.MonkeyPatch, thrust: float, bearings: int
+) -> None:
+    pair = Pair(TAPERED, TAPERED, arrangement="X", distance=50e-3, preload_distance=10e-6)
+    solves = spied(monkeypatch, Solved, "_within")
+    stiffnesses = spied(monkeypatch, Solution, "stiffness")
+    solution = quiet(pair.solve, force=(4000.0, 0.0, thrust), moment=(0.0, 0.0), **COARSE)
+    assert solution.report.converged
+    # Bearings without thrust mirror each other; elements of one do beside the load.
+    loaded = [one.loads[:9] for one in solution.bearings[:bearings]]
+    unlike = sum(np.count_nonzero(loads) for loads in loaded)
+    assert len(solves) <= 3 * unlike + 4 * bearings  # two elements come before all
+    assert len(stiffnesses) <= 2 * unlike
 
 
 def test_contacts_that_stay_in_place_are_not_solved_again() -> None:
