@@ -332,7 +332,7 @@ impl Tensor {
         let [a, b, c] = [t - self.xx, t - self.yy, t - self.zz];
         let plane = a * b - xy * xy;
         let whole = c * plane - a * yz * yz - b * xz * xz - 2.0 * xy * yz * xz;
-        !(a > 0.0 && plane > 0.0 && whole > 0.0) && !mises.is_nan()
+        !(mises.is_nan() || a > 0.0 && plane > 0.0 && whole > 0.0)
     }
 
     /// Whether the largest shear stress may be larger than `least`, given von Mises' stress; never false where it is.

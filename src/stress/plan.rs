@@ -13,15 +13,16 @@ use super::half_space::{
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
 use super::subcell::{
-    BodyPair, CellPoint, EdgeFit, ErrorOf, LocalSteps, PointStress, STRESSES, StepErrors, SubcellStress, Tractions,
+    BodyPair, CellPoint, EdgeFit, ErrorOf, LocalSteps, PointStress, STRESSES, StepErrors,
+    SubcellStress, Tractions,
 };
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window, full_window};
-use crate::numerics::rounding;
 use crate::numerics::parallel::{Threads, check_memory, memory_of};
+use crate::numerics::rounding;
 
 /// Weights of the components σ_xx … σ_xz in each cell, in C order.
 pub(crate) type Weights = [Vec<f64>; STRESSES];
@@ -401,8 +402,8 @@ impl StressPlan {
     pub(super) fn inside_of(&self, point: &CellPoint, by: f64) -> Option<CellPoint> {
         let inward = self.whole.solved.as_ref()?.subcell.inward(point)?;
         let (grid, mut moved) = (&self.whole.grid, *point);
-        for axis in 0..2 {
-            let at = point.within[axis] + by * inward[axis] / grid.spacing()[axis];
+        for (axis, part) in inward.into_iter().enumerate() {
+            let at = point.within[axis] + by * part / grid.spacing()[axis];
             let cells = rounding::round(at);
             moved.cell[axis] = point.cell[axis].checked_add_signed(cells as isize)?;
             moved.within[axis] = at - cells;

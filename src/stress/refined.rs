@@ -450,7 +450,8 @@ impl Refined<'_> {
                     start..end
                 });
                 let errors = plan.whole.errors(&suspect.place, (friction, false));
-                let errors = errors.unwrap_or_default().by_axis(&plan.whole.steps(&near), ErrorOf::Any);
+                let errors =
+                    errors.unwrap_or_default().by_axis(&plan.whole.steps(&near), ErrorOf::Any);
                 for (coarse, error) in coarse.iter_mut().zip(errors) {
                     *coarse |= error > suspect.allowed;
                 }

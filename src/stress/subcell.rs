@@ -72,8 +72,8 @@ mod near;
 mod reconstruction;
 mod uncertainty;
 
-use edge::{BAND, Fitting};
 pub(super) use edge::around;
+use edge::{BAND, Fitting};
 pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};
@@ -337,7 +337,8 @@ impl SmoothFields {
         let (spacing, half) = (grid.spacing(), grid.spacing().map(|d| 0.5 * d));
         let reach = (AROUND + STENCIL) as isize;
         let rows = if grid.is_line() { 0..=0 } else { -reach..=reach };
-        let offset = |i: isize, j: isize| stresses([i as f64 * spacing[0], j as f64 * spacing[1]], half);
+        let offset =
+            |i: isize, j: isize| stresses([i as f64 * spacing[0], j as f64 * spacing[1]], half);
         let table = rows.flat_map(|i| (-reach..=reach).map(move |j| [i, j]));
         Self { fields, table: table.map(|[i, j]| offset(i, j)).collect() }
     }
@@ -396,7 +397,7 @@ pub(in crate::stress) enum EdgeFit {
 
 impl PointStress<'_> {
     /// The same from stresses in all cells at this depth, but for what pressure within cells adds. On the threads of the caller.
-    pub(super) fn from_cells(mut self, fields: [Vec<f64>; STRESSES]) -> Self {
+    pub(super) fn with_cells(mut self, fields: [Vec<f64>; STRESSES]) -> Self {
         self.around = Some(SmoothFields::new(fields, self.grid, &self.stresses));
         self
     }

@@ -650,7 +650,10 @@ impl<'a, 'b> Planes<'a, 'b> {
         let of = (!self.edge.is_empty(), self.scope.contact);
         self.errors = self.plan.errors_of_extremes(place, self.friction, of);
         let largest = |errors: [StepErrors; 2]| {
-            errors.map(|errors| errors.at(&self.most_steps, ErrorOf::Any)).into_iter().fold(0.0, f64::max)
+            errors
+                .map(|errors| errors.at(&self.most_steps, ErrorOf::Any))
+                .into_iter()
+                .fold(0.0, f64::max)
         };
         self.most_error = self.errors.map_or(0.0, largest);
         self.done += 1;
@@ -711,7 +714,8 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// depths beside.
     fn is_near_edges(&self, place: &Place) -> bool {
         let spacing = self.plan.whole.grid.spacing();
-        let cell = if self.plan.whole.grid.is_line() { spacing[1] } else { spacing[0].max(spacing[1]) };
+        let cell =
+            if self.plan.whole.grid.is_line() { spacing[1] } else { spacing[0].max(spacing[1]) };
         !self.edge.is_empty() && place.depth < SEARCHED * cell
     }
 
@@ -799,7 +803,7 @@ impl<'a, 'b> Planes<'a, 'b> {
             return ControlFlow::Continue(peaks);
         };
         let at = match self.smooth.take() {
-            Some(smooth) => self.plan.whole.threads.run(|| at.from_cells(smooth)),
+            Some(smooth) => self.plan.whole.threads.run(|| at.with_cells(smooth)),
             None => at,
         };
         let shape @ [_, ny] = self.plan.whole.grid.shape();
@@ -1152,7 +1156,7 @@ const FIRST_STEP_ACROSS_EDGE: i32 = 8;
 const EDGE_STARTS: usize = 2;
 
 /// First step of a search along the edge, in half-widths of the contact; steps are halved down to half a cell.
-const FIRST_STEP_ALONG_EDGE: f64 = 0.25;
+const FIRST_STEP_ALONG_EDGE: f64 = 0.125;
 
 /// Depths below the top of a layer, in half-widths of the contact: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
@@ -1203,6 +1207,10 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
 /// the depth already evaluated, or the value falls off there as at a kink.
 const SHORTEST_REFINEMENT: f64 = 1e-3;
 
+/// Rise of a parabola over the largest value, as a part of it, below which its vertex is not evaluated: a third of the error of
+/// extremes on cells however small.
+const SMALLEST_RISE: f64 = 1e-5;
+
 /// The largest step, as a fraction of the distance to the next depth.
 const LONGEST_REFINEMENT: f64 = 0.9;
 
@@ -1223,7 +1231,8 @@ fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
     // The slope of the parabola at `best`, over its curvature.
     let slope = (left * b - right * a) / (a + b);
     let step = 0.5 * slope * (a + b) / (left + right);
-    if step.abs() < SHORTEST_REFINEMENT * a.min(b) {
+    let rise = 0.5 * slope * step;
+    if step.abs() < SHORTEST_REFINEMENT * a.min(b) || rise < SMALLEST_RISE * value(best).abs() {
         return None;
     }
     let step = step.clamp(-LONGEST_REFINEMENT * a, LONGEST_REFINEMENT * b);

@@ -77,7 +77,8 @@ fn bodies_of_revolution_slide_along_x() -> Result<()> {
     for shape in shapes {
         let solution = press(cells()?, &shape)?;
         assert_eq!(solution.report.rolling_direction, Some([1.0, 0.0]));
-        assert_eq!(tractions(&solution, None)?, tractions(&solution, Some([1.0, 0.0]))?);
+        let [none, along] = [None, Some([1.0, 0.0])].map(|given| tractions(&solution, given));
+        assert_eq!(none?.map(f64::to_bits), along?.map(f64::to_bits));
         let solution = contact.solve(&shape, &tilted, &Options::default())?;
         assert_eq!(solution.report.rolling_direction, None);
     }

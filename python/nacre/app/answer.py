@@ -387,7 +387,7 @@ def _extremes(summary: nacre.types.StressSummary) -> list[Row]:
     for name, label in EXTREMES.items():
         worst = max(summary.layers, key=lambda layer: getattr(layer, name)[0])
         value, error = getattr(worst, name)[0], worst.uncertainty.get(name)
-        rows.append(Row(name, label, with_error(value, error), value, "Pa", error))
+        rows.append(Row(name, label, with_error(value, error, "Pa"), value, "Pa", error))
     return rows
 
 

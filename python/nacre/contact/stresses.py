@@ -1352,7 +1352,11 @@ def _peak_rows(summary: StressSummary) -> list[list[str]]:
             share = written(error, "Pa") if error is not None and error > noise else ""
             rows.append(["", name, written(0.0, "Pa"), share, "", "", ""])
             return
-        share = "" if error is None else display.share(error, value)
+        share = ""
+        if error is not None:
+            # Of small parts, such as the tension at an interface, a share says nothing.
+            is_small = error >= abs(value) and error > 0
+            share = written(error, "Pa") if is_small else display.share(error, value)
         place = ", ".join(written(one if abs(one) > dust else 0.0, "m", 3) for one in (x, y))
         number = "" if factor is None else rounded(factor, 3)
         rows.append(["", name, written(value, "Pa"), share, written(z, "m"), place, number])

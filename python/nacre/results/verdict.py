@@ -329,8 +329,13 @@ def _sentence(demand: Demand, is_open: bool) -> str:
     )
 
 
-def with_error(value: float, error: float | None) -> str:
-    """Return the error of a value after ±, as a share, where it is known."""
+def with_error(value: float, error: float | None, unit: str | None = None) -> str:
+    """Return the error of a value after ±, as a share, where it is known.
+
+    An error above the value is a share of nothing: it is written in the unit, where that is given.
+    """
+    if error is not None and unit is not None and error >= abs(value):
+        return f" ± {number(error, unit)}"
     share = display.share(error or 0.0, value)
     return f" ± {share.replace('< ', '').replace('>', 'over')}" if share else ""
 
@@ -373,7 +378,7 @@ def beside(value: float, limit: float, unit: str = "Pa", digits: int = DIGITS) -
 
 def measured(value: float, error: float | None, unit: str = "Pa") -> str:
     """Return a number with its error, as a share, where that is known."""
-    return number(value, unit) + with_error(value, error)
+    return number(value, unit) + with_error(value, error, unit)
 
 
 def factor_text(factor: float) -> str:

@@ -182,7 +182,8 @@ impl SecondIntegral {
             .collect();
         // By parts, with cos(bx) - cos(ax) as a product.
         let n = |x: f64| -> f64 {
-            let of = |[slope, middle, half]: &[f64; 3]| slope * (middle * x).sin() * (half * x).sin();
+            let of =
+                |[slope, middle, half]: &[f64; 3]| slope * (middle * x).sin() * (half * x).sin();
             -2.0 * slopes.iter().map(of).sum::<f64>() / (x * x)
         };
         let first = 0.1 * SHORTEST;

@@ -242,11 +242,7 @@ impl RootCell {
 }
 
 /// Mean and first moments of the pressure over the cell.
-fn mean_and_moments(
-    profile: &EdgeProfile,
-    divisions: &[Piece],
-    line: bool,
-) -> (f64, [f64; 2]) {
+fn mean_and_moments(profile: &EdgeProfile, divisions: &[Piece], line: bool) -> (f64, [f64; 2]) {
     let (mut mean, mut moments) = (0.0, [0.0; 2]);
     for piece in divisions {
         let p = piece.area() * mean_root(profile, piece, 1, line);
@@ -258,12 +254,7 @@ fn mean_and_moments(
 }
 
 /// Mean of the pressure near an edge over a piece, from `count` points along each side.
-pub(super) fn mean_root(
-    profile: &EdgeProfile,
-    piece: &Piece,
-    count: usize,
-    line: bool,
-) -> f64 {
+pub(super) fn mean_root(profile: &EdgeProfile, piece: &Piece, count: usize, line: bool) -> f64 {
     let half = piece.half.map(|half| half / count as f64);
     // Twice the variation, so that curvature does not hide the edge.
     let variation = 2.0 * profile.squared.variation(half);
@@ -480,7 +471,13 @@ mod tests {
     fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
         let threads = Threads::new(Some(2))?;
         let mut progress = |_| ControlFlow::Continue(());
-        match Reconstruction::new(pressure, shape, Some((EdgeLaw::default(), Fitting::BEST)), &threads, &mut progress) {
+        match Reconstruction::new(
+            pressure,
+            shape,
+            Some((EdgeLaw::default(), Fitting::BEST)),
+            &threads,
+            &mut progress,
+        ) {
             ControlFlow::Continue(reconstruction) => Ok(reconstruction),
             ControlFlow::Break(()) => panic!("nothing stops it"),
         }

@@ -411,7 +411,8 @@ impl Uncertainty {
         let material = place.material;
         let mut errors = StepErrors::default();
         // Numbers of p, τ and the two lateral stresses of a wave, by part.
-        let parts = |part: usize| part..(if part == ErrorOf::Lateral as usize { 4 } else { part + 1 });
+        let parts =
+            |part: usize| part..(if part == ErrorOf::Lateral as usize { 4 } else { part + 1 });
         for axis in 0..2 {
             for wave in &self.waves[axis] {
                 let fields = wave.column.at(body, place);
@@ -432,9 +433,8 @@ impl Uncertainty {
                     };
                     // With these shares of the pressure and of the tractions.
                     for (part, factors) in factors.iter_mut().enumerate() {
-                        let sums = parts(part).map(|k| {
-                            share * pressed[k] + of_tractions * friction * sheared[k]
-                        });
+                        let sums = parts(part)
+                            .map(|k| share * pressed[k] + of_tractions * friction * sheared[k]);
                         let twist = of_tractions * friction * twisted[part];
                         let error = &mut factors[axis][known];
                         *error = sums.fold(twist.max(*error), f64::max);
