@@ -46,6 +46,7 @@
 //! | file | what it makes |
 //! |---|---|
 //! | `edge` | the cells near the edge where a polynomial, fitted by least squares, is certain enough |
+//! | `squared_pressure` | the square of the pressure near an edge, as a polynomial |
 //! | `law` | the factor Φ by which layers change the pressure near an edge |
 //! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots; cells cut into rectangles |
 //! | `near` | the sum of the third part over the cells around |
@@ -70,6 +71,7 @@ mod edge;
 mod law;
 mod near;
 mod reconstruction;
+mod squared_pressure;
 mod uncertainty;
 
 pub(super) use edge::around;

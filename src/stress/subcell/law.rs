@@ -18,8 +18,7 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
-use super::BodyPair;
-use super::edge::SquaredPressure;
+use super::squared_pressure::SquaredPressure;
 use crate::numerics::dense::Factors;
 use crate::numerics::rounding;
 
@@ -58,12 +57,11 @@ impl Default for EdgeLaw {
 }
 
 impl EdgeLaw {
-    /// The law of a contact of the `pair` on cells of these sides.
-    pub(super) fn new(pair: &BodyPair, sides: [f64; 2]) -> Self {
+    /// The law of bodies of which `response` gives α û/p̂ at the wavenumber α, on cells of these sides.
+    pub(super) fn new(response: impl Fn(f64) -> f64, sides: [f64; 2]) -> Self {
         let side = sides[0].min(sides[1]);
         let waves: Vec<f64> = grown(0.03 / LONGEST, 100.0 / SHORTEST, WAVES).collect();
-        let response = |alpha: &f64| pair.response(alpha / side);
-        let responses: Vec<f64> = waves.iter().map(response).collect();
+        let responses: Vec<f64> = waves.iter().map(|alpha| response(alpha / side)).collect();
         let shortest = responses[responses.len() - 1];
         let changes: Vec<f64> = responses.iter().map(|r| r / shortest - 1.0).collect();
         if !changes.iter().any(|m| m.abs() > UNCHANGED) {
@@ -247,6 +245,7 @@ fn mean_of_steps(distances: &[f64], pressures: &[f64], d: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compliance::response::Response;
     use crate::error::Result;
     use crate::model::body::{HalfSpace, Layer};
     use crate::model::material::Elastic;
@@ -257,11 +256,11 @@ mod tests {
     fn both_limits_are_those_of_one_material() -> Result<()> {
         let below = Elastic::new(1.0, 0.3)?;
         let bare = HalfSpace::from(below);
-        assert_eq!(EdgeLaw::new(&BodyPair(vec![&bare]), [1.0; 2]), EdgeLaw::default());
+        assert_eq!(EdgeLaw::new(|alpha| bare.normal(alpha), [1.0; 2]), EdgeLaw::default());
         for modulus in [0.2, 0.5, 1.233, 2.0, 5.0] {
             let coat = Elastic::new(modulus, 0.25)?;
             let coated = HalfSpace::new(below, [Layer::new(coat, 0.1)?])?;
-            let law = EdgeLaw::new(&BodyPair(vec![&coated]), [1.0; 2]);
+            let law = EdgeLaw::new(|alpha| coated.normal(alpha), [1.0; 2]);
             let limit = (below.plane_strain_modulus() / coat.plane_strain_modulus()).sqrt();
             assert!((law.at(0.0) - 1.0).abs() < 5e-3, "{modulus}: {}", law.at(0.0));
             assert!((law.at(LONGEST) / limit - 1.0).abs() < 2e-3, "{modulus}: {}", law.at(LONGEST));

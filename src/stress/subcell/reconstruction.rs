@@ -17,10 +17,9 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::edge::{
-    BAND, EdgeCell, Fitting, RectangleSums, SquaredPressure, around, edge_cells, edge_distances,
-};
+use super::edge::{BAND, EdgeCell, Fitting, RectangleSums, around, edge_cells, edge_distances};
 use super::law::{EdgeLaw, EdgeProfile};
+use super::squared_pressure::SquaredPressure;
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 

@@ -522,7 +522,7 @@ impl BodyPair<'_> {
         let wave = 1.0 / sides[0].min(sides[1]);
         let springs: f64 = self.0.iter().map(|body| wave * body.local()).sum();
         let holds = springs <= NEGLIGIBLE_SPRINGS * self.response(wave);
-        holds.then(|| EdgeLaw::new(self, sides))
+        holds.then(|| EdgeLaw::new(|alpha| self.response(alpha), sides))
     }
 }
 
