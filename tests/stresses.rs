@@ -11,6 +11,7 @@ mod support {
 mod stress {
     mod closed_forms;
     mod coated;
+    mod coats;
     mod edge;
     mod ends;
     mod faces;
