@@ -49,8 +49,8 @@ fn below_ball(case: &Value) -> Result<StressSummary> {
     let body = HalfSpace::new(material(case, "substrate")?, [coat])?;
     let radius = number(case, "radius");
     let (shape, motion) = (Paraboloid::new(radius, radius)?, Motion::load(number(case, "load")));
-    let options = Options::default().with_threads(1);
-    let solution = solve_with(&shape, &(&body).into(), &Setup::default(), &motion, &options)?
+    let (options, setup) = (Options::default(), Setup::default().with_threads(Some(1)));
+    let solution = solve_with(&shape, &(&body).into(), &setup, &motion, &options)?
         .require_converged(options.tolerance)?;
     let along = sliding(number(case, "friction"), [1.0, 0.0]).with_threads(1);
     solution.stress_summary(Member::Body, &Strengths::default(), &along)
