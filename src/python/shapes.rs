@@ -367,7 +367,9 @@ impl PyShape {
         Surface::rolling_direction(&self.0).map(Into::into)
     }
 
-    /// Whether the shape is a body of revolution about the z axis: friction acts along x where it is pressed without
+    /// Whether the shape is a body of revolution about the z axis.
+    ///
+    /// Friction acts along x where it is pressed without
     /// tilt, and no `direction` is given.
     #[getter]
     fn is_round(&self) -> bool {

@@ -198,6 +198,11 @@ impl SubcellStress {
         self.margin.middle(&marked(&mut lost, STEP_REACH))
     }
 
+    /// Whether the law of the edge is that of layers.
+    pub(super) fn is_on_layers(&self) -> bool {
+        self.near.reconstruction.law.is_of_layers()
+    }
+
     /// Unit vector towards the inside of the contact at one of the points of its edge.
     pub(super) fn inward(&self, point: &CellPoint) -> Option<[f64; 2]> {
         self.near.inward(point)

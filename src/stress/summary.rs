@@ -537,6 +537,8 @@ struct Planes<'a, 'b> {
     smooth: Option<[Vec<f64>; STRESSES]>,
     /// Points of the edge of the contact, around which values are searched between cells.
     edge: Vec<CellPoint>,
+    /// Whether the law of the edge is that of layers.
+    is_on_layers: bool,
     /// Whether a point of the edge lies in a cell or beside it: larger values between centres are those at points.
     near_edge: Vec<bool>,
     /// Whether the values between centres of those cells are found at points of the edge, at the place that was evaluated last.
@@ -585,6 +587,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
         Self {
             feels_lost_edge: plan.feels_lost_edge(&edge),
+            is_on_layers: plan.whole.solved.as_ref().is_some_and(|of| of.subcell.is_on_layers()),
             plan,
             scope,
             friction,
@@ -691,7 +694,7 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// The error of a cell at the place that was evaluated last; 0 where it is not known.
     fn error(&self, cell: usize, of: ErrorOf) -> f64 {
         let is_lost = self.feels_lost_edge.get(cell).copied().unwrap_or_default();
-        let by_points = self.by_points && self.near_edge[cell] && !is_lost;
+        let by_points = self.by_points && self.is_on_layers && self.near_edge[cell] && !is_lost;
         let error = |[beside, elsewhere]: [StepErrors; 2]| match (by_points, is_lost) {
             (true, _) => beside.without_edges(),
             (_, true) => elsewhere,
@@ -1106,8 +1109,8 @@ impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
         ControlFlow::Continue(best)
     }
 
-    /// The error of a value: what it changes by with simpler fits near the edge, a share of it, the width of the contact,
-    /// and what known tractions and free ends leave uncertain.
+    /// The error of a value: on layers what it changes by with simpler fits near the edge, and a share of it; elsewhere that of the
+    /// steps of the pressure; with the width of the contact, and what known tractions and free ends leave uncertain.
     fn error(
         &mut self,
         at: AcrossEdge,
@@ -1120,17 +1123,20 @@ impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
             return ControlFlow::Continue(None);
         };
         let Some(point) = self.point(at) else { return ControlFlow::Continue(None) };
+        let steps = self.planes.steps(point.cell[0] * plan.whole.grid.shape()[1] + point.cell[1]);
+        let width = self.planes.scope.contact.whole.width_error(self.place);
+        if !solved.subcell.is_on_layers() {
+            return ControlFlow::Continue(Some(errors.at(&steps, kind) + width));
+        }
         let part = (self.planes.done as f64 / self.planes.planned as f64).min(1.0);
         let mut progress = |_| (self.planes.progress)(part);
         let (grid, threads) = (&plan.whole.grid, &plan.whole.threads);
         solved.subcell.make_simpler(grid, threads, &mut progress)?;
         let change = (of(&self.tensor(&point, EdgeFit::Simpler)?) - value).abs();
-        let ny = grid.shape()[1];
         let others = match plan.known {
-            Some(_) => errors.at(&self.planes.steps(point.cell[0] * ny + point.cell[1]), kind),
+            Some(_) => errors.at(&steps, kind),
             None => errors.everywhere(),
         };
-        let width = self.planes.scope.contact.whole.width_error(self.place);
         let peak = plan.whole.pressure.iter().copied().fold(0.0, f64::max);
         let size = value.abs().max(LEAST_PART * peak);
         ControlFlow::Continue(Some(FIT_CHANGES * change + FIT_SHARE * size + others + width))

@@ -75,16 +75,21 @@ impl EdgeLaw {
         Self { sides: sides.map(|longer| longer / side), values }
     }
 
+    /// Whether Φ is not 1 everywhere.
+    pub(super) fn is_of_layers(&self) -> bool {
+        !self.values.is_empty()
+    }
+
     /// Times that a fit is made at most, each with the distances from the edge of the one before: at the first they are not known.
     pub(super) fn passes(&self) -> usize {
-        if self.values.is_empty() { 1 } else { PASSES }
+        if self.is_of_layers() { PASSES } else { 1 }
     }
 
     /// Change of ln Φ from an eighth of a cell to the cells of a fit.
     pub(super) fn change(&self) -> f64 {
-        match self.values.is_empty() {
-            true => 0.0,
-            false => (self.at(8.0) / self.at(0.125)).ln().abs(),
+        match self.is_of_layers() {
+            true => (self.at(8.0) / self.at(0.125)).ln().abs(),
+            false => 0.0,
         }
     }
 

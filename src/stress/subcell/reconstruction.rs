@@ -68,12 +68,19 @@ const MEAN_DIVISIONS: usize = 6;
 /// first shifts by thousandths of a cell.
 const BALANCE_STEPS: usize = 2;
 
+/// The same on layers, where the first shifts are up to [`SHIFT_LIMIT_ON_LAYERS`].
+const BALANCE_STEPS_ON_LAYERS: usize = 3;
+
 /// Cells to each side whose forces are balanced together: some runs of the staircase.
 const BALANCE_REACH: usize = 12;
 
 /// Largest shift of the edge in one step, in cells; a cell whose edge would have to shift more keeps its
 /// uniform pressure. Twice the largest uncertainty of a fit ([`super::edge`]).
 pub(super) const SHIFT_LIMIT: f64 = 0.1;
+
+/// The same on layers, whose law changes between the cells of a fit and the edge: there the force tells where the edge is. Chosen on
+/// coats of one to four cells, three times as stiff as what is below (`tests/stress/coats.rs`).
+const SHIFT_LIMIT_ON_LAYERS: f64 = 0.3;
 
 /// Step of p² for [`RootCell::rate`], over the change of p² across a cell: the edge shifts by about a
 /// hundredth of a cell.
@@ -108,7 +115,8 @@ impl Reconstruction {
         let root = |edge| RootCell::new(edge, &law, &divisions, line);
         let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
         let mut uniform = uniform_part(pressure, &interior, &roots, shape);
-        for _ in 0..BALANCE_STEPS {
+        let steps = if law.is_of_layers() { BALANCE_STEPS_ON_LAYERS } else { BALANCE_STEPS };
+        for _ in 0..steps {
             progress(0.0)?;
             let raises = balancing_raises(pressure, &uniform, &roots, shape);
             progress(0.0)?;
@@ -231,7 +239,8 @@ impl RootCell {
 
     /// The cell with p² raised; none where that shifts the edge too far.
     fn raised(self, by: f64, law: &EdgeLaw, divisions: &[Piece], line: bool) -> Option<Self> {
-        if by.abs() > SHIFT_LIMIT * self.squared.slope() {
+        let limit = if law.is_of_layers() { SHIFT_LIMIT_ON_LAYERS } else { SHIFT_LIMIT };
+        if by.abs() > limit * self.squared.slope() {
             return None;
         }
         let squared = self.squared.raised(by);
