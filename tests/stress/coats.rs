@@ -24,8 +24,8 @@ const STATED: f64 = 0.05;
 /// Part of the peak pressure below which a stress need not be known more exactly.
 const SMALL: f64 = 0.2;
 
-/// Balls of the fast test: coats of 0.02, 0.05 and 0.1 contact radii, with friction and without.
-const FAST: [u64; 3] = [21, 33, 38];
+/// Ball of the fast test: a coat of 0.05 contact radii, with friction.
+const FAST: u64 = 33;
 
 /// Largest tension and von Mises stress of the coat and largest shear of its interface, with their names in the file.
 fn extremes(summary: &StressSummary) -> [(&'static str, Peak); 3] {
@@ -97,12 +97,11 @@ fn assert_faultless<'a>(balls: impl IntoIterator<Item = &'a Value>) -> Result<()
 }
 
 #[test]
-fn three_balls_on_a_coat() -> Result<()> {
+fn a_ball_on_a_coat() -> Result<()> {
     let balls = cases("coat_stresses.json");
-    let fast = |case: &&Value| case["id"].as_u64().is_some_and(|id| FAST.contains(&id));
-    let chosen: Vec<_> = balls.iter().filter(fast).collect();
-    assert_eq!(chosen.len(), FAST.len());
-    assert_faultless(chosen)
+    let ball: Vec<_> = balls.iter().filter(|case| case["id"].as_u64() == Some(FAST)).collect();
+    assert_eq!(ball.len(), 1);
+    assert_faultless(ball)
 }
 
 /// Coats of 0.003 to 0.3 contact radii, 0.3 to 3 times as stiff as their substrate.
@@ -139,6 +138,7 @@ fn below_cylinder(thickness: f64, count: usize) -> Result<StressSummary> {
 /// Coats of a quarter of a cell to five cells. Both errors are stated, so that the extremes differ by no more than
 /// their sum.
 #[test]
+#[ignore = "slow"]
 fn cylinders_on_a_coat_and_finer_cells() -> Result<()> {
     const CELLS: usize = 128;
     const FINER: usize = 6;
