@@ -1084,7 +1084,13 @@ impl<'s, 'a, 'b> EdgeSearch<'s, 'a, 'b> {
         let spacing = self.planes.plan.whole.grid.spacing();
         let shortest = 0.5 * spacing.into_iter().fold(f64::INFINITY, f64::min);
         let mut step = self.planes.plan.whole.half_width() * FIRST_STEP_ALONG_EDGE;
-        let mut across = FIRST_STEP_ACROSS_EDGE;
+        // At the surface of one material, and with tractions that follow the pressure within one cell, values are largest at the edge.
+        let plan = self.planes.plan;
+        let is_at_edge = !self.planes.is_on_layers || plan.known.is_some();
+        let mut across = match self.place.depth > 0.0 || !is_at_edge {
+            true => FIRST_STEP_ACROSS_EDGE,
+            false => 0,
+        };
         while let Some(((k, offset), _)) = best
             && (step > shortest || across > 0)
         {
