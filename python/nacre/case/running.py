@@ -153,13 +153,18 @@ def _is_open(result: object) -> bool:
     return verdict_on(result) is None
 
 
+def _solved(case_file: Case, arguments: dict[str, object]) -> dict[str, Any]:
+    """Return the results of a case, without warnings: what is printed has them."""
+    with warnings.catch_warnings(), alive():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        return results_of(case_file, arguments)
+
+
 def _solve(
     case: Path, case_file: Case, arguments: dict[str, object], save: Sequence[Path], as_json: bool
 ) -> None:
     """Solve, save and print in the units that are set."""
-    with warnings.catch_warnings(), alive():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
-        results = results_of(case_file, arguments)
+    results = _solved(case_file, arguments)
     outcome = results["solution"]
     solution = last_of(outcome)  # of a history, the last step is printed
     summaries = {name: result for name, result in results.items() if result is not outcome}
@@ -186,9 +191,7 @@ def _solve_wear(
     case: Path, case_file: Case, arguments: dict[str, object], save: Sequence[Path], as_json: bool
 ) -> None:
     """Wear a contact, save and print its history in the units that are set."""
-    with warnings.catch_warnings(), alive():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed history has them
-        results = results_of(case_file, arguments)
+    results = _solved(case_file, arguments)
     history = results["wear"]
     summaries = {name: result for name, result in results.items() if result is not history}
     if as_json:
