@@ -706,10 +706,13 @@ impl<'a, 'b> Planes<'a, 'b> {
     /// Whether larger values at `place` are searched around points of the edge: at the faces of layers and half way between
     /// them, where these are less than [`SEARCHED`] cells deep.
     fn has_points(&self, place: &Place) -> bool {
-        let whole = &self.plan.whole;
-        let layer = whole.body.layers().get(place.layer).map(Layer::thickness);
-        let part = layer.map_or(place.below_top, |thickness| place.below_top / thickness);
-        let is_chosen = [0.0, 0.5, 1.0].iter().any(|chosen| (part - chosen).abs() < ONE_DEPTH);
+        let is_chosen = match self.plan.whole.body.layers().get(place.layer) {
+            Some(layer) => {
+                let part = place.below_top / layer.thickness();
+                [0.0, 0.5, 1.0].iter().any(|chosen| (part - chosen).abs() < ONE_DEPTH)
+            }
+            None => place.below_top <= 0.0,
+        };
         self.is_near_edges(place) && is_chosen
     }
 
