@@ -419,8 +419,10 @@ impl SummaryRequest {
         // Bounds of each cell.
         let layers = body.layers().len();
         let bounds = options.refine.map_or(0, |_| OF_LAYER * (layers + 1) + OF_INTERFACE * layers);
-        // Six components, and the in-plane stress above an interface; steps of the pressure, and two arrays on the way to them.
-        let arrays = 9 + 8 + bounds + plane_arrays(options.friction != 0.0, false);
+        // Six components, and the in-plane stress above an interface; steps of the pressure, and two arrays on the way to them;
+        // stresses without what pressure within cells adds, and that.
+        let within_cells = 2 * STRESSES;
+        let arrays = 9 + 8 + within_cells + bounds + plane_arrays(options.friction != 0.0, false);
         Ok(Self {
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
