@@ -83,8 +83,12 @@ def lasting(what: str, progress: object = None) -> Iterator[Callable[..., object
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+    console = Console(stderr=True)
+    if not (console.is_terminal or console.is_jupyter):  # ipykernel is imported, but not used
+        yield callback
+        return
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    bar = Progress(*columns, console=console, transient=True)
     task, start = bar.add_task(what, total=None), time.monotonic()
 
     def tell(done: float | str) -> None:

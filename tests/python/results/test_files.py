@@ -426,7 +426,7 @@ EXTRAS = [
     ("matplotlib", "plot", "s.plot()"),
     ("pyvista", "view", "s.plot_3d(interactive=True)"),
     ("SurfaceTopography", "surfaces", "nacre.HeightMap.read(__file__)"),
-    ("pydantic", "cli", "import nacre.case"),
+    ("pydantic", "cli", "from nacre.case import Case"),
 ]
 WITHOUT = f"""
 import sys, nacre
