@@ -18,7 +18,7 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
 use crate::numerics::parallel::{Threads, check_memory, memory_of};
-use crate::stress::subcell::{LocalSteps, STRESSES, StepErrors, SubcellStress};
+use crate::stress::subcell::{ByComponent, LocalSteps, STRESSES, StepErrors, SubcellStress};
 
 mod evaluation;
 mod repeats;
@@ -194,9 +194,11 @@ impl HalfSpacePlan {
         Some(self.solved.as_ref()?.subcell.errors(&self.body, place, friction))
     }
 
-    /// Error of the stress at the depth of `place` \[Pa\] due to the width of the contact in cells, at all places.
-    pub(super) fn width_error(&self, place: &Place) -> f64 {
-        self.solved.as_ref().map_or(0.0, |solved| solved.subcell.width_error(&self.body, place))
+    /// Errors of the stress at the depth of `place` \[Pa\] due to the width of the contact in cells, at all places.
+    pub(super) fn width_errors(&self, place: &Place, friction: [f64; 2]) -> ByComponent {
+        let solved = self.solved.as_ref();
+        let errors = |of: &SolvedPressure| of.subcell.width_errors(&self.body, place, friction);
+        solved.map_or_else(ByComponent::default, errors)
     }
 
     /// Largest steps of the pressure that are felt in the cells of `window`.

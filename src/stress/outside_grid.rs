@@ -14,6 +14,7 @@ use super::half_space::HalfSpacePlan;
 use super::options::StressProgress;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::STRESSES;
+use super::summary::SAMPLED;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::Result;
@@ -96,13 +97,17 @@ impl<'a> OutsideGrid<'a> {
 
     /// `peaks` at the last of `places`, or larger ones beyond the grid, and those beyond it alone. `of` has the values of a
     /// cell, from its stresses at `places`, of which the `largest` matters; values that stay below the `best` of other
-    /// depths do not. Where memory does not suffice for a wider grid, the peaks so far stand.
+    /// depths do not. `bound` tells cheaply how large all magnitudes are of a cell whose values do not exceed others; none where they may.
+    /// Where memory does not suffice for a wider grid, the peaks so far stand.
     pub(super) fn peaks<const N: usize, const K: usize>(
         &mut self,
         (mut peaks, largest, best): ([Extreme; N], f64, [f64; N]),
         places: &[Place; K],
         residual: &[f64],
-        of: impl Fn(&[Tensor; K]) -> [f64; N],
+        (of, bound): (
+            impl Fn(&[Tensor; K]) -> [f64; N],
+            impl Fn(&[Tensor; K], [f64; N]) -> Option<f64>,
+        ),
         progress: &mut StressProgress,
     ) -> ControlFlow<(), [[Extreme; N]; 2]> {
         let mut inner = self.plan.whole.grid;
@@ -126,22 +131,28 @@ impl<'a> OutsideGrid<'a> {
             }
             let plan = &self.wider[level];
             let planes = self.planes(plan, places, residual, progress)?;
-            let values = |cell: usize| {
-                let tensor = |fields: &[Vec<f64>; STRESSES]| {
-                    Tensor::new(fields.each_ref().map(|field| field[cell]))
-                };
-                of(&planes.each_ref().map(tensor))
+            let tensors = |cell: usize| {
+                planes
+                    .each_ref()
+                    .map(|fields| Tensor::new(fields.each_ref().map(|field| field[cell])))
             };
+            let values = |cell: usize| of(&tensors(cell));
             let grid = &plan.whole.grid;
             let (x, y) = (grid.x(), grid.y());
             let mut outside = [Largest::NONE; N];
             let mut largest_here = 0.0_f64;
-            for (cell, at) in x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).enumerate() {
-                if !inner.holds(at) {
-                    for (outside, value) in outside.iter_mut().zip(values(cell)) {
-                        outside.offer(value, cell);
-                        largest_here = largest_here.max(value.abs());
-                    }
+            let cells = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).enumerate();
+            let cells = cells.filter(|(_, at)| !inner.holds(*at)).map(|(cell, _)| cell);
+            // Values that some cells reach rule out most of the others at once.
+            for cell in cells.clone().step_by(SAMPLED).chain(cells) {
+                let tensors = tensors(cell);
+                if let Some(most) = bound(&tensors, outside.map(|largest| largest.value)) {
+                    largest_here = largest_here.max(most);
+                    continue;
+                }
+                for (outside, value) in outside.iter_mut().zip(of(&tensors)) {
+                    outside.offer(value, cell);
+                    largest_here = largest_here.max(value.abs());
                 }
             }
             let mut grown = false;

@@ -13,8 +13,8 @@ use super::half_space::{
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
 use super::subcell::{
-    BodyPair, CellPoint, EdgeFit, ErrorOf, LocalSteps, PointStress, STRESSES, StepErrors,
-    SubcellStress, Tractions,
+    BodyPair, ByComponent, COMPONENTS_APART, CellPoint, EdgeFit, ErrorOf, LocalSteps, PointStress,
+    STRESSES, StepErrors, SubcellStress, Tractions,
 };
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
@@ -285,12 +285,21 @@ impl StressPlan {
         friction: [f64; 2],
         within: bool,
     ) -> Option<StepErrors> {
-        let friction = self.known.as_ref().map_or(friction, |known| self.largest_ratios(known));
-        let errors = self.whole.errors(place, (friction, within));
+        let errors = self.whole.errors(place, (self.largest_friction(friction), within));
         match self.ends.at(place) {
             None => errors,
-            Some(of_ends) => Some(errors.unwrap_or_default().plus(of_ends)),
+            Some(of_ends) => Some(errors.unwrap_or_default().plus([of_ends; COMPONENTS_APART])),
         }
+    }
+
+    /// Errors of extremes at `place` due to the width of the contact in cells.
+    pub(super) fn width_errors(&self, place: &Place, friction: [f64; 2]) -> ByComponent {
+        self.whole.width_errors(place, self.largest_friction(friction))
+    }
+
+    /// The largest ratios of known tractions to the pressure, or this friction where they are in proportion to it.
+    fn largest_friction(&self, friction: [f64; 2]) -> [f64; 2] {
+        self.known.as_ref().map_or(friction, |known| self.largest_ratios(known))
     }
 
     /// Estimated errors of extremes at `place`, with what lies between the centres of cells and the width of `contact`: in cells
@@ -301,7 +310,8 @@ impl StressPlan {
         friction: [f64; 2],
         (points, contact): (bool, &Self),
     ) -> Option<[StepErrors; 2]> {
-        let errors = self.errors(place, friction, false)?.plus(contact.whole.width_error(place));
+        let errors =
+            self.errors(place, friction, false)?.plus(contact.width_errors(place, friction));
         let is_shallow = self.is_within_a_cell(place);
         let elsewhere = if is_shallow { errors.without_points() } else { errors };
         Some([if points { errors.beside_points() } else { elsewhere }, elsewhere])

@@ -80,7 +80,7 @@ pub(super) use near::{CellPoint, NearTable, STRESSES};
 use near::{Components, NearPlan};
 use reconstruction::{Cuts, SMALLEST_AT_POINT};
 pub(super) use uncertainty::BodyPair;
-pub(super) use uncertainty::{ErrorOf, LocalSteps, StepErrors};
+pub(super) use uncertainty::{ByComponent, COMPONENTS_APART, ErrorOf, LocalSteps, StepErrors};
 use uncertainty::{STEP_REACH, Uncertainty};
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
@@ -142,9 +142,14 @@ impl SubcellStress {
         self.uncertainty.steps(&self.solver_pressure, &self.margin.window(window))
     }
 
-    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
-        self.uncertainty.width_error(body, place)
+    /// Errors of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
+    pub(super) fn width_errors(
+        &self,
+        body: &HalfSpace,
+        place: &Place,
+        friction: [f64; 2],
+    ) -> ByComponent {
+        self.uncertainty.width_errors(body, place, friction)
     }
 
     /// Largest steps of the pressure that are felt in each cell.

@@ -22,7 +22,8 @@
 //!
 //! The edge is known to a part of a cell, and with it the width of the contact. Extremes at depths of up to a half-width have
 //! the error c/n² + c' of the largest pressure in a contact n cells wide, and more in layers whose stress under waves as long as
-//! the contact exceeds the pressure; farther below, it falls as the square of the depth, at least as fast as the stress.
+//! the contact exceeds the pressure; the shear stress below has its part of that error. Farther below, it falls as the square of
+//! the depth, at least as fast as the stress.
 
 use crate::compliance::response::Response;
 use crate::compliance::response::interior::{Column, Place};
@@ -53,7 +54,7 @@ const INTERIOR_SHARE: f64 = 0.01;
 
 /// Share of a step that is not known where an edge is reconstructed on layers, per change of the law's factor by e over the cells of
 /// a fit. Chosen by trial (`tests/stress/resolution.rs`).
-const SHARE_OF_CHANGE: f64 = 0.1;
+const SHARE_OF_CHANGE: f64 = 0.12;
 
 /// Share of a step of the tractions that is not known where they are uniform over cells. Under a sliding ball of 21 to 85
 /// cells to the radius, stresses at the surface err by 0.38 to 0.43 of it.
@@ -153,8 +154,8 @@ pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
 pub(in crate::stress) struct StepErrors {
     /// Of each component, under pressure and the friction in proportion to it, and under tractions that are uniform over cells.
     factors: [[AxisSteps; 2]; COMPONENTS_APART],
-    /// Error that does not depend on the steps.
-    everywhere: f64,
+    /// Errors of each component that do not depend on the steps.
+    everywhere: ByComponent,
 }
 
 /// What an error is of: components whose errors differ.
@@ -171,7 +172,10 @@ pub(in crate::stress) enum ErrorOf {
 }
 
 /// Number of components whose errors differ.
-const COMPONENTS_APART: usize = 3;
+pub(in crate::stress) const COMPONENTS_APART: usize = 3;
+
+/// An error \[Pa\] of each of them: of σ_zz, of the shear stresses on planes of constant depth, and of the lateral stresses.
+pub(in crate::stress) type ByComponent = [f64; COMPONENTS_APART];
 
 impl ErrorOf {
     /// Numbers of its components.
@@ -186,19 +190,20 @@ impl ErrorOf {
 impl StepErrors {
     /// Errors \[Pa\] from waves along x and along y, where the pressure has these steps.
     pub(in crate::stress) fn by_axis(&self, steps: &LocalSteps, of: ErrorOf) -> [f64; 2] {
-        let parts = self.factors[of.numbers()].iter().map(|part| self.of_part(part, steps));
+        let parts = of.numbers().map(|part| self.of_part(part, steps));
         parts.fold([0.0; 2], |a, b| [0, 1].map(|axis| f64::max(a[axis], b[axis])))
     }
 
-    fn of_part(&self, factors: &[AxisSteps; 2], LocalSteps(steps): &LocalSteps) -> [f64; 2] {
+    fn of_part(&self, part: usize, LocalSteps(steps): &LocalSteps) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let errors = factors[axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
+            let errors =
+                self.factors[part][axis].iter().zip(&steps[axis]).map(|(f, step)| f * step);
             let mut largest = [0.0; 2];
             for (k, error) in errors.enumerate() {
                 let largest = &mut largest[usize::from(k >= OF_TRACTION)];
                 *largest = error.max(*largest);
             }
-            largest[0] + largest[1] + self.everywhere
+            largest[0] + largest[1] + self.everywhere[part]
         })
     }
 
@@ -216,19 +221,19 @@ impl StepErrors {
         let of_part = |part| [0, 1].map(|axis| std::array::from_fn(|k| larger(part, axis, k)));
         Self {
             factors: std::array::from_fn(of_part),
-            everywhere: self.everywhere.max(other.everywhere),
+            everywhere: std::array::from_fn(|k| self.everywhere[k].max(other.everywhere[k])),
         }
     }
 
-    /// These errors, and another that does not depend on the steps.
-    pub(in crate::stress) fn plus(mut self, everywhere: f64) -> Self {
-        self.everywhere += everywhere;
+    /// These errors, and others that do not depend on the steps.
+    pub(in crate::stress) fn plus(mut self, everywhere: ByComponent) -> Self {
+        self.everywhere.iter_mut().zip(everywhere).for_each(|(error, added)| *error += added);
         self
     }
 
     /// The error that does not depend on the steps.
-    pub(in crate::stress) fn everywhere(&self) -> f64 {
-        self.everywhere
+    pub(in crate::stress) fn everywhere(&self, of: ErrorOf) -> f64 {
+        self.everywhere[of.numbers()].iter().copied().fold(0.0, f64::max)
     }
 
     /// The errors of values in cells of the layer at the surface, whose larger values at an edge that is known are found at
@@ -316,15 +321,28 @@ impl Uncertainty {
         around(self.shape, cell, 1).all(|[i, j]| self.known[i * self.shape[1] + j] != Known::Mean)
     }
 
-    /// Error of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places.
-    pub(super) fn width_error(&self, body: &HalfSpace, place: &Place) -> f64 {
+    /// Errors of the stress in `body` at the depth of `place` \[Pa\] due to the width of the contact, at all places, under pressure
+    /// and `friction` times it.
+    pub(super) fn width_errors(
+        &self,
+        body: &HalfSpace,
+        place: &Place,
+        friction: [f64; 2],
+    ) -> ByComponent {
+        if self.of_width <= 0.0 {
+            return ByComponent::default();
+        }
         let beyond = (self.half_width / place.depth.max(self.half_width)).powi(2);
-        let of_column = |column: &Column| {
-            let (along, across) = column.at(body, place).pressure.lateral_stress(place.material);
-            along.abs().max(across.abs())
-        };
-        let response = self.columns.iter().map(of_column).fold(1.0, f64::max);
-        if self.of_width > 0.0 { self.of_width * beyond * response } else { 0.0 }
+        let friction = friction[0].hypot(friction[1]);
+        // Waves as long as the contact and, where it is wide, all longer ones.
+        let mut responses = [1.0, friction, 1.0];
+        for fields in self.columns.iter().map(|column| column.at(body, place)) {
+            let (along, across) = fields.pressure.lateral_stress(place.material);
+            let shear = fields.pressure.tau.abs() + friction * fields.shear.tau.abs();
+            let of_wave = [fields.pressure.p.abs(), shear, along.abs().max(across.abs())];
+            responses = std::array::from_fn(|k| f64::max(responses[k], of_wave[k]));
+        }
+        responses.map(|response| self.of_width * beyond * response)
     }
 
     /// How well the pressure is known in the worse of two cells.
