@@ -20,6 +20,7 @@
 //! | `adhesion` | kinds of adhesion |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
+//! | `served` | contacts with a cohesive zone at many loads or approaches, by interpolation |
 //! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
 
 mod adhesion;
@@ -30,6 +31,7 @@ mod indenter;
 mod point;
 mod pressure;
 mod pull_off;
+mod served;
 mod tip;
 
 pub use adhesion::{Adhesion, Branch, Control};

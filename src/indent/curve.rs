@@ -46,17 +46,20 @@ pub struct Curve {
 
 /// What is tabulated at a radius: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
 /// slope over ln a; then the derivatives of all S, P_F, δ_H and δ_H − δ with respect to each parameter, relative to them.
-type CurveRow = Vec<f64>;
+pub(super) type CurveRow = Vec<f64>;
+
+/// Bounds of ln a, and whether there are roots of the distance from the lower one.
+type CurvePiece = ([f64; 2], bool);
 
 /// A table on a range of radii, which does not pass a kink of the tip.
 #[derive(Debug)]
-struct CurveTable {
-    low: f64,
-    high: f64,
+pub(super) struct CurveTable {
+    pub(super) low: f64,
+    pub(super) high: f64,
     /// Whether there are roots of the distance from the lower end: nodes are the squares of Chebyshev's then.
     has_root: bool,
     /// Rows at Chebyshev's points cos(πk/n).
-    rows: Vec<CurveRow>,
+    pub(super) rows: Vec<CurveRow>,
 }
 
 impl CurveTable {
@@ -67,19 +70,18 @@ impl CurveTable {
         self.low + (self.high - self.low) * fraction
     }
 
-    /// The table of `row` from ln a = `low` to `high`; none where it is not resolved.
-    fn new(
-        [low, high]: [f64; 2],
-        has_root: bool,
-        logs: usize,
-        row: impl Fn(f64) -> Result<CurveRow>,
+    /// The table of `row` from ln a = `low` to `high`; none where the columns that are `checked` do not count as `resolved`.
+    pub(super) fn new(
+        ([low, high], has_root): CurvePiece,
+        (checked, resolved): (&[usize], f64),
+        mut row: impl FnMut(f64) -> Result<CurveRow>,
     ) -> Result<Option<Self>> {
         let mut table = Self { low, high, has_root, rows: Vec::new() };
         for k in 0..=FIRST {
             table.rows.push(row(table.place(chebyshev(k, FIRST)))?);
         }
         loop {
-            if (0..logs).all(|column| table.tail(2 * column) < RESOLVED) {
+            if checked.iter().all(|column| table.tail(*column) < resolved) {
                 return Ok(Some(table));
             }
             let n = 2 * (table.rows.len() - 1);
@@ -111,7 +113,7 @@ impl CurveTable {
     }
 
     /// Barycentric weights of the rows at ln a, normed.
-    fn weights(&self, log: f64) -> Vec<f64> {
+    pub(super) fn weights(&self, log: f64) -> Vec<f64> {
         let fraction = ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
         let fraction = if self.has_root { fraction.sqrt() } else { fraction };
         let n = self.rows.len() - 1;
@@ -124,9 +126,15 @@ impl CurveTable {
         barycentric(&nodes, 2.0 * fraction - 1.0)
     }
 
-    fn column(&self, weights: &[f64], column: usize) -> f64 {
+    pub(super) fn column(&self, weights: &[f64], column: usize) -> f64 {
         weights.iter().zip(&self.rows).map(|(w, row)| w * row[column]).sum()
     }
+}
+
+/// The table that holds ln a, of those in ascending radius.
+pub(super) fn table_at(tables: &[CurveTable], log: f64) -> &CurveTable {
+    let table = tables.iter().find(|table| log <= table.high);
+    table.unwrap_or(&tables[tables.len() - 1])
 }
 
 /// Chebyshev's point k of 0 … n, from 1 down to −1.
@@ -237,6 +245,22 @@ impl Indent {
             false => self.at_approach(low)?.radius,
         };
         let high = self.at_approach(high)?.radius;
+        let mut tables = Vec::new();
+        let checked = if is_adhering { &[0, 2, 4, 6][..] } else { &[0, 2, 4] };
+        for piece in self.pieces([low, high]) {
+            match CurveTable::new(piece, (checked, RESOLVED), |log| self.row(log.exp(), parameters))
+            {
+                Ok(Some(table)) => tables.push(table),
+                // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
+                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(Some(tables))
+    }
+
+    /// Pieces between the kinks of the tip of the radii from `low` to `high`.
+    pub(super) fn pieces(&self, [low, high]: [f64; 2]) -> Vec<CurvePiece> {
         let mut ends = vec![low.ln() - 1e-9];
         let mut roots = vec![false];
         for kink in &self.tip().kinks {
@@ -250,18 +274,7 @@ impl Indent {
             }
         }
         ends.push(high.ln() + 1e-9);
-        let mut tables = Vec::new();
-        for (pair, has_root) in ends.windows(2).zip(roots) {
-            let row = |log: f64| self.row(log.exp(), parameters);
-            let logs = if is_adhering { 4 } else { 3 };
-            match CurveTable::new([pair[0], pair[1]], has_root, logs, row) {
-                Ok(Some(table)) => tables.push(table),
-                // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
-                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(Some(tables))
+        ends.windows(2).zip(roots).map(|(pair, has_root)| ([pair[0], pair[1]], has_root)).collect()
     }
 
     /// CurveRow of a table at the radius `a`: per quantity its logarithm, the derivative of that with respect to ln a, and one with respect
@@ -329,12 +342,8 @@ impl Indent {
     ) -> Result<CurvePoint> {
         let is_adhering = self.adheres_within();
         let logs = if is_adhering { 4 } else { 3 };
-        let table_at = |log: f64| {
-            let table = tables.iter().find(|table| log <= table.high);
-            table.unwrap_or(&tables[tables.len() - 1])
-        };
         let at = |log: f64| -> [f64; 2] {
-            let table = table_at(log);
+            let table = table_at(tables, log);
             let weights = table.weights(log);
             let column = |k| table.column(&weights, k);
             let (value, slope) = (column(4).exp(), column(5));
@@ -348,7 +357,7 @@ impl Indent {
         };
         let (low, high) = (tables[0].low, tables[tables.len() - 1].high);
         let log = newton(|log| Ok(at(log)), [low, high], high)?;
-        let (table, a) = (table_at(log), log.exp());
+        let (table, a) = (table_at(tables, log), log.exp());
         let weights = table.weights(log);
         let column = |k| table.column(&weights, k);
         let [stiffness, profile, hertzian] = [0, 2, 4].map(|k| column(k).exp());
