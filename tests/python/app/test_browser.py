@@ -360,6 +360,9 @@ def test_a_material_fills_its_numbers(browser: Any, url: str) -> None:
 
 def test_finer_cells_are_a_button(browser: Any, url: str) -> None:
     page = Opened(browser, url, "#card=contact")
+    # A coat of rubber, a twentieth of a cell thick: its tension is below its error.
+    page.type("body.layers[0].thickness", "0.1")
+    page.type("materials.coating.young", "1")
     page.wait()
     assert 'press "Finer"' in page.at("warnings").text_content()
     page.at("finer").click()
