@@ -18,6 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import nacre
+from nacre.app import answer as module
 from nacre.app.answer import CONTACT_ROWS, STAGES, Stopped, answer, file_text
 from nacre.app.cards import cards, check_size, own_card
 from nacre.app.fields import Field, FieldError
@@ -462,6 +463,23 @@ def highest(picture: str, names: list[str], top: float) -> list[float]:
     pixels = [min(float(pair.split(",")[1]) for pair in points.split()) for points in curves]
     above = [floor + height - pixel for pixel in pixels]  # pixels count downwards
     return [top * one / max(above) for one in above]
+
+
+def test_stages_share_their_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Coats of one bare body share it, too."""
+    solved, solve = [], nacre.solve
+    monkeypatch.setattr(nacre, "solve", lambda **k: solved.append(k["body"]) or solve(**k))
+    module._recent.cache_clear()
+    fuller, answered = [{"body.layers[0].thickness": text} for text in ("2.5", "3.5")], []
+    for values in fuller:
+        case = cards()["contact"].case(values)
+        answered += [answer(case, stage)["parts"] for stage in ("full", "stress")]
+    assert [len(body.layers) for body in solved] == [1, 0, 1]
+    module._recent.cache_clear()
+    again = answer(cards()["contact"].case(fuller[0]), "stress")["parts"]
+    assert again == answered[1]
+    # With stresses, the pressure ends at the edge, and not in the next cell.
+    assert answered[0]["picture-1"] != answered[1]["picture-1"]
 
 
 def test_the_new_contact_stands_beside_the_worn_one() -> None:
