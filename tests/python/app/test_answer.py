@@ -467,16 +467,21 @@ def highest(picture: str, names: list[str], top: float) -> list[float]:
 
 def test_stages_share_their_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
     """Coats of one bare body share it, too."""
-    solved, solve = [], nacre.solve
-    monkeypatch.setattr(nacre, "solve", lambda **k: solved.append(k["body"]) or solve(**k))
+    solve, solved = nacre.solve, []
+
+    def counted(**keywords: Any) -> nacre.Solution:
+        solved.append(keywords["body"])
+        return solve(**keywords)
+
+    monkeypatch.setattr(nacre, "solve", counted)
     module._recent.cache_clear()
-    fuller, answered = [{"body.layers[0].thickness": text} for text in ("2.5", "3.5")], []
-    for values in fuller:
+    coats, answered = [{"body.layers[0].thickness": text} for text in ("2.5", "3.5")], []
+    for values in coats:
         case = cards()["contact"].case(values)
         answered += [answer(case, stage)["parts"] for stage in ("full", "stress")]
     assert [len(body.layers) for body in solved] == [1, 0, 1]
     module._recent.cache_clear()
-    again = answer(cards()["contact"].case(fuller[0]), "stress")["parts"]
+    again = answer(cards()["contact"].case(coats[0]), "stress")["parts"]
     assert again == answered[1]
     # With stresses, the pressure ends at the edge, and not in the next cell.
     assert answered[0]["picture-1"] != answered[1]["picture-1"]
