@@ -333,7 +333,7 @@ def test_the_keyboard_reaches_everything(opened: Opened) -> None:
 def test_nothing_is_wider_than_the_window(browser: Any, url: str, width: int) -> None:
     for name in ("bearing", "contact", "indentation"):
         page = Opened(browser, url, f"#card={name}", viewport={"width": width, "height": 800})
-        page.wait("draft")
+        page.wait()
         page.at("more").locator("summary").click()
         assert page.page.evaluate("document.documentElement.scrollWidth") <= width
         page.close()
