@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import functools
 import html
+import pickle
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -15,20 +17,20 @@ import numpy as np
 
 import nacre
 import nacre._core as core
-from nacre._tools.typing import Field
+from nacre._tools.typing import Field, Member
 from nacre.bearing import BearingSolution, PairSolution
 from nacre.bearing.kinds import RollerBearing
 from nacre.case import Case, CaseError, toml
 from nacre.case.results import DEPTH_OPTIONS, last_of, of_last, rated, report_of, results_of
 from nacre.contact.friction import FrictionSolution
 from nacre.contact.solution import Solution
-from nacre.contact.stresses import depth_charts
+from nacre.contact.stresses import StressPlan, depth_charts
 from nacre.indent import IndentSolution
 from nacre.indent import solve as solve_indentation
 from nacre.indent._reading import Reading, apparent_modulus, substrate_verdict
 from nacre.indent.solution import UNITS
 from nacre.results import display
-from nacre.results.charts import Axis, Chart, Curve, Look, Picture, section
+from nacre.results.charts import NO_EDGE, Axis, Chart, Curve, Look, Picture, section
 from nacre.results.report import Rows
 from nacre.results.rows import Row
 from nacre.results.svg import drawing
@@ -65,6 +67,8 @@ STANDARD = "20 %"
 
 By trial over forces, tilts and clearances: 16 % of lives, 14 % of displacements.
 """
+RECENT = 4
+"""Solutions that are kept: those of two coats, and of their bare bodies."""
 EVERY = 3
 """Loads of which one is in a draft of an indentation."""
 CONTACT_ROWS = {"load", "approach", "tilt", "peak_pressure", "contact_extent", "contact_area"}
@@ -106,6 +110,16 @@ class Measured(NamedTuple):
 
 
 NONE = Measured({}, {}, ())
+
+
+@dataclass(frozen=True)
+class Question:
+    """A contact or a bearing to be solved: equal ones have equal solutions."""
+
+    key: bytes
+    """What it is, and in which units."""
+    solve: Callable[[], Any] = field(compare=False)
+    """Function that solves it."""
 
 
 class Stopped(Exception):
@@ -195,31 +209,65 @@ def _contact(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     solution = _solved_contact(case, arguments, wanted)
     bare = _bare(case, arguments, wanted)
     rows, beside = (_selected(contact, CONTACT_ROWS) for contact in (solution, bare))
-    pictures, warnings, verdict = [_pressures(coated=solution, bare=bare)], solution._warnings, None
-    if stage == "stress":
-        keywords = case.stress() or {}
-        options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
-        try:
-            results = of_last(case, solution, {"progress": wanted})
-        except ValueError as error:
-            verdict = Verdict("unknown", f"Cannot tell: {error}.")
-        else:
-            verdict, summary = worst_of(map(verdict_on, results.values())), results.get("stress")
-            warnings = [*warnings, *(text for one in results.values() for text in one.warnings)]
-            rows += [] if summary is None else _extremes(summary)
-            if bare is not None and summary is not None:
-                sliding = {name: value for name, value in options.items() if name != "residual"}
-                beside += _extremes(bare.stress_summary(**sliding, progress=wanted))
-            pictures.append("".join(map(_figure, depth_charts(solution, bare, **options))))
     peak = ("peak pressure", solution.peak_pressure, "Pa", _share_of_peak(solution))
-    return _answer(peak, rows, pictures, warnings, verdict, NEXT.get(stage), beside)
+    if stage != "stress":
+        pictures = [_pressures(coated=solution, bare=bare)]
+        return _answer(peak, rows, pictures, solution._warnings, None, NEXT.get(stage), beside)
+    keywords, warnings = case.stress() or {}, solution._warnings
+    options = {name: keywords[name] for name in DEPTH_OPTIONS if name in keywords}
+    plan, of_bare = (_planned(contact, options.get("body", "body")) for contact in (solution, bare))
+    pictures = [_pressures(coated=plan or solution, bare=of_bare or bare)]
+    try:
+        results = of_last(case, solution, {"progress": wanted}, plan)
+    except ValueError as error:
+        verdict: Verdict | None = Verdict("unknown", f"Cannot tell: {error}.")
+    else:
+        verdict, summary = worst_of(map(verdict_on, results.values())), results.get("stress")
+        warnings = [*warnings, *(text for one in results.values() for text in one.warnings)]
+        rows += [] if summary is None else _extremes(summary)
+        if of_bare is not None and summary is not None:
+            sliding = {k: v for k, v in options.items() if k not in ("body", "residual")}
+            beside += _extremes(of_bare.summary(**sliding, progress=wanted))
+        charts = depth_charts(plan or solution, of_bare or bare, **options)
+        pictures.append("".join(map(_figure, charts)))
+    return _answer(peak, rows, pictures, warnings, verdict, None, beside)
+
+
+def _planned(contact: Contact | None, body: Member) -> StressPlan | None:
+    """Return a plan of the stresses in a body of a contact, or None where there are none."""
+    try:
+        return None if contact is None else contact.stress_plan(body)
+    except ERRORS:
+        return None
 
 
 def _solved_contact(case: Case, arguments: Answer, wanted: Wanted) -> Contact:
     """Return the solution of a contact, the last one of a history."""
-    solve = getattr(nacre, case.friction or "solve")
-    solution: Contact = last_of(solve(**arguments, progress=wanted, check=False))
-    return _converged(solution, "solution")
+    name = case.friction or "solve"
+
+    def solve(**keywords: Any) -> Contact:
+        last: Contact = last_of(getattr(nacre, name)(**keywords))
+        return last
+
+    return _converged(_solved(case, name, solve, arguments, wanted), "solution")
+
+
+def _solved(
+    case: Case, what: object, solve: Callable[..., Solved], arguments: Answer, wanted: Wanted
+) -> Solved:
+    """Return a solution, of the most recent ones without a new solve.
+
+    The stages of an answer have the same, and the bare body's is that of every coat.
+    """
+    wanted()
+    asked = functools.partial(solve, **arguments, progress=wanted, check=False)
+    solution: Solved = _recent(Question(pickle.dumps((case.units, what, arguments)), asked))
+    return solution
+
+
+@functools.lru_cache(maxsize=RECENT)
+def _recent(question: Question) -> Any:
+    return question.solve()
 
 
 def _converged(solution: Solved, what: str) -> Solved:
@@ -273,8 +321,8 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     """Return the answer on a bearing; the last stage compares it with aligned rings."""
     bearing = arguments.pop("bearing")
     draft = {"model": "iso16281", "cells": None} if stage == "draft" else {}
-    keywords = arguments | draft | {"progress": wanted, "check": False}
-    solution = _converged(bearing.solve(**keywords), "equilibrium")
+    keywords = arguments | draft
+    solution = _converged(_solved(case, bearing, bearing.solve, keywords, wanted), "equilibrium")
     # A film belongs to solved contacts, which a draft has not.
     results = rated(case, solution, has_film=stage != "draft")
     solution, rows = results["bearing"], _selected(solution, BEARING_ROWS)
@@ -287,7 +335,8 @@ def _bearing(case: Case, arguments: Answer, stage: str, wanted: Wanted) -> Answe
     else:
         profiles = {"as it stands": _profile(solution)}
         if is_tilted and stage != "full":
-            profiles["aligned"] = _profile(bearing.solve(**keywords | {"tilt": (0.0, 0.0)}))
+            aligned = keywords | {"tilt": (0.0, 0.0)}
+            profiles["aligned"] = _profile(_solved(case, bearing, bearing.solve, aligned, wanted))
         pictures = [
             _drawn(HEAVIEST, Axis("x", "m"), PRESSURE, profiles),
             _figure(solution._ring_chart()),
@@ -420,13 +469,19 @@ def _drawn(caption: str, x: Axis, y: Axis, curves: Mapping[str, tuple[Field, Fie
     return _figure(Chart(caption, drawn, (x, y)))
 
 
-def _pressures(**contacts: Contact | None) -> str:
-    """Return the picture of the pressure along the longer side of the first contact."""
-    solutions = {name: contact for name, contact in contacts.items() if contact is not None}
-    first = next(iter(solutions.values()))
+def _pressures(**contacts: Contact | StressPlan | None) -> str:
+    """Return the picture of the pressure along the longer side of the first contact.
+
+    That of a plan falls to 0 at the edge of the contact, where it is known within cells.
+    """
+    drawn = {name: contact for name, contact in contacts.items() if contact is not None}
+    first = next(iter(drawn.values()))._normal
     along_x, along_y = np.ptp(first.contact_extent, axis=1)
     axis = 0 if along_x >= along_y and not first.grid.is_line else 1
-    curves = {name: section(contact, axis) for name, contact in solutions.items()}
+    curves = {
+        name: section(contact._normal, axis, getattr(contact, "edge", NO_EDGE))
+        for name, contact in drawn.items()
+    }
     return _drawn("Pressure through the largest.", Axis("xy"[axis], "m"), PRESSURE, curves)
 
 

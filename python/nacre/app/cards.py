@@ -34,9 +34,8 @@ MOST = {"cells": 65_536, "layers": 20, "elements": 200, "steps": 200}
 """Largest numbers of cells, of layers, of rolling elements, and of steps or indentations."""
 LOADS = 60
 """Number of loads of an indentation, whose depths are evenly spaced."""
-CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width"}
-CHOSEN |= {"counterbody.ends", "stress.direction"}
-"""Numbers of cells, sizes, ends and directions that cards choose."""
+CHOSEN = {"solve.max_cells", "bearing.solve.cells", "grid.cells", "grid.width", "counterbody.ends"}
+"""Numbers of cells, sizes and ends that cards choose."""
 IDLE = tuple(f".{key}" for keys in LIMITS.values() for key in keys)
 """Ends of the paths of limits, which act in some cases only."""
 BONDS = ("shear", "tension")

@@ -14,6 +14,7 @@ from nacre.bearing import BearingSolution, Film, film_thickness
 from nacre.bearing.geometry import RINGS, Ring
 from nacre.cards import numbers_of
 from nacre.case import Case, CaseError
+from nacre.contact.stresses import StressPlan
 from nacre.fatigue.criteria import Criterion
 from nacre.indent.solution import solve as solve_indentation
 from nacre.results import report
@@ -56,12 +57,19 @@ def _contact(case: Case, arguments: Options, options: Options) -> Results:
     return results | of_last(case, last_of(results["solution"]), options)
 
 
-def of_last(case: Case, last: Any, options: Options) -> Results:
-    """Return the stresses and the fatigue of a contact that the case asks for."""
+def of_last(case: Case, last: Any, options: Options, plan: StressPlan | None = None) -> Results:
+    """Return the stresses and the fatigue of a contact that the case asks for.
+
+    A plan of the stresses, which cells of the grid alone have, saves the time to make one.
+    """
     results = {}
     if (keywords := case.stress()) is not None:
         with naming(case, "stress"):
-            results["stress"] = last.stress_summary(**keywords, **options)
+            if plan is None or keywords.get("refine"):
+                results["stress"] = last.stress_summary(**keywords, **options)
+            else:
+                others = {k: v for k, v in keywords.items() if k not in ("body", "refine")}
+                results["stress"] = plan.summary(**others, **options)
     if (keywords := case.fatigue()) is not None:
         with naming(case, "fatigue"):
             results["fatigue"] = nacre.fatigue.assess(last, **keywords, **options)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypedDict, TypeVar, Unpack, cast
@@ -64,9 +64,11 @@ FACTORS = {"von_mises": "yield_safety_factor", "tension": "strength_safety_facto
 STRESSES = "Fourier transforms of the stress below pressure and traction, exact in the depth"
 SIZE_ERRORS = "errors due to the size of the cells, estimated"
 """What a report says of stresses."""
-DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 30), 6, 400_000, 1 << 17
+DEPTHS, INSIDE, WORK, MOST_CELLS = (14, 18), 4, 400_000, 1 << 17
 """Depths of the picture of a report, in all, fewest and most, and in each layer; their number times
 that of the cells, which takes 0.2 s; most cells of a grid for it."""
+BETWEEN = 4
+"""Points of that picture for each depth: cubic parabolas between depths, 0.3 % of the largest."""
 DEEPEST = 1.25
 """Its depth over the width of the contact."""
 WORDS = {"von_mises": "von Mises stress", "tension": "tension"}
@@ -713,6 +715,7 @@ class StressPlan:
         *,
         yield_stress: Limits | None = None,
         strength: ByLayer | None = None,
+        bond_strength: Bonds | None = None,
         friction: float = 0.0,
         direction: Direction | None = None,
         residual: ByLayer | None = None,
@@ -722,8 +725,10 @@ class StressPlan:
 
         Parameters
         ----------
-        yield_stress, strength, friction, direction, residual, progress : optional
-            As in `Solution.stress_summary`, with its bar.
+        yield_stress, strength, bond_strength : optional
+            As in `Solution.stress_summary`.
+        friction, direction, residual, progress : optional
+            Likewise, with its bar.
 
         Returns
         -------
@@ -746,14 +751,13 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, None)
-        body = _check_limits_of(self._solution, self._member, limits)
-        with lasting("stresses", progress) as tell:
-            options = StressOptions(self._member, friction, direction, residual, None, tell)
-            fields = core.stress_summary(self._plan, limits, options)
-        sliding = self._solution._sliding(friction, direction, self._member)
-        contact = _doubts_of(self._solution) | {"origins": names_of(yield_stress, body)}
-        return _warned(StressSummary._from_fields(fields, sliding, **contact))
+        options = StressOptions(self._member, friction, direction, residual, None, progress)
+        limits = yield_stress, strength, bond_strength, None
+        return _warned(self._solution._summary(self._plan, options, *limits))
+
+    @property
+    def _normal(self) -> Solution:
+        return self._solution._normal
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -943,16 +947,28 @@ class Stressed:
         True
         """
         error = (REFINED if refine else None) if isinstance(refine, bool) else refine
-        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, error)
-        member = _check_limits_of(self, body, limits)
-        bonds = _bond_strengths(self, body, bond_strength)
-        with lasting("stresses", progress) as tell:
-            options = StressOptions(body, friction, direction, residual, threads, tell)
-            fields = core.stress_summary(self._solved, limits, options)
-        sliding = self._sliding(friction, direction, body)
-        contact = {"bond_strength": bonds, "origins": names_of(yield_stress, member)}
-        contact |= _doubts_of(self)
-        return _warned(StressSummary._from_fields(fields, sliding, **contact))
+        options = StressOptions(body, friction, direction, residual, threads, progress)
+        limits = yield_stress, strength, bond_strength, error
+        return _warned(self._summary(self._solved, options, *limits))
+
+    def _summary(
+        self,
+        of: core.Solved | core.FrictionSolved | core.StressPlan,
+        options: StressOptions,
+        yield_stress: Limits | None,
+        strength: ByLayer | None,
+        bond_strength: Bonds | None,
+        refine: float | None,
+    ) -> StressSummary:
+        """Return the extremes in a body, of the contact or of a plan of it."""
+        limits = StressLimits(numbers_of(yield_stress, "yield_stress"), strength, refine)
+        member = _check_limits_of(self, options.body, limits)
+        contact = {"bond_strength": _bond_strengths(self, options.body, bond_strength)}
+        with lasting("stresses", options.progress) as tell:
+            fields = core.stress_summary(of, limits, replace(options, progress=tell))
+        sliding = self._sliding(options.friction, options.direction, options.body)
+        contact |= {"origins": names_of(yield_stress, member)} | _doubts_of(self)
+        return StressSummary._from_fields(fields, sliding, **contact)
 
     def verdict(
         self,
@@ -1158,16 +1174,17 @@ def _warned(result: StressResult) -> StressResult:
 
 
 def depth_charts(
-    solution: Stressed,
-    bare: Stressed | None = None,
+    solution: Stressed | StressPlan,
+    bare: Stressed | StressPlan | None = None,
     *,
     body: Member = "body",
     **sliding: Unpack[SlidingOptions],
 ) -> Iterator[Chart]:
     """Yield the chart of the von Mises stress against depth below the largest pressure.
 
-    A `bare` solution, without the layers, is drawn beside the coated one. There is none of bodies
-    without stresses, of surfaces that have yielded and of large grids.
+    A `bare` solution, without the layers, is drawn beside the coated one. Plans of `body` stand for
+    their solutions. There is none of bodies without stresses, of surfaces that have yielded and of
+    large grids.
     """
     normal = solution._normal
     member = normal.report.counterbody if body == "counterbody" else normal.report.body
@@ -1204,16 +1221,40 @@ def depth_charts(
 
 
 def _over_depth(
-    solution: Stressed, body: Member, within: Array, faces: list[float], sliding: SlidingOptions
+    solution: Stressed | StressPlan,
+    body: Member,
+    within: Array,
+    faces: list[float],
+    sliding: SlidingOptions,
 ) -> tuple[Array, Array]:
     """Return depths and von Mises stresses; faces are there twice, for their two sides."""
-    plan, (x, y) = solution.stress_plan(body), solution._normal.peak_position
+    plan = solution if isinstance(solution, StressPlan) else solution.stress_plan(body)
+    x, y = plan._normal.peak_position
     sides: tuple[tuple[Array, Side], ...] = ((within, "below"), (np.array(faces), "above"))
     fields = [plan.stress(z, x=x, y=y, side=side, **sliding) for z, side in sides]
-    depths = np.concatenate([within, faces])
+    parts = [np.stack([*one.components.values()]).reshape(6, -1) for one in fields]
+    depths, stresses = np.concatenate([within, faces]), np.concatenate(parts, axis=1)
     # The upper side of a face, which comes last here, stands first.
     order = np.lexsort((-np.arange(depths.size), depths))
-    return depths[order], np.concatenate([one.von_mises for one in fields])[order]
+    tops = np.searchsorted(depths[order], faces[:-1]) + 1
+    pieces = [_between(depths[k], stresses[:, k]) for k in np.split(order, tops)]
+    z, (xx, yy, zz, xy, yz, xz) = (
+        np.concatenate(ones, axis=-1) for ones in zip(*pieces, strict=True)
+    )
+    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return z, np.sqrt(0.5 * squares + 3.0 * (xy**2 + yz**2 + xz**2))
+
+
+def _between(x: Array, values: Array) -> tuple[Array, Array]:
+    """Return points between those of x, and values ``(n, x)`` there, by cubic parabolas."""
+    at = np.interp(np.arange(BETWEEN * (x.size - 1) + 1) / BETWEEN, np.arange(x.size), x)
+    nearest = np.clip(np.searchsorted(x, at) - 2, 0, x.size - 4)[:, None] + np.arange(4)
+    nodes, own = x[nearest], np.eye(4, dtype=bool)
+    ratios = (at[:, None, None] - nodes[:, None]) / np.where(
+        own, 1.0, nodes[:, :, None] - nodes[:, None]
+    )
+    weights = np.where(own, 1.0, ratios).prod(axis=2)
+    return at, (values[:, nearest] * weights).sum(axis=2)
 
 
 def _notes(summary: StressSummary) -> list[str]:

@@ -15,11 +15,12 @@ from nacre._tools.typing import Member
 from nacre._tools.units import Scale, written
 from nacre.plot.drawer import draw
 from nacre.plot.style import COLOURMAP, SIGNED, extent, lengths, new_axes, styled
-from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
+from nacre.results.charts import Axis, Chart, Curve, ends_along, enlarged_depth
 
 with extra("plot"):
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
+    from matplotlib.markers import CARETDOWN
 
 if TYPE_CHECKING:
     from nacre.contact.solution import Solution
@@ -61,6 +62,8 @@ class _Section(NamedTuple):
     interfaces: Sequence[float]
     peak: tuple[float, float]
     """Place of the largest value: along x or y, and depth [m]."""
+    contact: Sequence[float]
+    """Ends of the contact along x or y, where they are known [m]."""
 
     @property
     def scale(self) -> Scale:
@@ -73,7 +76,7 @@ class _Section(NamedTuple):
         return float(np.abs(self.values).max(initial=0.0, where=inside))
 
     def draw(self, axes: Axes, bottom: float, down: Scale) -> QuadMesh:
-        """Draw the values to a depth, lines at the interfaces and a cross at the largest value."""
+        """Draw values to a depth, interfaces, the largest value and the ends of the contact."""
         across, scale = self.across, self.scale
         signed = self.quantity in SIGNED_QUANTITIES
         largest = scale.factor * self._highest or 1.0
@@ -94,6 +97,8 @@ class _Section(NamedTuple):
         peak = (across.factor * self.peak[0], down.factor * self.peak[1])
         for colour, width in (("black", 2.6), ("white", 1.2)):
             axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
+        ends = across.factor * np.array(self.contact)
+        axes.plot(ends, 0.0 * ends, "k", marker=CARETDOWN, linestyle="none", clip_on=False)
         axes.set(xlabel=f"{self.along} [{across.unit}]", ylabel=f"z [{down.unit}]")
         axes.set_xlim(across.factor * self.ends[0], across.factor * self.ends[1])
         axes.set_ylim(down.factor * bottom, 0.0)
@@ -115,10 +120,10 @@ def stress_section(
 ) -> Axes:
     """Draw a vertical section, with the interfaces.
 
-    The cross marks the largest value. A section much longer than deep is drawn out of scale, and
-    the picture says so. Beyond a free end of the body nothing is drawn. Below it, a new
-    figure enlarges layers thinner than a tenth of the depth: it shows three times their
-    thickness.
+    The cross marks the largest value, and triangles at the surface the edge of the contact, where
+    it is known within cells (`StressPlan.edge`). A section much longer than deep is drawn out of
+    scale, and the picture says so. Beyond a free end of the body nothing is drawn. Below it, a new
+    figure enlarges layers thinner than a tenth of the depth: it shows three times their thickness.
 
     Parameters
     ----------
@@ -165,7 +170,8 @@ def stress_section(
     edges = _edges(half_space, bottom, "rows", rows)
     x, y = (None, at) if along == "x" else (at, None)
     middles = 0.5 * (edges[1:] + edges[:-1])
-    field = solution.stress(middles, body=body, x=x, y=y, threads=threads, **options)
+    plan = solution.stress_plan(body, threads)
+    field = plan.stress(middles, x=x, y=y, **options)
     values = _values(field, quantity)
     centres = field.x if along == "x" else field.y
     grid = solution.report.grid
@@ -177,9 +183,9 @@ def stress_section(
         raise ValueError(f"at must be in the body, whose ends are {half_space.ends}, got {at:g}")
     row, column = np.unravel_index(np.nanargmax(values), values.shape)
     peak = centres[column], field.z[row]
-    section = _Section(
-        quantity, values, along, sides, edges, (low, high), across, half_space.interfaces, peak
-    )
+    ends = [end for *_, end in ends_along(solution, axis, at, plan.edge)]
+    parts = values, along, sides, edges, (low, high), across, half_space.interfaces, peak, ends
+    section = _Section(quantity, *parts)
     enlarged = enlarged_depth(half_space.interfaces, bottom) if axes is None else 0.0
     with styled():
         axes = axes or new_axes(0.75, 0.75 if enlarged else 0.45)
@@ -195,13 +201,14 @@ def stress_section(
         normal = "y" if along == "x" else "x"
         title = f"at {normal} = {written(at, 'm', 3)}; the cross marks the largest value, "
         title += written(float(np.nanmax(values)), "Pa", 3)
+        notes = ["triangles: the edge of the contact"] if ends else []
         if same:
             axes.set_aspect("equal")
             if enlarged:
                 below.set_box_aspect(bottom / (high - low))
         else:
-            title += f"\n{along} and z to different scales"
-        axes.set_title(title)
+            notes.append(f"{along} and z to different scales")
+        axes.set_title("\n".join([title, "; ".join(notes)]).rstrip())
     return axes
 
 

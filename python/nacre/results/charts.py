@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -19,6 +19,9 @@ Look = Literal["line", "solid", "dashed", "thin", "marked", "points", "graded"]
 
 THIN, ENLARGED = 0.1, 3.0
 """Share of the depth below which layers are enlarged, and their thicknesses that are drawn then."""
+NEAREST = 1.5
+"""Distance in cells from the outermost of a contact within which its edge is."""
+NO_EDGE: Array = np.empty((0, 2))
 HEADROOM = 0.05
 """Share of the range that stays free beyond curves, where they do not end at 0."""
 
@@ -110,14 +113,42 @@ def enlarged_depth(interfaces: Sequence[float], bottom: float) -> float:
     return ENLARGED * max(thin, default=0.0)
 
 
-def section(result: Peaked, axis: int) -> tuple[Array, Array]:
-    """Return places along x or y through the largest pressure, where it is loaded, and it there."""
-    pressure = result.pressure
-    peak = np.unravel_index(pressure.argmax(), pressure.shape)
+def section(result: Peaked, axis: int, edge: Array = NO_EDGE) -> tuple[Array, Array]:
+    """Return places along x or y through the largest pressure, where it is loaded, and it there.
+
+    It falls to 0 at the edge, of which points (x, y) are given, and else in the next cell.
+    """
+    pressure, centres = result.pressure, (result.x, result.y)
+    row = np.unravel_index(pressure.argmax(), pressure.shape)[1 - axis]
+    line, ends = np.take(pressure, row, axis=1 - axis), []
+    for cell, outwards, end in ends_along(result, axis, float(centres[1 - axis][row]), edge):
+        ends.append(end)
+        if outwards * (centres[axis][cell] - end) > 0:
+            line[cell] = 0.0
     low, high = display.loaded_parts(pressure)[axis]
-    cells = slice(low, high + 1)
-    line = np.take(pressure, peak[1 - axis], axis=1 - axis)
-    return (result.x, result.y)[axis][cells], line[cells]
+    places = np.concatenate([centres[axis][low : high + 1], ends])
+    order = places.argsort(kind="stable")
+    return places[order], np.concatenate([line[low : high + 1], np.zeros(len(ends))])[order]
+
+
+def ends_along(
+    result: Peaked, axis: int, at: float, edge: Array
+) -> Iterator[tuple[int, int, float]]:
+    """Yield the ends of the contact on a line along x or y, of whose edge points (x, y) are given.
+
+    Each has its outermost cell, 1 or -1 for the side on which it is, and its place [m].
+    """
+    centres, turned = (result.x, result.y), [axis, 1 - axis]
+    points, sides = edge[:, turned], np.array(result.grid.spacing)[turned]
+    row = np.abs(centres[1 - axis] - at).argmin()
+    loaded = np.take(result.pressure, row, axis=1 - axis) > 0
+    for cell in np.flatnonzero(np.diff(loaded)).tolist():
+        outermost, outwards = (cell, 1) if loaded[cell] else (cell + 1, -1)
+        away = np.abs(points - (centres[axis][outermost], at)) / sides
+        near = points[(away <= NEAREST).all(axis=1)]
+        if near.size:
+            along, across = near[near[:, 1].argsort()].T
+            yield outermost, outwards, float(np.interp(at, across, along))
 
 
 def contact_charts(result: Peaked) -> list[Picture]:

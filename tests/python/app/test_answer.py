@@ -18,6 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import nacre
+from nacre.app import answer as module
 from nacre.app.answer import CONTACT_ROWS, STAGES, Stopped, answer, file_text
 from nacre.app.cards import cards, check_size, own_card
 from nacre.app.fields import Field, FieldError
@@ -434,9 +435,8 @@ def test_the_numbers_of_the_bare_body_stand_beside() -> None:
         arguments = case.arguments()
         keywords = case.stress() or {}
         solutions = [nacre.solve(**arguments), nacre.solve(**arguments | {"body": bare})]
-        sliding = {name: keywords[name] for name in ("friction", "direction")}
         coated = solutions[0].stress_summary(**keywords)
-        other = solutions[1].stress_summary(**sliding)
+        other = solutions[1].stress_summary(friction=keywords["friction"])
         of_bare = {row.key: html.escape(row.text) for row in solutions[1]._rows()}
         for row in solutions[0]._rows():
             if row.key in CONTACT_ROWS:
@@ -463,6 +463,28 @@ def highest(picture: str, names: list[str], top: float) -> list[float]:
     pixels = [min(float(pair.split(",")[1]) for pair in points.split()) for points in curves]
     above = [floor + height - pixel for pixel in pixels]  # pixels count downwards
     return [top * one / max(above) for one in above]
+
+
+def test_stages_share_their_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Coats of one bare body share it, too."""
+    solve, solved = nacre.solve, []
+
+    def counted(**keywords: Any) -> nacre.Solution:
+        solved.append(keywords["body"])
+        return solve(**keywords)
+
+    monkeypatch.setattr(nacre, "solve", counted)
+    module._recent.cache_clear()
+    coats, answered = [{"body.layers[0].thickness": text} for text in ("2.5", "3.5")], []
+    for values in coats:
+        case = cards()["contact"].case(values)
+        answered += [answer(case, stage)["parts"] for stage in ("full", "stress")]
+    assert [len(body.layers) for body in solved] == [1, 0, 1]
+    module._recent.cache_clear()
+    again = answer(cards()["contact"].case(coats[0]), "stress")["parts"]
+    assert again == answered[1]
+    # With stresses, the pressure ends at the edge, and not in the next cell.
+    assert answered[0]["picture-1"] != answered[1]["picture-1"]
 
 
 def test_the_new_contact_stands_beside_the_worn_one() -> None:

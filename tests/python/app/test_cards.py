@@ -39,6 +39,10 @@ def last_parts(card: Card, values: dict[str, str]) -> Answer:
         data["bearing"]["solve"].setdefault("cells", [40, 8])
     reply = answer(Case(data, case.name), LAST[case.kind], measured=card.measured)
     parts: Answer = reply.get("parts", reply)
+    verdict = parts.get("verdict", {})
+    for key in verdict.keys() & {"factor", "uncertainty"}:
+        # What changes by rounding alone does not act.
+        verdict[key] = verdict[key] and float(f"{verdict[key]:.9g}")
     return parts
 
 

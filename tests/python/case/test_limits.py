@@ -75,8 +75,10 @@ def test_cards_are_limits_in_python(key: str) -> None:
     body = nacre.HalfSpace(card.elastic, [nacre.Layer(card.elastic, 2e-6)])
     solution = nacre.solve(nacre.Sphere(5e-3), body, load=5.0, max_cells=4096)
     limits: Any = {"substrate": card} if key == "substrate" else [None, card]
-    plan = solution.stress_plan().summary(yield_stress=limits)
-    summary = solution.stress_summary(yield_stress=limits)
+    plan = solution.stress_plan().summary(yield_stress=limits, bond_strength=(1e9, None))
+    summary = solution.stress_summary(yield_stress=limits, bond_strength=(1e9, None))
+    assert plan == summary
+    assert summary.bond_strength == ((1e9, None),)
     typed = solution.stress_summary(yield_stress={"substrate": 1.896e9})
     assert summary.origins == plan.origins == (None, "440C")
     assert summary.verdict().words == typed.verdict().words.replace("given", "card 440C")

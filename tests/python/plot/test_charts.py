@@ -10,11 +10,20 @@ import numpy as np
 import pytest
 
 import nacre
-from bodies import BALL, HELD, STEEL, coated
+from bodies import BALL, HELD, ROD, STEEL, coated
 from nacre import plot
 from nacre.plot.drawer import draw
 from nacre.results import svg
-from nacre.results.charts import Axis, Chart, Curve, Look, Map, contact_charts, enlarged_depth
+from nacre.results.charts import (
+    Axis,
+    Chart,
+    Curve,
+    Look,
+    Map,
+    contact_charts,
+    enlarged_depth,
+    section,
+)
 from results import CONTACT, solved
 from support import assert_close
 
@@ -77,9 +86,9 @@ def test_charts_of_a_contact_have_all_its_cells_where_they_are() -> None:
     solution = solved("both coated, tilted")
     along_x, along_y, cells = contact_charts(solution)
     i, j = np.unravel_index(solution.pressure.argmax(), solution.pressure.shape)
-    for section, line in ((along_x, solution.pressure[:, j]), (along_y, solution.pressure[i])):
-        assert isinstance(section, Chart)
-        (curve,) = section.curves
+    for chart, line in ((along_x, solution.pressure[:, j]), (along_y, solution.pressure[i])):
+        assert isinstance(chart, Chart)
+        (curve,) = chart.curves
         assert curve.y.sum() == pytest.approx(line.sum(), rel=1e-12)
         loaded = np.flatnonzero(curve.y)
         assert loaded[0] == curve.y.size - 1 - loaded[-1] > 0  # as far beyond on both sides
@@ -93,6 +102,28 @@ def test_charts_of_a_contact_have_all_its_cells_where_they_are() -> None:
     ):
         low, high = axis.ends or (0.0, 0.0)
         assert low + (number + 0.5) * (high - low) / count == pytest.approx(due)
+
+
+@pytest.mark.parametrize("kind", ["ball", "rod"])
+def test_a_section_falls_to_nothing_at_the_edge(kind: str) -> None:
+    """Hertz's contact of half-width a ends between two cells."""
+    modulus = STEEL.young / (1 - STEEL.poisson**2)
+    if kind == "ball":
+        half = (0.75 * 20.0 * 5e-3 / modulus) ** (1 / 3)
+        solution = nacre.solve(BALL, STEEL, load=20.0, max_cells=4096)
+    else:
+        half = np.sqrt(4 * 1e5 * 5e-3 / (np.pi * modulus))
+        solution = nacre.solve(ROD, STEEL, load=1e5, grid=nacre.Grid.line(cells=128, width=6e-4))
+    edge = solution.stress_plan().edge
+    for axis in (1,) if kind == "rod" else (0, 1):
+        x, pressure = section(solution, axis, edge)
+        inside = np.abs(x) < 0.999 * half
+        assert np.all(np.diff(x) > 0)
+        assert np.all((pressure > 0) == inside)
+        ends = np.flatnonzero(inside)[[0, -1]] + (-1, 1)
+        assert_close(x[ends], half * np.array([-1, 1]), rtol=1e-3)  # a cell is 5 % of a, 9 % here
+        x, pressure = section(solution, axis)
+        assert set(x) < {*solution.x, *solution.y}
 
 
 # The drawer of Matplotlib.

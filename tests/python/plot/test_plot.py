@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.markers import CARETDOWN
 from matplotlib.quiver import Quiver
 from matplotlib.text import Text
 
@@ -325,6 +326,18 @@ def test_a_stress_section_shows_the_stress(coated: nacre.Solution, quantity: str
     title = axes.get_title(loc="left")
     assert written(float(values.max()), "Pa", 3) in title
     assert "the cross marks the largest value" in title
+
+
+@pytest.mark.parametrize("at", [0.0, 5e-5])
+def test_triangles_mark_the_edge_of_the_contact(ball: nacre.Solution, at: float) -> None:
+    radius = (0.75 * 100.0 * 5e-3 * (1 - STEEL.poisson**2) / STEEL.young) ** (1 / 3)
+    axes = plot.stress_section(ball, along="y", at=at, rows=6)
+    drawn(axes.figure)
+    (triangles,) = (line for line in axes.lines if line.get_marker() == CARETDOWN)
+    half = 1e6 * np.sqrt(radius**2 - at**2)
+    assert_close(np.asarray(triangles.get_xdata()), [-half, half], rtol=1e-3)
+    assert not np.any(triangles.get_ydata())
+    assert "triangles: the edge" in axes.get_title(loc="left")
 
 
 def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solution) -> None:

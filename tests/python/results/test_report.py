@@ -489,7 +489,8 @@ def test_the_stress_over_depth_is_that_of_the_solution() -> None:
     assert np.count_nonzero(z == 2e-6) == 2  # the coat first, then the steel below it
     for part, side in ((slice(0, count - 1), "above"), (slice(count - 1, None), "below")):
         due = quiet(ball().stress, z[part], x=x, y=y, side=side).von_mises
-        assert_close(curve.y[part], due, rtol=1e-12)
+        # Components are cubic parabolas between the depths: 0.03 % of balls, lines and rollers.
+        assert_close(curve.y[part], due, rtol=1e-3)
     width = np.diff(ball().contact_extent[1])[0]
     assert z[-1] == pytest.approx(1.25 * width)
 
