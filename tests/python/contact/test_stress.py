@@ -566,7 +566,7 @@ def test_the_shear_below_a_thin_coat_of_a_roller_with_free_ends_is_refined() -> 
     fine = solve(grid=nacre.Grid((24, 192), (2 * half, 3e-4)))
     (expected,) = fine.stress_summary().interfaces
     missing = expected.shear[0] - rough.shear[0]
-    assert 0.25 * expected.shear[0] < missing < rough.uncertainty["shear"]
+    assert 0.2 * expected.shear[0] < missing < rough.uncertainty["shear"]
     assert refined.shear[0] == pytest.approx(expected.shear[0], rel=5e-3)
     assert refined.uncertainty["shear"] < rough.uncertainty["shear"]
 
