@@ -148,6 +148,7 @@ def _solvable_case(data: Data) -> Data:
         return _with_entry(data, "counterbody.ends", [-length / 2, length / 2])
     if "width" not in data.get("grid", {}):
         return data
+    Case(_with_names(data)).arguments()  # checks the numbers from which the width is computed
     compliance = max(
         (1 - material["poisson"] ** 2) / material["young"]
         for material in data["materials"].values()

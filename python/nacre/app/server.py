@@ -6,6 +6,7 @@ import json
 import sys
 import threading
 import time
+import traceback
 import warnings
 from collections import OrderedDict
 from collections.abc import Collection, Iterator, Mapping
@@ -79,7 +80,9 @@ class Server(ThreadingHTTPServer):
         self.server_name, self.server_port = ADDRESS, self.server_address[1]
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """Say nothing of a page that has gone."""
+        """Say nothing of a page that has gone, and of all else what failed."""
+        if not isinstance(error := sys.exception(), OSError | None):
+            _log(error)
 
     def going(self, page: str, age: float) -> Going:
         """Return the function that says whether a question is still the newest of its page."""
@@ -110,6 +113,15 @@ class Server(ThreadingHTTPServer):
             return {"error": " ".join(str(error).split())}
         except Stopped:
             return {"stopped": True}
+
+    def content(self, question: Mapping[str, Any]) -> bytes:
+        """Return the answer to a question as JSON; whatever fails is an answer, too."""
+        try:
+            return json.dumps(self.reply(question), allow_nan=False).encode()
+        except BaseException as error:  # the panics of Rust are no Exception
+            _log(error)
+            sentence = f"nacre failed: {type(error).__name__}; the terminal says where"
+            return json.dumps({"error": sentence}).encode()
 
     @contextmanager
     def lane(self, is_draft: bool, going: Going) -> Iterator[None]:
@@ -158,8 +170,8 @@ class Handler(BaseHTTPRequestHandler):
         if self.command == "GET" and self.path in self.server.files:
             return self.server.files[self.path]
         if self.command == "POST" and self.path in STAGES_AT:
-            reply = self.server.reply(self._question(STAGES_AT[self.path]))
-            return "application/json", json.dumps(reply, allow_nan=False).encode()
+            question = self._question(STAGES_AT[self.path])
+            return "application/json", self.server.content(question)
         raise Refused(404, "there is no such page")
 
     def _question(self, stages: Collection[str]) -> dict[str, Any]:
@@ -193,6 +205,12 @@ class Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:
         """Write no log."""
+
+
+def _log(error: BaseException) -> None:
+    """Write a line on an error that nobody expected, and where it was raised."""
+    *_, (path, line, name, _) = traceback.extract_tb(error.__traceback__)
+    print(f"nacre: {path}:{line}, {name}: {error!r:.300}", file=sys.stderr, flush=True)
 
 
 def open_server(port: int, cards: Mapping[str, Card]) -> Server:

@@ -21,10 +21,12 @@ from typing import Any
 import pytest
 from playwright import sync_api
 
+from nacre.app import server as server_module
+from nacre.app.answer import answer
 from nacre.app.cards import cards, own_card
 from nacre.app.server import Server
 from nacre.case import templates
-from support import Capture, command
+from support import Capture, Patch, command
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
@@ -258,6 +260,32 @@ def test_a_wrong_value_is_a_line_and_the_next_one_counts(opened: Opened) -> None
     opened.wait()
     assert (opened.at("error").count(), wrong.count()) == (0, 0)
     assert "<td>1500 µN</td>" in opened.at("rows").inner_html()
+
+
+def test_an_overflow_is_a_line_and_the_next_value_counts(browser: Any, url: str) -> None:
+    page = Opened(browser, url, "#card=line&materials.steel.poisson=1e300")
+    assert "poisson must be above -1" in page.at("error").text_content()
+    page.at("more").locator("summary").click()
+    page.type("materials.steel.poisson", "0.3")
+    page.wait()
+    assert page.at("error").count() == 0
+    page.close()
+
+
+def test_a_draft_that_goes_on_is_given_up(opened: Opened, monkeypatch: Patch) -> None:
+    def slow(case: Any, stage: str, going: Any, *others: Any) -> dict[str, Any]:
+        while case.data["indent"]["load"][-1] == 7000.0 and going():
+            time.sleep(0.01)
+        return answer(case, stage, going, *others)
+
+    monkeypatch.setattr(server_module, "answer", slow)
+    opened.type("indent.load", "7")
+    time.sleep(0.5)
+    start = time.monotonic()
+    opened.type("indent.load", "2")
+    opened.wait()
+    assert time.monotonic() - start < 15  # not the half minute of an answer
+    assert "<td>2000 µN</td>" in opened.at("rows").inner_html()
 
 
 def test_an_empty_limit_is_unknown(browser: Any, url: str) -> None:

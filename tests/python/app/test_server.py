@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import pytest
 
@@ -304,6 +305,35 @@ def test_a_long_answer_ends_in_a_sentence(server: Server, monkeypatch: Patch) ->
     code, reply = post(server, question(stage="full"))
     assert code == 200
     assert "takes longer than" in reply["error"]
+
+
+@pytest.mark.parametrize(
+    "fault", [OverflowError("far\ntoo large"), KeyboardInterrupt(), {"parts": float("nan")}]
+)
+def test_whatever_fails_is_an_answer_and_a_line(
+    server: Server, monkeypatch: Patch, capsys: Capture, fault: Any
+) -> None:
+    monkeypatch.setattr(module, "answer", mock.Mock(side_effect=[fault]))
+    code, reply = post(server, question())
+    assert code == 200
+    assert reply["error"].startswith("nacre failed: ")
+    error = capsys.readouterr().err
+    assert error.startswith("nacre: ")
+    assert error.count("\n") == 1
+    monkeypatch.undo()
+    assert "parts" in post(server, question(age=2))[1]
+
+
+@pytest.mark.parametrize("value", ["1e300", "2", "-1e308"])
+@pytest.mark.parametrize("card", ["line", "roller", "contact"])
+def test_numbers_of_materials_are_checked_before_they_are_used(
+    server: Server, card: str, value: str
+) -> None:
+    paths = [path for path in cards()[card].by_path if path.endswith(".poisson")]
+    for path in paths:
+        code, reply = post(server, question(card=card, values={path: value}))
+        assert code == 200
+        assert "poisson must be above -1 and at most 0.5" in reply["error"]
 
 
 def test_few_pages_are_remembered(server: Server) -> None:

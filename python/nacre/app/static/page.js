@@ -1,11 +1,11 @@
 "use strict";
 // The page asks the server for answers, and shows them. It knows no field and no physics.
-const REST = 300, DELAYS = [200, 400, 800, 1600, 3200, 6400];
+const REST = 300, PATIENCE = 1000, DELAYS = [200, 400, 800, 1600, 3200, 6400];
 const one = (selector, root = document) => root.querySelector(selector);
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
 const forms = [...document.forms], status = one("output"), problem = one(".error"), note = one(".note");
 const id = crypto.randomUUID();
-let form, age = 0, timer, request = null, drafting = false;
+let form, age = 0, timer, patience, request = null, drafting = false;
 
 const inputs = () => all("input[name]", form);
 const changed = () => inputs().filter((input) => input.value !== input.defaultValue);
@@ -25,26 +25,31 @@ function question(stage) {
   return { card: form.name, values, stage, page: id, age };
 }
 
-// Where the program does not answer, it is asked again until it does, or the question is given up.
-async function post(path, body, signal) {
-  for (let count = 0; ; count += 1) {
+// Where the program does not answer, it is asked again until it does, the values change, or the question is given up.
+async function post(path, stage, signal) {
+  const mine = age, headers = { "Content-Type": "application/json" };
+  for (let count = 0; mine === age && !signal?.aborted; count += 1) {
     try {
-      const headers = { "Content-Type": "application/json" };
-      const reply = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+      const body = JSON.stringify(question(stage));
+      const reply = await fetch(path, { method: "POST", headers, body, signal });
       return reply.ok ? await reply.json() : { error: await reply.text() };
     } catch (error) {
-      if (signal?.aborted) return { stopped: true };
+      if (signal?.aborted) break;
       if (count === DELAYS.length) {
         tell(problem, "the program no longer answers: start it again");
         show("failed");
       }
       const delay = DELAYS[Math.min(count, DELAYS.length - 1)];
-      await new Promise((next) => setTimeout(next, delay));
+      await new Promise((next) => {
+        setTimeout(next, delay);
+        signal?.addEventListener("abort", next);
+      });
     }
   }
+  return { stopped: true };
 }
 
-// A draft under way ends before the next is asked; all else is given up for it.
+// A draft under way ends before the next is asked, or is given up after a second; all else is given up at once.
 function change() {
   age += 1;
   clearTimeout(timer);
@@ -53,18 +58,22 @@ function change() {
   // The fragment of the address holds the card and the values that differ from its defaults.
   const values = changed().map((input) => [input.dataset.key, input.value]);
   history.replaceState(null, "", "#" + new URLSearchParams([["card", form.name], ...values]));
-  if (!drafting) {
-    request?.abort();
-    ask("draft");
+  if (drafting) {
+    const under = request;
+    patience ??= setTimeout(() => under.abort(), PATIENCE);
+    return;
   }
+  request?.abort();
+  ask("draft");
 }
 
 async function ask(stage) {
   const mine = age, card = form;
   request = new AbortController();
   drafting = stage === "draft";
-  const reply = await post("/answer", question(stage), request.signal);
+  const reply = await post("/answer", stage, request.signal);
   if (stage !== "draft" && mine !== age) return;
+  patience = clearTimeout(patience);
   drafting = false;
   if (card === form && !reply.stopped) put(reply);
   if (mine !== age) return ask("draft");
@@ -162,7 +171,7 @@ function restore() {
 }
 
 async function save(path, stage, type, ending) {
-  const reply = await post(path, question(stage));
+  const reply = await post(path, stage);
   tell(problem, reply.stopped ? "the values have changed: ask again" : reply.error);
   if (!reply[stage]) return;
   const href = URL.createObjectURL(new Blob([reply[stage]], { type }));
