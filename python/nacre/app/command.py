@@ -42,7 +42,7 @@ def app(
         print(f"port {port} is taken: {server.server_port} in its place")
     print(f"nacre is at {server.url}; Ctrl-C ends it", flush=True)
     if browser:
-        Timer(0.2, webbrowser.open, [server.url + ("#card=own" if own else "")]).start()
+        Timer(0.2, webbrowser.open, [server.url_once + ("#card=own" if own else "")]).start()
     try:
         server.serve_forever()
     except KeyboardInterrupt:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import sys
 import threading
 import time
@@ -10,7 +11,7 @@ import traceback
 import warnings
 from collections import OrderedDict
 from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
 from typing import Any
@@ -45,6 +46,8 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Cache-Control": "no-store",
     "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
 }
 
 
@@ -57,12 +60,15 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
+    request_queue_size = 128  # with http.server's 5, some quick connections wait a second
     allow_reuse_address = sys.platform != "win32"  # where it would share a port that is taken
 
     def __init__(self, port: int, cards: Mapping[str, Card]) -> None:
         super().__init__((ADDRESS, port), Handler)
         self.cards = cards
         self.files = files(cards)
+        self.root = f"/{secrets.token_urlsafe()}"
+        self.once = [f"/{secrets.token_urlsafe()}/"]
         self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
         self.newest: OrderedDict[str, float] = OrderedDict()
         self.lock = threading.Lock()
@@ -71,8 +77,18 @@ class Server(ThreadingHTTPServer):
 
     @property
     def url(self) -> str:
-        """Address of the page."""
-        return f"http://{ADDRESS}:{self.server_port}/"
+        """Address of the page, which nobody guesses."""
+        return f"http://{ADDRESS}:{self.server_port}{self.root}/"
+
+    @property
+    def url_once(self) -> str:
+        """Address that leads to the page once: other accounts see how a browser is started."""
+        return f"http://{ADDRESS}:{self.server_port}{self.once[0]}"
+
+    def path_below(self, path: str) -> str:
+        """Return what follows the secret of a path, or nothing."""
+        root, rest = path[: len(self.root)], path[len(self.root) :]
+        return rest if secrets.compare_digest(root.encode(), self.root.encode()) else ""
 
     def server_bind(self) -> None:
         """Bind the port, without looking up the name of this computer."""
@@ -153,6 +169,8 @@ class Handler(BaseHTTPRequestHandler):
         self.send_response(code)
         self.send_header("Content-Type", f"{kind}; charset=utf-8")
         self.send_header("Content-Length", str(len(body)))
+        if code == 303:
+            self.send_header("Location", f"{self.server.root}/")
         if self.close_connection:
             self.send_header("Connection", "close")
         self.end_headers()
@@ -167,12 +185,16 @@ class Handler(BaseHTTPRequestHandler):
         origin = self.headers.get("Origin")
         if origin is not None and origin.removeprefix("http://") not in self.server.hosts:
             raise Refused(403, "Origin must be this page")
-        if self.command == "GET" and self.path in self.server.files:
-            return self.server.files[self.path]
-        if self.command == "POST" and self.path in STAGES_AT:
-            question = self._question(STAGES_AT[self.path])
+        path = self.server.path_below(self.path)
+        if self.command == "GET" and path in self.server.files:
+            return self.server.files[path]
+        if self.command == "POST" and path in STAGES_AT:
+            question = self._question(STAGES_AT[path])
             return "application/json", self.server.content(question)
-        raise Refused(404, "there is no such page")
+        with suppress(ValueError):
+            self.server.once.remove(self.path)
+            raise Refused(303, "the page is elsewhere")
+        raise Refused(404, "there is no such page: open the address that nacre app has printed")
 
     def _question(self, stages: Collection[str]) -> dict[str, Any]:
         """Return the question in the body of a request."""

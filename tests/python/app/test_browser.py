@@ -191,7 +191,10 @@ def test_a_busy_browser_loses_no_value(opened: Opened) -> None:
 
 def process_at(port: int) -> subprocess.Popen[str]:
     """Return a program that serves the page."""
-    line = f"import nacre.cli; nacre.cli.main(['app', '--no-browser', '--port', '{port}'])"
+    secret = "import secrets; secrets.token_urlsafe = lambda: 'same'"
+    line = (
+        f"{secret}; import nacre.cli; nacre.cli.main(['app', '--no-browser', '--port', '{port}'])"
+    )
     process = subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     while "Ctrl-C" not in process.stdout.readline():
@@ -209,7 +212,7 @@ def ended(process: subprocess.Popen[str]) -> None:
 def test_a_program_that_is_stopped_or_started_again_loses_no_value(browser: Any) -> None:
     port = 8931
     process = process_at(port)
-    page = Opened(browser, f"http://127.0.0.1:{port}/", "#card=indentation")
+    page = Opened(browser, f"http://127.0.0.1:{port}/same/", "#card=indentation")
     try:
         page.wait()
         ended(process)
@@ -231,7 +234,7 @@ def test_a_program_that_is_stopped_or_started_again_loses_no_value(browser: Any)
 
 def test_a_page_waits_for_its_program(browser: Any) -> None:
     process = process_at(port := 8951)
-    page = Opened(browser, f"http://127.0.0.1:{port}/", "#card=indentation")
+    page = Opened(browser, f"http://127.0.0.1:{port}/same/", "#card=indentation")
     try:
         page.wait()
         ended(process)

@@ -27,6 +27,7 @@ from support import Capture, Patch, command
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 
+Reply = tuple[int, dict[str, str], bytes]
 JSON = {"Content-Type": "application/json"}
 
 
@@ -42,9 +43,12 @@ def server() -> Iterator[Server]:
     one.server_close()
 
 
-def ask(
-    server: Server, method: str, path: str, body: bytes | str = b"", **headers: str
-) -> tuple[int, dict[str, str], bytes]:
+def ask(server: Server, method: str, path: str, *body: bytes | str, **headers: str) -> Reply:
+    """Return code, headers and body of the answer to a request below the secret."""
+    return raw(server, method, server.root + path, *body, **headers)
+
+
+def raw(server: Server, method: str, path: str, body: bytes | str = b"", **headers: str) -> Reply:
     """Return code, headers and body of the answer to a request."""
     connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=60)
     names = {name.replace("_", "-"): value for name, value in headers.items()}
@@ -116,6 +120,39 @@ def test_all_other_questions_are_unknown(server: Server, path: str) -> None:
     assert post(server, question(), path)[0] == 404
 
 
+def test_without_the_secret_there_is_no_page(server: Server) -> None:
+    own = server.root
+    assert len(own) > 40
+    assert server.url == f"http://127.0.0.1:{server.server_port}{own}/"
+    for root in ("", own[:-1], f"{own}x", own.swapcase(), "/%C3%A4", f"/x{own}"):
+        codes = [raw(server, "GET", root + path)[0] for path in ("/", "/page.js", "/page.css")]
+        assert codes == [404] * 3
+        assert (
+            raw(server, "POST", f"{root}/answer", question(), Content_Type=JSON["Content-Type"])[0]
+            == 404
+        )
+    with Server(0, {}) as other:
+        assert other.root != own
+
+
+def test_the_address_of_the_browser_leads_to_the_page_once(server: Server) -> None:
+    path = server.url_once.partition(str(server.server_port))[2]
+    assert raw(server, "GET", path, Host="evil.example")[0] == 400
+    code, headers, _ = raw(server, "GET", path)
+    assert (code, headers["Location"]) == (303, f"{server.root}/")
+    assert raw(server, "GET", path)[0] == 404
+
+
+def test_many_connections_at_once_do_not_wait(server: Server) -> None:
+    for _ in range(2):
+        start = time.monotonic()
+        for _ in range(40):
+            socket.create_connection(("127.0.0.1", server.server_port)).close()
+        if (longest := time.monotonic() - start) < 0.9:
+            return
+    raise AssertionError(f"40 connections took {longest:.1f} s")
+
+
 @pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "HEAD", "PATCH", "TRACE"])
 def test_other_methods_are_refused(server: Server, method: str) -> None:
     assert ask(server, method, "/")[0] == 501
@@ -159,7 +196,7 @@ def test_large_questions_are_refused(server: Server) -> None:
 
 def test_questions_without_a_length_are_refused(server: Server) -> None:
     with socket.create_connection(("127.0.0.1", server.server_port), timeout=10) as line:
-        head = f"POST /answer HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n"
+        head = f"POST {server.root}/answer HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n"
         line.sendall(f"{head}Content-Type: application/json\r\n\r\n".encode())
         assert line.recv(100).startswith(b"HTTP/1.1 411")
 
@@ -225,7 +262,7 @@ def test_the_page_has_no_script_style_or_address_of_its_own(server: Server) -> N
     assert re.findall(r"<script[^>]*>(.*?)</script>", page) == [""]
     assert not re.search(r"<style|\sstyle=|\son\w+=", page)
     tags = re.sub(r'data-source="[^"]*"', "", page)  # of the materials, which are text
-    assert re.findall(r'(?:src|href)="([^"]*)"', tags) == ["data:,", "/page.css", "/page.js"]
+    assert re.findall(r'(?:src|href)="([^"]*)"', tags) == ["data:,", "page.css", "page.js"]
     script = ask(server, "GET", "/page.js")[2].decode()
     assert "http" not in script
     assert "eval" not in script.replace("interval", "")
@@ -421,9 +458,9 @@ def test_ctrl_c_ends_at_once() -> None:
         words = ""
         while "Ctrl-C" not in words:
             words = process.stdout.readline()
-        port = int(words.split(":")[2].split("/")[0])
-        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-        connection.request("POST", "/answer", question(card="bearing", stage="full"), JSON)
+        port, root = re.findall(r":(\d+)(/\S+)/;", words)[0]
+        connection = http.client.HTTPConnection("127.0.0.1", int(port), timeout=60)
+        connection.request("POST", f"{root}/answer", question(card="bearing", stage="full"), JSON)
         time.sleep(0.5)  # it solves
         process.send_signal(signal.SIGINT)
         start = time.monotonic()

@@ -71,7 +71,7 @@ async function ask(stage) {
   const mine = age, card = form;
   request = new AbortController();
   drafting = stage === "draft";
-  const reply = await post("/answer", stage, request.signal);
+  const reply = await post("answer", stage, request.signal);
   if (stage !== "draft" && mine !== age) return;
   patience = clearTimeout(patience);
   drafting = false;
@@ -202,8 +202,8 @@ one("[data-testid=finer]").addEventListener("click", () => {
   show("busy", "computing …");
   ask("finer");
 });
-one("[data-testid=report]").addEventListener("click", () => save("/report", "report", "text/html", "html"));
-one("[data-testid=case-file]").addEventListener("click", () => save("/answer", "case", "application/toml", "toml"));
+one("[data-testid=report]").addEventListener("click", () => save("report", "report", "text/html", "html"));
+one("[data-testid=case-file]").addEventListener("click", () => save("answer", "case", "application/toml", "toml"));
 one("[data-testid=copy-link]").addEventListener("click", () =>
   navigator.clipboard.writeText(location.href).then(() => tell(note, "Link copied."), () => tell(note, "The link is in the address bar.")));
 addEventListener("hashchange", restore);
