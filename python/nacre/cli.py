@@ -1,15 +1,18 @@
 """The command ``nacre``.
 
 The command needs the extra ``nacre-contact[cli]``. Its exit code is 0 if everything converged, 1 if
-something failed, 2 for bad input and 130 after Ctrl-C.
+something failed, 2 for bad input, 130 after Ctrl-C and 141 if nobody reads its output any more.
 """
 
 from __future__ import annotations
 
 import io
+import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.util import find_spec
+from typing import TextIO
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -20,13 +23,35 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments
         Arguments after the name of the command; those of the process by default.
     """
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # not every terminal has Greek letters
     try:
-        sys.exit(_run(arguments))
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")  # not every terminal has Greek letters
+        code = _run(arguments)
     except KeyboardInterrupt:
-        sys.exit(130)
+        code = 130
+    except BrokenPipeError:
+        code = 141
+    except OSError as error:
+        code = _fail(str(error), 1)
+    for stream in (sys.stdout, sys.stderr):
+        code = _flushed(stream, code)
+    if code == 130:
+        os._exit(code)  # the end of the interpreter takes half a second
+    sys.exit(code)
+
+
+def _flushed(stream: TextIO | None, code: int) -> int:
+    """Return the exit code once a stream is flushed; one that takes no more is at its end."""
+    try:
+        if stream is not None:
+            stream.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if isinstance(error, BrokenPipeError):
+            return code or 141
+        return code or _fail(f"{stream.name}: {error}", 1)
+    return code
 
 
 def _run(arguments: Sequence[str] | None) -> int:
@@ -53,6 +78,10 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _fail(error.format_message(), 2)
     except (ValueError, ModuleNotFoundError) as error:
         return _fail(str(error), 2)
+    except SystemExit as end:  # of Typer, which meets a closed pipe
+        raise end.__context__ or end from None
+    except BrokenPipeError:
+        raise
     except nacre.ConvergenceError as error:
         return _fail("; ".join([*getattr(error, "__notes__", ()), str(error)]), 1)
     except (MemoryError, OSError) as error:
@@ -60,7 +89,8 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    print(f"nacre: {' '.join(message.split())}", file=sys.stderr)
+    with suppress(OSError):
+        print(f"nacre: {' '.join(message.split())}", file=sys.stderr)
     return code
 
 

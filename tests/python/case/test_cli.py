@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -69,6 +70,55 @@ def test_bad_input_is_one_line_and_exit_code_2(
 def test_bad_input_leaves_no_traceback_in_a_process() -> None:
     code, out, err = run("info", "--threads", "0")
     assert (code, out, err.count("\n")) == (2, "", 1)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pipes and signals of POSIX")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["--version"], ["new", "contact"], ["schema"], ["nothing"]])
+def test_a_closed_pipe_is_silent(arguments: list[str], unbuffered: str) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    stream, code = ("stderr", 2) if arguments == ["nothing"] else ("stdout", 141)
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: write}
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    asked = ("-m", "nacre.cli", *arguments)
+    done = python(*asked, capture_output=False, env=environment, **streams)
+    os.close(write)
+    assert (done.returncode, done.stdout or "", done.stderr or "") == (code, "", "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["--version"], ["new", "contact"], ["schema"]])
+def test_output_to_a_full_disk_is_one_line(arguments: list[str], unbuffered: str) -> None:
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    streams = {"capture_output": False, "stderr": subprocess.PIPE}
+    with open("/dev/full", "w") as full:
+        asked = ("-m", "nacre.cli", *arguments)
+        done = python(*asked, stdout=full, env=environment, **streams)
+    assert (done.returncode, done.stderr.count("\n")) == (1, 1)
+    assert "No space left" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Windows reach the whole console")
+@pytest.mark.parametrize("module", ["typer", "typer.core", "nacre.case.commands", "numpy"])
+def test_ctrl_c_while_modules_load_is_exit_code_130(module: str) -> None:
+    done = python("-c", LOADING, module, "info")
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+
+
+LOADING = """
+import signal, sys
+
+class Interrupt:
+    def find_spec(name, *_):
+        if name == sys.argv[1]:
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupt)
+from nacre.cli import main
+main(sys.argv[2:])
+"""
 
 
 @pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
