@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
+import secrets
+import shutil
+import sys
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -32,6 +34,8 @@ FILMS = (".gif", ".mp4")
 """Endings of films."""
 RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"
 """Marks of a result that `nacre.load` reads, and of a study."""
+TEMPORARY = ".nacre-tmp"
+"""What follows the name in that of a temporary file."""
 MARK, SEAL = 16, 48
 """Bytes of a mark, and of a mark and a digest: the last ones of a file."""
 
@@ -44,14 +48,98 @@ def check_folder(path: Path) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
+    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file.
+
+    A link stays, and a file that is there keeps its mode.
+    """
     check_folder(path)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        temporary = Path(folder) / path.with_suffix(path.suffix.lower()).name
+    path = Path(os.path.realpath(path))
+    check_folder(path)
+    with naming(path), _temporary(path) as temporary:
         yield temporary
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, temporary)
         os.replace(temporary, path)
+        sync_folder(path)
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a file without its ending; of a temporary one, that of its file."""
+    name, mark, _ = path.stem.partition(TEMPORARY)
+    return name[1:] if mark else name
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Name a file in errors of the system that name none, such as those of a full disk."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is not None and error.filename is None:
+            error.filename = str(path)
+        raise
+
+
+def sync_folder(path: Path) -> None:
+    """Write the name of a file to the disk, where the system lets folders be written so."""
+    with suppress(OSError):
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+
+
+@contextmanager
+def _temporary(path: Path) -> Iterator[Path]:
+    """Yield a new file beside another, locked until the end; one that a kill left is removed.
+
+    While another process writes it, it has another name. Its ending is that of the other.
+    """
+    ending, mode = path.suffix.lower(), 0o600 if path.exists() else 0o666
+    names = [f".{path.stem}{TEMPORARY}{own}{ending}" for own in ("", secrets.token_hex(4))]
+    first, second = map(path.with_name, names)
+    with suppress(OSError), first.open("rb+") as left:
+        if _is_ours(left, first, without_locks=False):
+            first.unlink()
+    try:
+        temporary, file = first, _new(first, mode)
+    except OSError:
+        temporary, file = second, _new(second, mode)
+    with file:
+        try:
+            if sys.platform == "win32":
+                file.close()  # an open file cannot be renamed there
+            yield temporary
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+
+
+def _new(path: Path, mode: int) -> IO[bytes]:
+    """Return a new file, locked; whatever has its name is an error."""
+    file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, mode), "rb+")
+    if not _is_ours(file, path, without_locks=True):
+        file.close()
+        raise BlockingIOError(f"{str(path)!r} is taken")
+    return file
+
+
+def _is_ours(file: IO[bytes], path: Path, *, without_locks: bool) -> bool:
+    """Lock an open file, and return whether no other process has it and it still has its name."""
+    if sys.platform == "win32":
+        return without_locks
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
+    except (BlockingIOError, FileNotFoundError):
+        return False
+    except OSError:  # no locks on this disk
+        return without_locks
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path, mark: bytes = RESULT) -> None:

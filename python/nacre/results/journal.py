@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import IO, Any, Self
 
 from nacre._core import __version__
+from nacre._tools.disk import naming, sync_folder
 from nacre.results.values import FORMAT, check_format
 
 Record = dict[str, Any]
@@ -52,6 +53,7 @@ class Journal:
                 self._file.truncate(end)
                 if end == 0:
                     _append(self._file, HEAD)
+                    sync_folder(self.path)
             except BaseException:
                 self._file.close()
                 raise
@@ -131,14 +133,15 @@ def _checksum(text: bytes) -> bytes:
 def _append(file: IO[bytes], line: bytes) -> None:
     """Write a line to the disk, whole or not at all."""
     end = os.fstat(file.fileno()).st_size
-    try:
-        while line:
-            line = line[file.write(line) :]
-        os.fsync(file.fileno())
-    except BaseException:
-        with suppress(OSError):
-            file.truncate(end)
-        raise
+    with naming(Path(file.name)):
+        try:
+            while line:
+                line = line[file.write(line) :]
+            os.fsync(file.fileno())
+        except BaseException:
+            with suppress(OSError):
+                file.truncate(end)
+            raise
 
 
 def _lock(file: IO[bytes], kind: str) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._tools.disk import name_of
 from nacre._tools.markup import Markup, Parts, text_of
 from nacre._tools.units import rounded, symbol
 from nacre.results import charts, display, svg, tables
@@ -101,7 +102,7 @@ def write(
     path: Path, results: Sequence[Reported], case: str | None = None, inputs: Rows = ()
 ) -> None:
     """Write the report of results of one case, whose file is `case`; its name is that of `path`."""
-    path.write_text(text(path.stem, results, case, inputs), encoding="utf-8")
+    path.write_text(text(name_of(path), results, case, inputs), encoding="utf-8")
 
 
 def text(

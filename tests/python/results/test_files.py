@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import os
+import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -237,6 +240,84 @@ def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
 
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from nacre._tools.disk import replacing
+
+with replacing(Path(sys.argv[1])) as temporary:
+    temporary.write_text("half")
+    print(temporary, flush=True)
+    if sys.argv[2:]:
+        input()
+    else:
+        os.kill(os.getpid(), signal.SIGKILL)
+"""
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="modes, links and signals of POSIX")
+
+
+@POSIX
+@pytest.mark.parametrize("ending", [".nc", ".vtr", ".csv", ".png", ".html"])
+def test_the_next_save_removes_what_a_kill_left(ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"a{ending}"
+    done = python("-c", KILLED, path)
+    assert done.returncode == -signal.SIGKILL
+    assert [file.name for file in tmp_path.iterdir()] == [f".a.nacre-tmp{ending}"]
+    solved("line").save(path)
+    assert list(tmp_path.iterdir()) == [path]
+    assert b"nacre-tmp" not in path.read_bytes()
+
+
+@POSIX
+def test_two_saves_at_once_are_whole(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    asked = [sys.executable, "-c", KILLED, str(path), "waits"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(asked, stdin=pipe, stdout=pipe, text=True) as other:
+        assert other.stdout is not None
+        other.stdout.readline()
+        solved("line").save(path)
+        assert path.read_text().startswith("along")
+        assert len(list(tmp_path.iterdir())) == 2
+        other.communicate("\n")
+    assert path.read_text() == "half"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@POSIX
+def test_a_file_keeps_its_mode_and_a_link_its_target(tmp_path: Path) -> None:
+    path, link = tmp_path / "a.csv", tmp_path / "b" / "link.csv"
+    link.parent.mkdir()
+    link.symlink_to(path)
+    assert solved("line").save(link) == link
+    assert path.stat().st_mode & 0o777 == 0o666 & ~umask()
+    for mode in (0o640, 0o600, 0o444):
+        path.write_text("old")
+        path.chmod(mode)
+        solved("line").save(link)
+        assert link.readlink() == path
+        assert path.stat().st_mode & 0o777 == mode
+        assert path.read_text().startswith("along")
+        path.chmod(0o600)
+    assert list(link.parent.iterdir()) == [link]
+
+
+def umask() -> int:
+    """Return the bits that modes of new files lack."""
+    os.umask(mask := os.umask(0))
+    return mask
+
+
+@POSIX
+def test_what_others_put_in_the_way_is_not_written(tmp_path: Path) -> None:
+    path, victim = tmp_path / "a.csv", tmp_path / "victim"
+    victim.write_text("old")
+    (tmp_path / ".a.nacre-tmp.csv").symlink_to(victim)
+    solved("line").save(path)
+    assert victim.read_text() == "old"
+    assert path.read_text().startswith("along")
+
+
 FULL = """
 import os, resource, signal, sys
 import nacre
@@ -260,12 +341,14 @@ for name, options in {
     try:
         solution.save(name, **options)
     except OSError as error:
+        assert error.filename == os.path.realpath(name), error
         print(name, error.errno)
 report = solution.report
 case = {"shape": nacre.Sphere(5e-3), "body": report.body, "grid": report.grid}
 try:
     nacre.sweep(case, {"load": [5.0]}, outputs=["pressure"], store="study.nc", progress=False)
 except OSError as error:
+    assert os.path.basename(error.filename) == "study.journal", error
     print("study", error.errno)
 """
 
