@@ -197,10 +197,15 @@ def new(
         print(texts[kind], end="")
         return
     try:
-        with file.open("x", encoding="utf-8") as stream:
-            stream.write(texts[kind])
+        stream = file.open("x", encoding="utf-8")
     except FileExistsError:
         raise _case_error(f"{str(file)!r} exists already: give a new file") from None
+    try:
+        with stream:
+            stream.write(texts[kind])
+    except OSError as error:
+        file.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(file)) from error
 
 
 @app.command(cls=Command)

@@ -87,6 +87,23 @@ def test_a_closed_pipe_is_silent(arguments: list[str], unbuffered: str) -> None:
     assert (done.returncode, done.stdout or "", done.stderr or "") == (code, "", "")
 
 
+FULL = """
+import resource, signal
+from nacre.cli import main
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))  # as little room as on a full disk
+main(["new", "contact", "case.toml"])
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of a file")
+def test_a_new_case_that_a_full_disk_has_no_room_for_leaves_no_file(tmp_path: Path) -> None:
+    done = python("-c", FULL, folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
+    assert "'case.toml'" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("arguments", [["--version"], ["new", "contact"], ["schema"]])
