@@ -43,9 +43,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _flushed(stream: TextIO | None, code: int) -> int:
     """Return the exit code once a stream is flushed; one that takes no more is at its end."""
+    if stream is None:
+        return code
     try:
-        if stream is not None:
-            stream.flush()
+        stream.flush()
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if isinstance(error, BrokenPipeError):

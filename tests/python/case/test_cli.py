@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 import xarray
@@ -79,7 +80,7 @@ def test_a_closed_pipe_is_silent(arguments: list[str], unbuffered: str) -> None:
     read, write = os.pipe()
     os.close(read)
     stream, code = ("stderr", 2) if arguments == ["nothing"] else ("stdout", 141)
-    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: write}
+    streams: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: write}
     environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
     asked = ("-m", "nacre.cli", *arguments)
     done = python(*asked, capture_output=False, env=environment, **streams)
@@ -109,7 +110,7 @@ def test_a_new_case_that_a_full_disk_has_no_room_for_leaves_no_file(tmp_path: Pa
 @pytest.mark.parametrize("arguments", [["--version"], ["new", "contact"], ["schema"]])
 def test_output_to_a_full_disk_is_one_line(arguments: list[str], unbuffered: str) -> None:
     environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
-    streams = {"capture_output": False, "stderr": subprocess.PIPE}
+    streams: dict[str, Any] = {"capture_output": False, "stderr": subprocess.PIPE}
     with open("/dev/full", "w") as full:
         asked = ("-m", "nacre.cli", *arguments)
         done = python(*asked, stdout=full, env=environment, **streams)
