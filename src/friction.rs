@@ -33,7 +33,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, Termination};
 use crate::error::Result;
 use crate::model::surface::Surface;
 
@@ -129,6 +129,33 @@ impl Contact {
         progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
         self.run(|| Session::new(self, shape, *options)?.solve(next, last, progress))
+    }
+
+    /// The moves in turn, the first one from nothing, whose errors nobody asks for: only the first one is made on coarser cells, too,
+    /// to start from there. `None` where `progress` breaks.
+    ///
+    /// # Errors
+    /// As [`Contact::slide`], and [`Error::NotConverged`](crate::Error::NotConverged).
+    pub(crate) fn friction_cycle<'m>(
+        &self,
+        shape: &dyn Surface,
+        moves: impl Iterator<Item = Move<'m>> + Send,
+        options: &FrictionOptions,
+        progress: &mut FrictionProgress,
+    ) -> Result<Option<Vec<FrictionSolution>>> {
+        self.run(|| {
+            let session = Session::new(self, shape, *options)?.without_errors();
+            let mut solutions: Vec<FrictionSolution> = Vec::new();
+            for next in moves {
+                let last = solutions.last().map(|solution| Last { solution, is_own: true });
+                let solution = session.solve(next, last, progress)?;
+                if solution.report.termination == Termination::Stopped {
+                    return Ok(None);
+                }
+                solutions.push(solution.require_converged()?);
+            }
+            Ok(Some(solutions))
+        })
     }
 
     fn history<'m>(

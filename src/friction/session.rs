@@ -5,6 +5,7 @@
 //! that are mixed from those of the sweeps before.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -86,6 +87,10 @@ pub(super) struct Session<'a> {
     coupled: bool,
     /// Whether solutions are compared with those of alternatives of the shape.
     compares: bool,
+    /// Whether solutions that go on from others are to state their errors, for which they are made on coarser cells, too.
+    states_errors: bool,
+    /// Pressures of [`Session::sticking`] in a cycle.
+    sticking: RefCell<Vec<(Motion, Array2<f64>)>>,
 }
 
 /// The solution on cells of twice the length, or why there is none.
@@ -108,7 +113,14 @@ impl<'a> Session<'a> {
             tangential,
             options,
             compares: true,
+            states_errors: true,
+            sticking: RefCell::default(),
         })
+    }
+
+    /// This session for solutions whose errors nobody asks for.
+    pub(super) fn without_errors(self) -> Self {
+        Self { compares: false, states_errors: false, ..self }
     }
 
     /// The next move after `last`, which steady rolling does not depend on.
@@ -147,14 +159,15 @@ impl<'a> Session<'a> {
             stopped: false,
             progress,
         };
-        let half = self.halved(next, last, &mut course);
+        let is_halved = self.states_errors || last.is_none();
+        let half = if is_halved { self.halved(next, last, &mut course) } else { None };
         // A history goes on from a copy to the bit, and copies do not have the cells of twice the length.
         let start = half.as_ref().and_then(|half| half.as_deref().ok()).filter(|_| last.is_none());
         let pressures = [earlier, known];
         let (normal, solved) =
             self.settle(&problem, &motion, friction, pressures, start, &mut course)?;
         let mut solution = self.finish(&problem, friction, (normal, solved), course)?;
-        if let Some(half) = half.filter(|_| solution.report.converged()) {
+        if let Some(half) = half.filter(|_| self.states_errors && solution.report.converged()) {
             // A pressure on which tractions act is found from one before, without nested grids.
             if let (Ok(half), None) = (&half, solution.normal.report.discretisation) {
                 solution.normal.report.discretisation =
@@ -480,8 +493,9 @@ impl<'a> Session<'a> {
                 .min(START.max(self.options.tolerance))
                 .max(REACHABLE);
             let options = FrictionOptions { tolerance, ..self.options };
-            let session =
-                Session { compares: false, ..Session::new(&contact, self.shape, options)? };
+            let states_errors = self.states_errors;
+            let session = Session::new(&contact, self.shape, options)?;
+            let session = Session { compares: false, states_errors, ..session };
             let coarse = |friction: &Friction| coarse_friction(friction, grid, contact.grid());
             let mut progress = |_: &FrictionReport| course.tell();
             let last_half = match last.map(|last| last.solution) {
@@ -601,16 +615,32 @@ impl<'a> Session<'a> {
             approach: None,
             ..*motion
         };
-        let options = Options { tolerance: START, ..Options::default() };
-        let sticking = self
-            .contact
-            .solve_alone(self.shape, &less, &options, &mut |_| ControlFlow::Continue(()))?;
-        let more = (&normal.pressure - &sticking.pressure).mapv(|p| p.max(0.0));
+        let sticking = self.sticking(less)?;
+        let more = (&normal.pressure - &sticking).mapv(|p| p.max(0.0));
         let bound = friction.times(&more);
         for (traction, component) in tractions.iter_mut().zip(forces) {
             *traction = bound.mapv(|q| q * component / force);
         }
         Ok(tractions)
+    }
+
+    /// Pressure under the load that sticks, within the tolerance of a start. A cycle has the same loads again and again.
+    fn sticking(&self, motion: Motion) -> Result<Array2<f64>> {
+        let is_near = |known: &Motion| {
+            let [load, other] = [motion, *known].map(|motion| motion.load.unwrap_or(0.0));
+            (load - other).abs() <= START * load && known.with_load(load) == motion
+        };
+        if let Some((_, pressure)) = self.sticking.borrow().iter().find(|(known, _)| is_near(known))
+        {
+            return Ok(pressure.clone());
+        }
+        let options = Options { tolerance: START, ..Options::default() };
+        let go_on = &mut |_: &Report| ControlFlow::Continue(());
+        let solution = self.contact.solve_alone(self.shape, &motion, &options, go_on)?;
+        if !self.states_errors {
+            self.sticking.borrow_mut().push((motion, solution.pressure.clone()));
+        }
+        Ok(solution.pressure)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::error::{
     Error, Result, fraction, none_negative, not_negative, refuse_if, require, same_shape,
 };
 use crate::friction::{
-    FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Step, TangentialMotion,
+    FrictionOptions, FrictionReport, FrictionSolution, Move, Step, TangentialMotion,
 };
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::surface::{OffsetShape, Surface};
@@ -617,22 +617,13 @@ impl<S: Surface> WearSession<S> {
         &self,
         depth: &[Array2<f64>; 2],
         solution: &Solution,
-        moves: impl Iterator<Item = Move<'m>>,
+        moves: impl Iterator<Item = Move<'m>> + Send,
         options: &FrictionOptions,
         progress: &mut Progress,
     ) -> Result<Option<Vec<FrictionSolution>>> {
         let worn = self.worn(depth);
         let tell = &mut |_: &FrictionReport| progress(&solution.report);
-        let mut solutions: Vec<FrictionSolution> = Vec::new();
-        for next in moves {
-            let last = solutions.last().map(|solution| Last { solution, is_own: true });
-            let solution = self.plan.friction_step(&worn, next, options, last, tell)?;
-            if solution.report.termination == Termination::Stopped {
-                return Ok(None);
-            }
-            solutions.push(solution.require_converged()?);
-        }
-        Ok(Some(solutions))
+        self.plan.friction_cycle(&worn, moves, options, tell)
     }
 
     /// Pressure that is to be expected at the end of a step: it goes on as in the step before, and no further where the step
