@@ -23,8 +23,8 @@ TERMS = 60, 100  # of the pressure of a line: the last is below 1e-6 of the firs
 THIN = 0.02
 SEEDS = 20261130, 20261201
 COUNTS = {
-    "line": {"one coat": 32, "layers": 16, "counterbodies": 14, "rigid bases": 8},
-    "ball": {"layers": 8, "counterbodies": 7, "rigid bases": 3},
+    "line": {"lines": 32, "layers": 16, "counterbodies": 14, "rigid-bases": 8},
+    "ball": {"layers": 8, "counterbodies": 7, "rigid-bases": 3},
 }
 SHARES = np.linspace(0, 1, 5)  # of its thickness, at which a layer is searched
 
@@ -316,7 +316,7 @@ def drawn(kind, counts, seed):
     for family, count in counts.items():
         for _ in range(count):
             layers, counter = int(random.integers(2, 4)) if family == "layers" else 1, None
-            is_rigid = family == "rigid bases"
+            is_rigid = family == "rigid-bases"
             rows = drawn_layers(random, layers, thickness(random, 0.02 if is_rigid else 0.005))
             if family == "counterbodies":
                 counter = drawn_layers(random, int(random.integers(1, 3)), thickness(random))

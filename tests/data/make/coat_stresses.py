@@ -122,7 +122,7 @@ class Ball:
         return young / (1 - nu**2)
 
     def excess(self, kappa):
-        """Return what the substrate adds to the response of a bare coat; kappa is wavenumber * h."""
+        """Return what the substrate adds to the response of a coat; kappa is wavenumber * h."""
         nu = self.materials[0][1]
         top = airy_functions(np.zeros_like(kappa), kappa)
         first, third = (
