@@ -1,9 +1,9 @@
-"""Largest stresses of coats below lines, ellipses and rollers, of stacks and of both bodies.
+"""Largest stresses of coats below balls, lines, ellipses and rollers, of stacks and of both bodies.
 
-References are those of a program that shares nothing with nacre (coat_shapes.json) and, for
-ellipses and rollers, finer cells (coat_ellipses.json). Errors are those of the grids that nacre
-chooses and of line grids of 64 to 128 cells anywhere below the contact, over the value or a fifth
-of the peak pressure, the larger.
+References are those of programs that share nothing with nacre (coat_stresses.json of balls,
+coat_shapes.json) and, for ellipses and rollers, finer cells (coat_ellipses.json). Errors are those
+of the grids that nacre chooses and of line grids of 64 to 128 cells anywhere below the contact,
+over the value or a fifth of the peak pressure, the larger.
 """
 
 import json
@@ -27,7 +27,7 @@ SMALL = 0.2
 """Part of the peak pressure below which a stress need not be known more exactly."""
 OF_REFERENCE = 5e-4
 """Error of the programs, whose largest values are those of sampled places and depths."""
-FAMILIES = ["lines", "layers", "counterbodies", "rigid-bases", "ellipses", "rollers"]
+FAMILIES = ["balls", "lines", "layers", "counterbodies", "rigid-bases", "ellipses", "rollers"]
 
 
 class Extreme(NamedTuple):
@@ -44,11 +44,26 @@ class Extreme(NamedTuple):
         return self.error <= self.stated + self.of_reference
 
 
+def read(name: str) -> dict[str, list[Case]]:
+    content: dict[str, list[Case]] = json.loads((DATA / name).read_text(encoding="utf-8"))
+    return content
+
+
+def ball(case: Case) -> Case:
+    """Return a case of coat_stresses.json in the form of the other files."""
+    names = {name: case[f"coat_{name}"] for name in ("tension", "von_mises")}
+    values = names | {"interface_shear": case["interface_shear"]}
+    known = {name: value for name, value in values.items() if value is not None}
+    layers, extremes = [[case["thickness"], *case["coat"]]], {"body 0": known}
+    return case | {"family": "balls", "contact": "ball", "layers": layers, "extremes": extremes}
+
+
 def cases(family: str) -> list[Case]:
     """Return the contacts of a family."""
+    if family == "balls":
+        return [ball(case) for case in read("coat_stresses.json")["random"]]
     names = ("coat_shapes.json", "coat_ellipses.json")
-    found = [json.loads((DATA / name).read_text(encoding="utf-8"))["cases"] for name in names]
-    return [case for each in found for case in each if case["family"] == family]
+    return [case for name in names for case in read(name)["cases"] if case["family"] == family]
 
 
 def coated(layers: list[list[float]], substrate: list[float] | None) -> nacre.HalfSpace:
