@@ -152,6 +152,8 @@ def odd_bessel(kappa, count):
 class Line:
     """A contact of half-width a of a parabola of a radius between two bodies."""
 
+    FAR = np.geomspace(3.1, 12, 40)  # coats on stiff layers bend: tension as far as 5 a
+
     def __init__(self, a, radius, bodies, terms=None):
         self.a, self.bodies = a, bodies
         top = min(body.top for body in bodies)
@@ -190,10 +192,18 @@ class Line:
 
     def stress(self, member, x, z, number, friction):
         """In-plane xx and zz, yy along the line, and xz: in a layer of a body."""
+        x = np.asarray(x)
+        is_far = abs(x) > 3 * self.a
+        if is_far.any() and not is_far.all():  # far places need closer wavenumbers
+            both = np.empty((4, len(x)))
+            for part in (is_far, ~is_far):
+                both[:, part] = self.stress(member, x[part], z, number, friction)
+            return both
         body = self.bodies[member]
         nu = body.materials[number][1]
         end = DEEP / max(z, body.top)
-        ends = np.linspace(0, end, int(np.ceil(end * self.a / 2)) + 1)
+        reach = 12 if is_far.any() else 3
+        ends = np.linspace(0, end, int(np.ceil(end * self.a * (1 + reach) / 8)) + 1)
         s, w = gauss([0, *np.geomspace(1e-4, 1, 8) * ends[1], *ends[2:]], 6)
         wave = body.waves(s, z, number)
         if number == 0:
@@ -201,7 +211,7 @@ class Line:
             wave = {key: value - bare[key] for key, value in wave.items()}
         weights = w / np.pi * self.transform(s * self.a)
         wave = {key: value * weights for key, value in wave.items()}
-        total, x = np.zeros((3, len(x))), np.asarray(x)
+        total = np.zeros((3, len(x)))
         distances, which = np.unique(abs(x), return_inverse=True)
         for part in np.array_split(np.arange(len(s)), len(s) // 4000 + 1):
             phase = s[part, None] * distances
@@ -218,6 +228,8 @@ class Line:
 
 class Ball(coat_stresses.Ball):
     """A contact of radius a of a ball of a radius between two bodies."""
+
+    FAR = ()
 
     def __init__(self, a, radius, bodies):
         self.bodies = bodies
@@ -245,12 +257,12 @@ class Ball(coat_stresses.Ball):
         return found
 
 
-def places(thickness):
+def places(thickness, far):
     """Coordinates over the half-width: to a thousandth of the thickness towards the edge."""
     least = 1e-3 * thickness
     inside, outside = -np.geomspace(0.3, least, 40), np.geomspace(least, 0.4, 40)
     edge = 1 + np.concatenate([inside, [0], outside])
-    return np.concatenate([np.linspace(1e-3, 0.68, 30), edge, np.linspace(1.45, 3, 18)])
+    return np.concatenate([np.linspace(1e-3, 0.68, 30), edge, np.linspace(1.45, 3, 18), far])
 
 
 def shear(stress):
@@ -264,7 +276,7 @@ def largest(contact, member, number, friction):
     """Find the largest stresses in a layer, among depths that are `SHARES` of its thickness."""
     body, a = contact.bodies[member], contact.a
     above, h = body.faces[number], body.thicknesses[number]
-    x = a * places(body.top / a)
+    x = a * places(body.top / a, contact.FAR)
     x = np.concatenate([-x[::-1], x])
     best = dict.fromkeys(QUANTITIES, (-np.inf, 0, 0.0))
     for share in SHARES:
