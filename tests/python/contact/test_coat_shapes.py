@@ -183,7 +183,7 @@ def test_errors_are_small(family: str, claim: Callable[[str, float], None]) -> N
 
 @pytest.mark.slow
 def test_stated_errors_hold(claim: Callable[[str, float], None]) -> None:
-    """Of lines, some are beyond theirs: half a cell outside the edge tension is off by up to 1.5 %."""
+    """Those that do not are tensions half a cell outside the edge of lines, off by up to 1.5 %."""
     beyond = {family: [each for each in tried(family) if not each.is_within] for family in CLAIMS}
     for family, missed in beyond.items():
         assert len(missed) <= 0.04 * len(tried(family)), lines_of(missed)
