@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::field::{Extreme, Largest, LargestWithError, Peak, Percent, SmallerCells, Tensor};
 use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
-use super::outside_grid::OutsideGrid;
+use super::outside_grid::{OutsideGrid, SAMPLED};
 use super::outside_patch::OutsidePatch;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::{
@@ -1009,9 +1009,6 @@ fn three(tensor: &Tensor) -> [f64; OF_LAYER] {
     let [first, _, last] = tensor.principal();
     [tensor.von_mises(), first, 0.5 * (first - last)]
 }
-
-/// Cells of a plane of which one is evaluated before all are: a prime number, so that their columns differ from row to row.
-pub(super) const SAMPLED: usize = 61;
 
 /// A search for the largest values at a depth around points of the edge of the contact.
 struct EdgeSearch<'s, 'a, 'b> {
