@@ -60,6 +60,13 @@ AXES = (
     frozenset("z|height|heights|h|topography|elevation|höhe|hauteur|altura|altezza".split("|")),
 )
 """First words of headings of x, y and z."""
+BESIDE = frozenset(
+    "achse asse axe axis coord coordinate coordinates corrected direction dir eje in lateral "
+    "measured normal of profile surface the vertical".split()
+)
+"""Words of headings that leave places and heights what they are."""
+DROPS = frozenset({"drop", "drops", "relief"})
+"""First words of headings of drops."""
 NUMBERED = frozenset("|i|id|index|line|n|no|nr|number|point|profile|row|scan|trace".split("|"))
 """Headings of a column that counts."""
 TIMES = frozenset(
@@ -464,8 +471,16 @@ def _extra_columns(table: Table, counts: tuple[int, int]) -> int | None:
 
 
 def first_words(headings: Sequence[Column]) -> list[str]:
-    """Return the first word of each heading, in small letters."""
-    return [re.split(r"[\s_:.-]", column.name.lower().strip())[0] for column in headings]
+    """Return the first word of each heading, in small letters.
+
+    It is the whole heading where another word may change what a place, a height or a drop is.
+    """
+    lengths, firsts = DROPS.union(*AXES), []
+    for name in (column.name.lower().strip() for column in headings):
+        first, *others = re.split(r"[\W_]+", name)
+        is_certain = first not in lengths or {*others} <= lengths | BESIDE | {""}
+        firsts.append(first if is_certain else name)
+    return firsts
 
 
 def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] | None:

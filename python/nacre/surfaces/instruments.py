@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
-from nacre._tools.text import is_text
+from nacre._tools.text import is_text, listed
 from nacre._tools.typing import Topography
 from nacre.surfaces.heights import Heights, Text
 
@@ -89,7 +89,7 @@ def _first_content(
                 with reader(_x3p_copy(path) if reader.format() == "x3p" else str(path)) as opened:
                     return take(opened)
             except Unfound as error:
-                raise ValueError(f"{error}, got {channel!r}") from None
+                raise ValueError(f"{error}; the file is {str(path)!r}") from None
             except Other as error:
                 raise ValueError(f"{str(path)!r} {error}") from None
             except Exception as error:  # readers raise anything for a damaged or another file
@@ -126,7 +126,7 @@ class Other(ValueError):
 
 
 class Unfound(ValueError):
-    """A channel that a file does not have."""
+    """A channel that a file does not have, or several of which none is certain."""
 
 
 def _table(text: Text, channel: str | int | None) -> Heights:
@@ -151,7 +151,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
         with AscReader(io.StringIO(text.plain())) as reader:
             heights = _heights(reader, channel)
     except Unfound as error:
-        raise ValueError(f"{error}, got {channel!r}") from None
+        raise ValueError(f"{error}; the file is {str(text.path)!r}") from None
     except Exception:
         return own._replace(is_metric=False)
     if heights.unit is None and heights.spacing is None:
@@ -187,6 +187,7 @@ class Channel(Protocol):
     dim: int
     physical_sizes: Sequence[float] | None
     nb_grid_pts: Sequence[int]
+    unit: object
 
     def topography(self, **sizes: tuple[float, ...]) -> Any:
         """Return a map or a line."""
@@ -196,7 +197,6 @@ class Reader(Protocol):
     """A reader of SurfaceTopography."""
 
     channels: Sequence[Channel]
-    default_channel: Channel
 
 
 def _heights(reader: Reader, channel: str | int | None) -> Heights:
@@ -212,7 +212,7 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
     if not maps:
         names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
-    map_channel = _channel(reader, channel)
+    map_channel = _channel(reader, channel, 2)
     # A file without sizes needs some, which are not used.
     lacking = map_channel.physical_sizes is None and map_channel.nb_grid_pts is not None
     sizes = {"physical_sizes": tuple(map(float, map_channel.nb_grid_pts))} if lacking else {}
@@ -225,11 +225,7 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
     lines = [item for item in reader.channels if item.dim == 1]
     if not lines:
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
-    line_names = {item.name for item in lines}
-    default = reader.default_channel
-    profile = lines[0] if channel is None and default not in lines else _channel(reader, channel)
-    if profile.dim != 1:
-        raise Unfound(f"height must be one of the channels {', '.join(sorted(line_names))}")
+    profile = _channel(reader, channel, 1)
     line = profile.topography()
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
@@ -264,15 +260,25 @@ def of_topography(surface: Topography) -> Heights:
     return Heights(heights, spacing, unit, False)
 
 
-def _channel(reader: Reader, choice: str | int | None) -> Channel:
-    channels = list(reader.channels)
-    names = [channel.name for channel in channels]
-    if choice is None:
-        return reader.default_channel
-    if isinstance(choice, str):
-        if choice in names:
-            return channels[names.index(choice)]
-    elif 0 <= choice < len(channels):
-        return channels[choice]
-    choices = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
-    raise Unfound(f"channel must be one of {choices}")
+def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
+    """Return the channel that is chosen, or the only one with heights of this dimension."""
+    channels = [(number, item) for number, item in enumerate(reader.channels) if item.dim == dim]
+    heights = [(k, item) for k, item in channels if _kind(item) == "height"] or channels
+    chosen = [item for k, item in channels if choice in (k, item.name)]
+    if choice is None and len(heights) == 1:
+        return heights[0][1]
+    if choice is not None and len(chosen) == 1:
+        return chosen[0]
+    texts = []
+    for number, item in heights if choice is None else channels:
+        size = " x ".join(map(str, item.nb_grid_pts)) if item.nb_grid_pts else "of unknown size"
+        unit = getattr(item, "data_unit", None) or item.unit
+        texts.append(f"{number} {item.name!r} ({size}, {f'in {unit}' if unit else 'no unit'})")
+    keyword = "channel" if dim == 2 else "height"
+    given, got = ("given, as ", "") if choice is None else ("", f", got {choice!r}")
+    raise Unfound(f"{keyword} must be {given}one of {listed(texts)}{got}")
+
+
+def _kind(channel: Channel) -> str:
+    """Return what a channel holds; heights where SurfaceTopography does not say."""
+    return str(getattr(getattr(channel, "data_kind", None), "value", "height"))

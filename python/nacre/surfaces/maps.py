@@ -66,7 +66,8 @@ def read_map(
     detrend : {"plane", "none", "mean", "quadratic"}, optional
         Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
     channel : str or int, optional
-        Channel of the instrument, or table of the text, that is read: its name or its number.
+        Channel of the instrument, or table of the text, that is read: its name or its number;
+        needed where a file has several with heights.
     transpose : bool, optional
         Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one
         line for each y: that needs ``transpose=True``. The first line then has the smallest y. A

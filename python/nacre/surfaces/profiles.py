@@ -17,6 +17,7 @@ from nacre._tools.typing import Vector
 from nacre._tools.units import written
 from nacre.surfaces.heights import (
     AXES,
+    DROPS,
     LEAST_MEASURED,
     METRES,
     NUMBERED,
@@ -32,8 +33,6 @@ from nacre.surfaces.heights import (
 
 Array = npt.NDArray[np.float64]
 
-DROPS = frozenset({"drop", "drops", "relief"})
-"""First words of headings of drops."""
 SIMPACK = (".prr", ".prw")
 """Endings of Simpack's profiles of rails and of wheels."""
 IN_BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
