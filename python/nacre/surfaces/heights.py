@@ -111,6 +111,8 @@ class Heights(NamedTuple):
     """Units of columns, in which the numbers are no more."""
     note: str = ""
     """What a message adds to the name of the file."""
+    has_metres: bool = False
+    """Whether the distances are in metres, and not in the unit of the heights."""
 
 
 def npy(path: Path) -> Heights:
@@ -130,7 +132,7 @@ def npy(path: Path) -> Heights:
     values, name = heights.astype(np.float64), str(path)
     if (columns := _coordinates([], values)) is not None:
         points, steps = _grid(path, values[:, _xyz_columns(name, columns)])
-        return Heights(points, steps, None, False)
+        return _lengths(Heights(points, steps, None, False), values[:, columns[:2]])
     return Heights(_matrix(name, [], values, "array"), None, None)
 
 
@@ -356,7 +358,11 @@ class Text:
             axis_units = tuple(str(unit) for unit in units)
             steps = steps[0] * (x / z), steps[1] * (y / z)
             return Heights(heights, steps, units[2], False, axis_units)
-        return Heights(heights, steps, self.unit(), False)
+        if x and y:
+            steps = steps[0] * x, steps[1] * y
+            return Heights(heights, steps, self.unit(), False, has_metres=True)
+        points = Heights(heights, steps, self.unit(), False)
+        return _lengths(points, values[:, columns[:2]], self.spacing())
 
     def matrix(self, table: Table) -> Heights:
         """Return a matrix of heights, as what it cannot be is refused."""
@@ -560,6 +566,14 @@ def _grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
     if not np.array_equal(heights[places[0], places[1]], points[:, 2], equal_nan=True):
         raise ValueError(f"{str(path)!r} must have one height at each place, got several")
     return heights, (steps[0], steps[1])
+
+
+def _lengths(points: Heights, places: Array, spacing: tuple[float, float] | None = None) -> Heights:
+    """Return points with another spacing, if any, where their places count from 0 or 1."""
+    if all(is_counter(_distinct(column)) for column in places.T):
+        note = ", whose x and y count points and are no lengths,"
+        return points._replace(spacing=spacing, note=note)
+    return points
 
 
 def _rises_evenly(values: Array) -> bool:

@@ -110,14 +110,14 @@ def read_map(
         heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
     factor = _metres(name, surface, unit)
     is_known = unit is not None or surface.unit is not None
-    note = surface.note
+    note, scale = surface.note, 1.0 if surface.has_metres else factor
     del surface  # the map in the file's unit
     heights = heights * factor
     is_spacing_given = spacing is not None
     if spacing is None:
         if sides is None:
             raise ValueError(f"spacing must be given: {name}{note} does not have it")
-        spacing = sides[0] * factor, sides[1] * factor
+        spacing = sides[0] * scale, sides[1] * scale
     _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
     heights = _filled_heights(name, heights, detrend, wraps)

@@ -195,6 +195,12 @@ def _sizes(
                 f"unit= can be a pair"
             )
         sizes.append(size)
+    is_named = usual or (table.headings and table.headings[place].unit)
+    if not (is_named or isinstance(unit, tuple)) and is_counter(np.array(table.rows)[:, place]):
+        raise ValueError(
+            f"unit must be a pair, of positions and heights: the positions of {str(path)!r} count "
+            f"points, and may be no lengths; x= can name other ones"
+        )
     return sizes
 
 

@@ -10,6 +10,7 @@ import pytest
 import scipy.io
 
 import nacre
+from support import assert_close
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -44,3 +45,52 @@ def test_of_two_arrays_one_is_named(ending: str, tmp_path: Path) -> None:
     assert nacre.HeightMap.read(path, channel=1, **options) == one
     name = "scan/height" if ending == "h5" else "height"
     assert nacre.HeightMap.read(path, channel=name, **options) == one
+
+
+def points(first: int, step: float, names: str) -> str:
+    lines = [
+        f"{first + step * i:g} {first + step * j:g} {HEIGHTS[i, j] / 1e-9:.17g}"
+        for i in range(16)
+        for j in range(12)
+    ]
+    return "\n".join([names, *lines] if names else lines) + "\n"
+
+
+@pytest.mark.parametrize("ending", ["txt", "csv", "xyz", "npy"])
+@pytest.mark.parametrize("first", [0, 1])
+@pytest.mark.parametrize("names", ["", "i j z", "x y height"])
+def test_numbers_of_points_are_no_lengths(
+    ending: str, first: int, names: str, tmp_path: Path
+) -> None:
+    path = tmp_path / f"a.{ending}"
+    path.write_text(points(first, 1, names), encoding="utf-8")
+    if ending == "npy":
+        np.save(path, np.loadtxt(path, skiprows=len(names[:1])))
+    message = "spacing must be given: .* x and y count points and are no lengths"
+    with pytest.raises(ValueError, match=message):
+        nacre.HeightMap.read(path, unit="nm")
+    read = nacre.HeightMap.read(path, unit="nm", spacing=4.9e-6, detrend="none")
+    assert_close(read.heights, HEIGHTS, rtol=1e-12)
+    path.with_suffix(".txt").write_text(points(first, 1, "# spacing: 4900 4900\nx y z"))
+    read = nacre.HeightMap.read(path.with_suffix(".txt"), unit="nm")
+    assert read.spacing == pytest.approx((4.9e-6, 4.9e-6))
+
+
+def test_places_with_a_unit_keep_it(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text(points(0, 1, "x/um y/um z"), encoding="utf-8")
+    read = nacre.HeightMap.read(path, unit="nm", detrend="none")
+    assert read.spacing == pytest.approx((1e-6, 1e-6))
+    assert_close(read.heights, HEIGHTS, rtol=1e-12)
+
+
+@pytest.mark.parametrize("names", ["", "x,height"])
+def test_numbers_of_stations_are_no_places(names: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    lines = [f"{k},{-k * k / 100:g}" for k in range(12)]
+    path.write_text("\n".join([*names.split(" "), *lines]), encoding="utf-8")
+    options: dict[str, Any] = {"x": 0, "height": 1}
+    with pytest.raises(ValueError, match=r"unit must be a pair, .* count points"):
+        nacre.SampledProfile.read(path, unit="mm", **options)
+    read = nacre.SampledProfile.read(path, unit=("mm", "mm"), **options)
+    assert read.x[-1] == pytest.approx(11e-3)

@@ -97,7 +97,9 @@ def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -
     kept = np.random.default_rng(5).permutation(len(points))[:200]
     np.savetxt(tmp_path / "a.xyz", points[kept], fmt="%.17g")
     with pytest.warns(nacre.NacreWarning, match="80 of 280 heights"):
-        read = nacre.HeightMap.read(tmp_path / "a.xyz", unit="m", detrend="none").heights
+        read = nacre.HeightMap.read(
+            tmp_path / "a.xyz", unit="m", spacing=1.0, detrend="none"
+        ).heights
     measured = np.zeros(heights.shape, dtype=bool)
     measured.ravel()[kept] = True
     assert read[measured].tobytes() == heights[measured].tobytes()
