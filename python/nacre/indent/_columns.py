@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import name_or_number
-from nacre._tools.text import Column, unit_of
+from nacre._tools.text import Column, listed, unit_of
 from nacre.indent._text import Table
 
 Array = npt.NDArray[np.float64]
@@ -292,10 +292,12 @@ def chosen_tables(
             return curves or dict(enumerate(tables))
         if len(curves) == 1:
             return curves
-    listing = ", ".join(
-        f"{number} {f'{table.title[:60]!r} ' if table.title else ''}({len(table.rows)} rows from "
-        f"line {table.lines[0]})"
-        for number, table in enumerate(tables)
+    listing = listed(
+        [
+            f"{number} {f'{table.title[:60]!r} ' if table.title else ''}({len(table.rows)} rows "
+            f"from line {table.lines[0]})"
+            for number, table in enumerate(tables)
+        ]
     )
     requirement = "given" if segment is None else f"one of the file's, got {segment}"
     raise ValueError(

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of, unit_of
+from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of, listed, unit_of
 
 Array = npt.NDArray[np.float64]
 
@@ -123,8 +123,9 @@ def npy(path: Path) -> Heights:
     except OSError:
         raise
     except Exception as error:  # a damaged head is read as Python
-        raise ValueError(f"{str(path)!r} must hold an array of NumPy's: {error}") from error
-    if heights.ndim != 2 or heights.dtype.kind not in "biuf":
+        reason = " ".join(str(error).split())[:200]
+        raise ValueError(f"{str(path)!r} must hold an array of NumPy's: {reason}") from error
+    if heights.ndim != 2 or not heights.size or heights.dtype.kind not in "biuf":
         raise ValueError(
             f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape "
             f"{heights.shape}"
@@ -279,7 +280,7 @@ class Text:
                         f"{str(self.path)!r} must hold numbers, line {number} has {wrong[0][:60]!r}"
                     )
             raise ValueError(f"{str(self.path)!r} must hold numbers, got none")
-        texts = dict(lines)
+        texts, defined = dict(lines), self._defined_columns()
         for table in self.tables:
             # Marks at the end of every line separate nothing.
             blank = min(_trailing_marks(texts.get(n, ""), mark) for n in table.lines)
@@ -287,18 +288,20 @@ class Text:
                 table.rows = np.array(table.rows)[:, :-blank]
                 table.headings = table.headings[: table.width]
             if not table.headings:
-                table.headings = self._defined_columns(table.width)
+                table.headings = defined[: table.width] if len(defined) >= table.width else []
 
-    def _defined_columns(self, width: int) -> list[Column]:
+    def _defined_columns(self) -> list[Column]:
         """Return the columns that a line ``ColumnDef=X,Y`` names, as that of a MiniProf does."""
         for _, line in self.above:
             if match := COLUMNS.fullmatch(line):
-                names = [name.strip() for name in match[1].split(",")]
-                return [column_of(name) for name in names[:width]] if len(names) >= width else []
+                return [column_of(name.strip()) for name in match[1].split(",")]
         return []
 
-    def channel_table(self, channel: str | int | None) -> Table:
-        """Return the table that a channel names, or the only one that the head describes."""
+    def channel_table(self, channel: str | int | None, keyword: str = "channel") -> Table:
+        """Return the table that a channel names, or the only one that the head describes.
+
+        `keyword` names the choice in errors; "" where there is none.
+        """
         if len(self.tables) == 1:
             if channel is not None:
                 ending = self.path.suffix
@@ -314,15 +317,15 @@ class Text:
         first = self.tables[0]
         if channel is None and counts and _extra_columns(first, counts) is not None:
             return first
-        listing = ", ".join(
+        tables = [
             f"{k} ({table.title[:60]!r}, {len(table.rows)} lines of {table.width} numbers from "
             f"line {table.lines[0]})"
             for k, table in enumerate(self.tables)
-        )
+        ]
         requirement = "given" if channel is None else f"one of these, got {channel!r}"
+        demand = f"{keyword} must be {requirement}" if keyword else "the file must hold one table"
         raise ValueError(
-            f"channel must be {requirement}: {str(self.path)!r} has {len(self.tables)} tables, "
-            f"{listing}"
+            f"{demand}: {str(self.path)!r} has {len(self.tables)} tables, {listed(tables)}"
         )
 
     def counts(self) -> tuple[int, int] | None:

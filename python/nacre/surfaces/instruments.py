@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import re
 import warnings
@@ -30,6 +29,9 @@ HEADED = ("di", "ezd", "nmm", "mnt")
 """Formats without a mark at the beginning, which may begin with text."""
 NANOSCOPE = re.compile(rb"[\\?]\*File list")
 """First line of a NanoScope image, whose ending is a number."""
+RATIO, LEAST_UNPACKED = 100, 1 << 24
+"""Most bytes that a part of an X3P may unpack to: over those of the file, or these. Heights of 8
+bytes a point shrink to a half or a tenth."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -162,22 +164,35 @@ def _table(text: Text, channel: str | int | None) -> Heights:
 def _x3p_copy(path: Path) -> str | io.BytesIO:
     """Return an X3P whose name of the standard has a hyphen, and that has no folder.
 
-    Other programs write a dash there, and put all files in a folder.
+    Other programs write a dash there, and put all files in a folder. What the index, main.xml, does
+    not name is left out.
     """
-    with contextlib.suppress(Exception), zipfile.ZipFile(path) as archive:
-        names = archive.namelist()
-        main = next(name for name in names if name.rpartition("/")[2] == "main.xml")
-        folder = main.removesuffix("main.xml")
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w") as copy:
-            for name in names:
+    buffer = io.BytesIO()
+    try:
+        with zipfile.ZipFile(path) as archive, zipfile.ZipFile(buffer, "w") as copy:
+            members = {item.filename: item for item in archive.infolist()}
+            main = next(name for name in members if name.rpartition("/")[2] == "main.xml")
+            folder, largest = main.removesuffix("main.xml"), RATIO * path.stat().st_size
+            named: set[bytes] = set()
+            for name in (main, *(name for name in members if name != main)):
+                if name != main and name.removeprefix(folder).encode() not in named:
+                    continue
+                if members[name].file_size > max(largest, LEAST_UNPACKED):
+                    raise Other(
+                        f"must hold no file out of proportion: {name[:60]!r} would unpack to "
+                        f"{members[name].file_size} bytes"
+                    )
                 content = archive.read(name)
                 if name == main:
                     content = REVISION.sub(rb"\1ISO5436 - 2000\2", content)
+                    named = {text.strip() for text in re.findall(b">([^<>]*)<", content)}
                 copy.writestr(name.removeprefix(folder), content)
-        buffer.seek(0)
-        return buffer
-    return str(path)
+    except Other:
+        raise
+    except Exception:  # the reader says what is wrong
+        return str(path)
+    buffer.seek(0)
+    return buffer
 
 
 class Channel(Protocol):

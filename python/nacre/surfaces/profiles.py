@@ -138,7 +138,7 @@ def _table(
     height: str | int | None,
 ) -> tuple[Array, Array]:
     """Return positions and drops of a table [m]."""
-    table = Text.of(path).channel_table(None)
+    table = Text.of(path).channel_table(None, keyword="")
     values, words = np.array(table.rows), first_words(table.headings)
     if len(values) < 2 or table.width < 2:
         raise ValueError(

@@ -1,5 +1,8 @@
 """Where a file leaves a choice, readers take the only certain one, or list what there is."""
 
+import time
+import tracemalloc
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -94,3 +97,56 @@ def test_numbers_of_stations_are_no_places(names: str, tmp_path: Path) -> None:
         nacre.SampledProfile.read(path, unit="mm", **options)
     read = nacre.SampledProfile.read(path, unit=("mm", "mm"), **options)
     assert read.x[-1] == pytest.approx(11e-3)
+
+
+@pytest.mark.parametrize(
+    "read", [nacre.HeightMap.read, nacre.SampledProfile.read, nacre.indent.read]
+)
+def test_of_many_tables_ten_are_named_in_linear_time(
+    read: Callable[[Path], object], tmp_path: Path
+) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("\n\nx\n".join(["1 2\n3 4\n5 7"] * 8000), encoding="utf-8")
+    start = time.process_time()
+    with pytest.raises(
+        ValueError, match=r"must (be given|hold one table): .*8000 tables.* and 7990 more"
+    ) as error:
+        read(path)
+    assert time.process_time() - start < 10  # of the processor, some 1; quadratic work takes 20
+    assert len(str(error.value)) < 1000
+
+
+@pytest.mark.parametrize("shape", [(0, 5), (5, 0)])
+def test_an_array_without_numbers_is_refused(shape: tuple[int, int], tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", np.zeros(shape))
+    with pytest.raises(
+        ValueError, match="must hold a real matrix of heights, got float64 of shape"
+    ):
+        nacre.HeightMap.read(tmp_path / "a.npy", spacing=1.0)
+
+
+def test_a_head_of_brackets_is_refused_in_a_line(tmp_path: Path) -> None:
+    content = b"\x93NUMPY\x01\x00" + (18_000).to_bytes(2, "little") + 18_000 * b"("
+    (tmp_path / "a.npy").write_bytes(content)
+    with pytest.raises(ValueError, match="must hold an array of NumPy's") as error:
+        nacre.HeightMap.read(tmp_path / "a.npy", spacing=1.0)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("is_named", [False, True])
+def test_what_unpacks_out_of_proportion_is_not_unpacked(is_named: bool, tmp_path: Path) -> None:
+    source = zipfile.ZipFile(Path(__file__).parents[2] / "data/cases/x3p_en_dash/surface.x3p")
+    with source, zipfile.ZipFile(tmp_path / "a.x3p", "w", zipfile.ZIP_DEFLATED) as made:
+        parts = {name: source.read(name) for name in source.namelist()}
+        for name, content in (parts | {"bindata/data.bin" if is_named else "a": b""}).items():
+            made.writestr(name, content or bytes(50_000_000))
+    tracemalloc.start()
+    try:
+        if is_named:
+            with pytest.raises(ValueError, match=r"'bindata/data.bin' would unpack to 50000000"):
+                nacre.HeightMap.read(tmp_path / "a.x3p")
+        else:
+            assert nacre.HeightMap.read(tmp_path / "a.x3p").heights.shape == (9, 7)
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()
