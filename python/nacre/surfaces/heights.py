@@ -479,17 +479,17 @@ def _extra_columns(table: Table, counts: tuple[int, int]) -> int | None:
     return None
 
 
-def first_words(headings: Sequence[Column]) -> list[str]:
-    """Return the first word of each heading, in small letters.
+def is_doubtful(column: Column) -> bool:
+    """Return whether a heading names a place, a height or a drop beside an unknown word."""
+    words, lengths = {*re.split(r"[\W_]+", column.name.lower()), ""}, DROPS.union(*AXES)
+    return bool(words & lengths) and not words <= lengths | BESIDE | {""}
 
-    It is the whole heading where another word may change what a place, a height or a drop is.
-    """
-    lengths, firsts = DROPS.union(*AXES), []
-    for name in (column.name.lower().strip() for column in headings):
-        first, *others = re.split(r"[\W_]+", name)
-        is_certain = first not in lengths or {*others} <= lengths | BESIDE | {""}
-        firsts.append(first if is_certain else name)
-    return firsts
+
+def first_words(headings: Sequence[Column]) -> list[str]:
+    """Return the first word of each heading, in small letters; all where it `is_doubtful`."""
+    names = [column.name.lower().strip() for column in headings]
+    pairs = zip(headings, names, strict=True)
+    return [name if is_doubtful(top) else re.split(r"[\s_:.-]", name)[0] for top, name in pairs]
 
 
 def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] | None:
@@ -505,6 +505,7 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
         if _are_places(values[:, pair]):
             indices = [k for k in range(width) if k not in pair]
             indices = [k for k in indices if not (k == 0 and is_counter(values[:, 0]))]
+            indices = [k for k in indices if not (headings and is_doubtful(headings[k]))]
             return (*pair, *indices) if len(indices) == 1 else pair
     return None
 

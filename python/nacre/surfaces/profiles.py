@@ -26,6 +26,7 @@ from nacre.surfaces.heights import (
     Text,
     first_words,
     is_counter,
+    is_doubtful,
     is_strict,
     metres,
     without_sentinels,
@@ -153,6 +154,8 @@ def _table(
         columns = [k for k in columns if k not in timed]
         is_clear = table.width - counted == 2 or len(columns) < 2
         first = (columns[0] if timed and columns else counted) if is_clear else None
+        if words and first is not None and is_doubtful(table.headings[first]):
+            first = None
     place = _column(path, table, "x", x, first)
     is_drop = drop is not None or (height is None and _word_column(words, DROPS) is not None)
     if is_drop:

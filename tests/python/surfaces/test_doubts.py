@@ -150,3 +150,100 @@ def test_what_unpacks_out_of_proportion_is_not_unpacked(is_named: bool, tmp_path
         assert tracemalloc.get_traced_memory()[1] < 20_000_000
     finally:
         tracemalloc.stop()
+
+
+def lines(names: str, *columns: Any, times: int = 1) -> str:
+    """Return a table with a heading, if any, as often as asked for."""
+    table = [" ; ".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True)]
+    return "\n\n".join(times * ["\n".join([names, *table] if names else table)])
+
+
+ROW, LINE = (grid.ravel() for grid in np.indices((16, 12)))
+X, Y, Z = 0.5 * ROW, 0.5 * LINE, HEIGHTS.ravel() / 1e-9
+PLACE = 0.3 * np.arange(20.0)
+CROWN = PLACE**2 / 100
+DOUBTS: dict[str, tuple[str, dict[str, Any], str]] = {
+    "no unit": (lines("x;y;z", X, Y, Z), {}, "unit must be given: .* names none"),
+    "pixel numbers": (lines("x;y;z", ROW, LINE, Z), {"unit": "nm"}, "spacing must be given"),
+    "two heights": (lines("x;y;z;z", X, Y, Z, Z), {"unit": "nm"}, "name the columns x, y and z in"),
+    "an unknown word": (lines("x;y;z error", X, Y, Z), {"unit": "nm"}, "name the columns x, y and"),
+    "another one": (
+        lines("x;y;error of z", X, Y, Z),
+        {"unit": "nm"},
+        "name the columns x, y and z",
+    ),
+    "two tables": (lines("x;y;z", X, Y, Z, times=2), {}, "channel must be given: .* 0 .* 1 "),
+}
+OF_PROFILES: dict[str, tuple[str, dict[str, Any], str]] = {
+    "no unit": (lines("x;drop", PLACE, CROWN), {}, "unit must be one of .* names none"),
+    "pixel numbers": (lines("x;drop", np.arange(20), CROWN), {"unit": "mm"}, "unit must be a pair"),
+    "two drops": (
+        lines("x;drop;drop", PLACE, CROWN, CROWN),
+        {"unit": "mm"},
+        "drop= or height= must name",
+    ),
+    "an unknown word": (
+        lines("x;drop error", PLACE, CROWN),
+        {"unit": "mm"},
+        "drop= or height= must",
+    ),
+    "of the place": (lines("x error;drop", PLACE, CROWN), {"unit": "mm"}, "x= must name a column"),
+    "two tables": (lines("x;drop", PLACE, CROWN, times=2), {"unit": "mm"}, "must hold one table"),
+}
+OF_CURVES: dict[str, tuple[str, dict[str, Any], str]] = {
+    "no unit": (lines("depth;force", PLACE, CROWN), {}, "units must be given: .* names no unit"),
+    "pixel numbers": (lines(";force (N)", np.arange(20), CROWN), {}, "depth must be given"),
+    "two depths": (
+        lines("depth (nm);depth (nm);force (N)", PLACE, PLACE, CROWN),
+        {},
+        "depth must be given: 2 columns have the name",
+    ),
+    "an unknown word": (
+        lines("Film depth (nm);Load (N)", PLACE, CROWN),
+        {},
+        "depth must be given: .* 0 'Film depth .nm.', 1 'Load",
+    ),
+    "of the force": (
+        lines("Depth (nm);Frame load (N)", PLACE, CROWN),
+        {},
+        "force must be given: .* 1 'Frame load",
+    ),
+    "two tables": (
+        lines("Depth (nm);Load (N)", PLACE, CROWN, times=2),
+        {},
+        "segment must be given: .* 2 tables, 0 .* 1 ",
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("read", "ending", "case"),
+    [
+        *(
+            (nacre.HeightMap.read, end, row)
+            for end in ("txt", "csv", "xyz", "dat")
+            for row in DOUBTS.values()
+        ),
+        *(
+            (nacre.SampledProfile.read, end, row)
+            for end in ("txt", "csv")
+            for row in OF_PROFILES.values()
+        ),
+        *((nacre.indent.read, end, row) for end in ("txt", "csv") for row in OF_CURVES.values()),
+    ],
+)
+def test_each_reader_takes_what_is_certain_or_lists(
+    read: Callable[..., object], ending: str, case: tuple[str, dict[str, Any], str], tmp_path: Path
+) -> None:
+    text, options, message = case
+    path = tmp_path / f"a.{ending}"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=message):
+        read(path, **options)
+
+
+@pytest.mark.parametrize("ending", ARCHIVES)
+def test_archives_of_heights_name_no_unit(ending: str, tmp_path: Path) -> None:
+    ARCHIVES[ending](tmp_path / f"one.{ending}", ONE)
+    with pytest.raises(ValueError, match=r"unit must be given: .* names none"):
+        nacre.HeightMap.read(tmp_path / f"one.{ending}", spacing=1e-7)
