@@ -157,7 +157,10 @@ class Pair:
                 f"got {self.second!r}"
             )
         if not among(self.arrangement, get_args(Arrangement)):
-            raise ValueError(f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}')
+            raise ValueError(
+                'arrangement must be "O" (back to back, DB), "X" (face to face, DF) or "tandem" '
+                f"(DT), got {self.arrangement!r}"
+            )
         read_fields(self)
         above("distance", self.distance)
         most = FARTHEST * max(bearing.pitch for bearing in self.bearings)
