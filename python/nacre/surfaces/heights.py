@@ -85,6 +85,8 @@ SENTINELS = (
 OFF, LEAST_JITTERED = 0.05, 12
 """Largest distance of a point from its place on the grid, in steps, and the fewest points of a grid
 that is recognised although its points are off."""
+ZYGO = b"Zygo XYZ Data File"
+"""Beginning of Zygo's text form."""
 COLUMNS = re.compile(r"ColumnDef\s*=\s*(.+)", re.IGNORECASE)
 MARKS = frozenset("\"'*!>?")
 """Signs with which programs mark points, as that of the MiniProf does with a quotation mark."""
@@ -135,6 +137,30 @@ def npy(path: Path) -> Heights:
         points, steps = _grid(path, values[:, _xyz_columns(name, columns)])
         return _lengths(Heights(points, steps, None, False), values[:, columns[:2]])
     return Heights(_matrix(name, [], values, "array"), None, None)
+
+
+def zygo(path: Path) -> Heights | None:
+    """Return the heights of Zygo's text form; None where a file is another one.
+
+    Its fourth line ends in the numbers of columns and rows, and the seventh number of the eighth
+    one is the size of a pixel [m], 0 where it is not known. Between lines ``#`` stand column, row
+    and height [µm] of each point.
+    """
+    with path.open("rb") as file:
+        if file.read(len(ZYGO)) != ZYGO:
+            return None
+    lines = [line.strip() for line in decoded(path).splitlines()]
+    try:
+        size, start = float(lines[7].split()[6]), lines.index("#") + 1
+        rows = [line.split(maxsplit=2) for line in lines[start : lines.index("#", start)]]
+        points = [[i, j, "nan" if z == "No Data" else z] for i, j, z in rows]
+        cells = tuple(map(int, lines[3].split()[2:4]))
+        heights, steps = _grid(path, np.array(points, dtype=np.float64))
+    except (ValueError, IndexError) as error:
+        raise ValueError(f"{str(path)!r} must be whole, as Zygo's XYZ: {error}") from error
+    if heights.shape != cells or steps != (1.0, 1.0):
+        raise ValueError(f"{str(path)!r} must have {cells} points, got {heights.shape}")
+    return Heights(heights, (size, size) if size > 0 else None, "µm", has_metres=True)
 
 
 def text(path: Path, channel: str | int | None = None) -> Heights:

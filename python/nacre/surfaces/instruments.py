@@ -108,6 +108,8 @@ def _first_content(
     if is_plain and (surface := table(bool(likely))) is not None:
         return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
+        if ending == "nc":
+            reasons_text += "; HeightMap(xarray.open_dataarray(path), spacing) takes other NetCDF"
         raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
     maybe = [cls for cls in instruments if match[cls] == MagicMatch.MAYBE and cls not in likely]
     surface = read_first([cls for cls in maybe if not is_plain or cls.format() in HEADED])

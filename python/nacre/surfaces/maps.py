@@ -146,6 +146,8 @@ def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tupl
         if channel is not None:
             raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
         surface = _heights.npy(path)
+    elif channel is None and (points := _heights.zygo(path)) is not None:
+        surface = points
     elif ending in (".csv", ".xyz"):
         surface = _heights.text(path, channel)
     else:

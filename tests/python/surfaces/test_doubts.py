@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 import pytest
 import scipy.io
+import xarray
 
 import nacre
 from support import assert_close
@@ -247,3 +248,46 @@ def test_archives_of_heights_name_no_unit(ending: str, tmp_path: Path) -> None:
     ARCHIVES[ending](tmp_path / f"one.{ending}", ONE)
     with pytest.raises(ValueError, match=r"unit must be given: .* names none"):
         nacre.HeightMap.read(tmp_path / f"one.{ending}", spacing=1e-7)
+
+
+def test_zygos_text_has_the_size_of_a_pixel(tmp_path: Path) -> None:
+    head = ["Zygo XYZ Data File - Format 1", "0 8", "0 0", "5 3 16 12", '"a"', '"b"', '"c"']
+    head += [
+        "0 0.5 5.79e-07 0.08 1 0 {} 1767225600",
+        "16 12 0 0",
+        "0 0",
+        "1 1",
+        '1 " "',
+        "1 0",
+        "#",
+    ]
+    body = [f"{5 + i} {3 + j} {HEIGHTS[i, j] / 1e-6:.12f}" for j in range(12) for i in range(16)]
+    for ending in ("xyz", "txt"):
+        path = tmp_path / f"a.{ending}"
+        text = "\r\n".join([*head, *body, "#"]) + "\r\n"
+        path.write_text(text.format(4.9e-6), encoding="ascii")
+        read = nacre.HeightMap.read(path, detrend="none")
+        assert read.spacing == (4.9e-6, 4.9e-6)
+        assert_close(read.heights, HEIGHTS, rtol=1e-8)
+        path.write_text(text.format(4.9e-6).replace(body[7], "12 3 No Data"), encoding="ascii")
+        with pytest.warns(nacre.NacreWarning, match="1 of 192 heights are missing"):
+            nacre.HeightMap.read(path)
+        path.write_text(text.format(0), encoding="ascii")
+        with pytest.raises(ValueError, match="spacing must be given"):
+            nacre.HeightMap.read(path)
+        for damaged in (
+            text[:200],
+            text.format(1).replace("16 12", "16 13"),
+            text.replace("8 7 ", "x 7 "),
+        ):
+            path.write_text(damaged.replace("{}", "1e-6"), encoding="ascii")
+            with pytest.raises(ValueError, match=r"must be whole|must have \(16, 13\) points"):
+                nacre.HeightMap.read(path)
+
+
+def test_another_netcdf_says_who_reads_it(tmp_path: Path) -> None:
+    xarray.DataArray(HEIGHTS, dims=("x", "y")).to_netcdf(tmp_path / "a.nc")
+    with pytest.raises(ValueError, match=r"HeightMap\(xarray.open_dataarray\(path\), spacing\)"):
+        nacre.HeightMap.read(tmp_path / "a.nc")
+    array: Any = xarray.open_dataarray(tmp_path / "a.nc")
+    np.testing.assert_array_equal(nacre.HeightMap(array, 1e-6).heights, HEIGHTS)
