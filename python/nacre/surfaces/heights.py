@@ -599,9 +599,9 @@ def _grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
 
 
 def _lengths(points: Heights, places: Array, spacing: tuple[float, float] | None = None) -> Heights:
-    """Return points with another spacing, if any, where their places count from 0 or 1."""
-    if all(is_counter(_distinct(column)) for column in places.T):
-        note = ", whose x and y count points and are no lengths,"
+    """Return points with another spacing, if any, where x or y counts from 0 or 1."""
+    if any(is_counter(_distinct(column)) for column in places.T):
+        note = ", whose x or y counts points and is no length,"
         return points._replace(spacing=spacing, note=note)
     return points
 

@@ -5,6 +5,7 @@ import tracemalloc
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import h5py
@@ -14,6 +15,7 @@ import scipy.io
 import xarray
 
 import nacre
+from nacre.surfaces.instruments import _channel
 from support import assert_close
 
 Arrays = dict[str, np.ndarray[Any, Any]]
@@ -70,7 +72,7 @@ def test_numbers_of_points_are_no_lengths(
     path.write_text(points(first, 1, names), encoding="utf-8")
     if ending == "npy":
         np.save(path, np.loadtxt(path, skiprows=len(names[:1])))
-    message = "spacing must be given: .* x and y count points and are no lengths"
+    message = "spacing must be given: .* x or y counts points and is no length"
     with pytest.raises(ValueError, match=message):
         nacre.HeightMap.read(path, unit="nm")
     read = nacre.HeightMap.read(path, unit="nm", spacing=4.9e-6, detrend="none")
@@ -166,6 +168,7 @@ CROWN = PLACE**2 / 100
 DOUBTS: dict[str, tuple[str, dict[str, Any], str]] = {
     "no unit": (lines("x;y;z", X, Y, Z), {}, "unit must be given: .* names none"),
     "pixel numbers": (lines("x;y;z", ROW, LINE, Z), {"unit": "nm"}, "spacing must be given"),
+    "numbers of lines": (lines("x;y;z", X, LINE, Z), {"unit": "nm"}, "spacing must be given"),
     "two heights": (lines("x;y;z;z", X, Y, Z, Z), {"unit": "nm"}, "name the columns x, y and z in"),
     "an unknown word": (lines("x;y;z error", X, Y, Z), {"unit": "nm"}, "name the columns x, y and"),
     "another one": (
@@ -291,3 +294,22 @@ def test_another_netcdf_says_who_reads_it(tmp_path: Path) -> None:
         nacre.HeightMap.read(tmp_path / "a.nc")
     array: Any = xarray.open_dataarray(tmp_path / "a.nc")
     np.testing.assert_array_equal(nacre.HeightMap(array, 1e-6).heights, HEIGHTS)
+
+
+def channel(name: str, kind: str = "height", dim: int = 2, unit: str | None = "m") -> Any:
+    size, kinds = (4, 3)[:dim], SimpleNamespace(value=kind)
+    return SimpleNamespace(name=name, dim=dim, nb_grid_pts=size, unit=unit, data_kind=kinds)
+
+
+def test_of_several_channels_the_only_one_of_heights_is_taken() -> None:
+    retrace, trace = channel("Height (retrace)"), channel("Height")
+    error, line = channel("Vertical deflection", "deflection", unit="V"), channel("Line", dim=1)
+    one = SimpleNamespace(channels=[error, trace, line])
+    assert _channel(one, None, 2) is trace
+    assert _channel(one, None, 1) is line
+    assert _channel(one, 0, 2) is _channel(one, "Vertical deflection", 2) is error
+    two = SimpleNamespace(channels=[error, trace, retrace, trace])
+    given = r"channel must be given, as one of 1 'Height' \(4 x 3, in m\), 2 'Height \(retrace\)'"
+    for choice, words in ((None, given), ("Height", "got 'Height'"), (7, "one of 0 'Vert.*got 7")):
+        with pytest.raises(ValueError, match=words):
+            _channel(two, choice, 2)

@@ -234,9 +234,9 @@ def test_a_surface_that_was_read_can_be_pressed(tmp_path: Path) -> None:
         ("a.npy", "1,2\n3,4\n", {"spacing": 1.0}, "must hold an array of NumPy's"),
         (
             "a.xyz",
-            "0 0 1\n1 0 1\n0 3 1\n1 3 2\n",
+            "0 0 1\n1.5 0 1\n0 3 1\n1.5 3 2\n",
             {},
-            "unit must be given: .*1 and its sides 1 x 3",
+            "unit must be given: .*1 and its sides 1.5 x 3",
         ),
         ("a.xyz", "0 0 1\n1 nan 1\n0 1 1\n", {}, "finite x and y at every point"),
         ("a.xyz", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n1 1 2\n", {}, "one height at each place"),
