@@ -144,7 +144,8 @@ def _table(
     if len(values) < 2 or table.width < 2:
         raise ValueError(
             f"{str(path)!r} must have two columns, positions and drops or heights, of two rows or "
-            f"more, got {table.width} of {len(values)}"
+            f"more, got {table.width} of {len(values)}; SDF, SMD and PRF with one column are not "
+            f"read: export positions and heights"
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _word_column(words, AXES[0])

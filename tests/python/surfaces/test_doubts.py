@@ -193,6 +193,7 @@ OF_PROFILES: dict[str, tuple[str, dict[str, Any], str]] = {
     ),
     "of the place": (lines("x error;drop", PLACE, CROWN), {"unit": "mm"}, "x= must name a column"),
     "two tables": (lines("x;drop", PLACE, CROWN, times=2), {"unit": "mm"}, "must hold one table"),
+    "one column": (lines("", CROWN), {"unit": "mm"}, "SDF, SMD and PRF with one column are"),
 }
 OF_CURVES: dict[str, tuple[str, dict[str, Any], str]] = {
     "no unit": (lines("depth;force", PLACE, CROWN), {}, "units must be given: .* names no unit"),
