@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import difflib
 import html
+import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import resources
@@ -162,13 +163,23 @@ def _card(name: str, entry: Mapping[str, Any]) -> Card:
     return Card(name, entry["title"], entry["kind"], elastic, numbers, source, unsourced)
 
 
-def unknown(name: object, known: Iterable[str]) -> str:
-    """Return a message about a name that no card has, with those that are close."""
-    lower = {title.casefold(): title for title in known}
-    close = difflib.get_close_matches(str(name).casefold(), lower)
-    names = ", ".join(repr(lower[folded]) for folded in close)
-    hint = f"; close to it are {names}" if close else ""
-    return f"name must be one of nacre.materials, got {name!r}{hint}"
+def _similar(name: object, known: Mapping[str, Card]) -> str:
+    """Return in words which cards have a name close to this, or have it in their titles; or ""."""
+    text, lower = str(name).casefold(), {card.casefold(): card for card in known}
+    close = [lower[folded] for folded in difflib.get_close_matches(text, lower)]
+    word = re.compile(rf"(?<!\w){re.escape(text or '-')}(?!\w)")
+    titled = [card.name for card in known.values() if word.search(card.title.casefold())]
+    titled = [card for card in titled if card not in close]
+    hints = [f"close to it are {', '.join(map(repr, close))}"] if close else []
+    if titled:
+        hints.append(f"it is in the title of {', '.join(map(repr, titled))}")
+    return "; ".join(hints)
+
+
+def unknown(name: object, known: Mapping[str, Card]) -> str:
+    """Return a message about a name that no card has, with those that are close or have it."""
+    hint = _similar(name, known)
+    return f"name must be one of nacre.materials, got {name!r}" + (f"; {hint}" if hint else "")
 
 
 class Materials(Mapping[str, Card]):
@@ -188,10 +199,12 @@ class Materials(Mapping[str, Card]):
         return {name: _card(name, entry) for name, entry in tomllib.loads(text).items()}
 
     def __getitem__(self, name: str) -> Card:
-        """Return the card of a name, or raise a `KeyError` that names those that are close."""
+        """Return the card of a name, or raise a `KeyError` that names others."""
         if isinstance(name, str) and name in self._cards:
             return self._cards[name]
-        raise KeyError(unknown(name, self._cards))
+        is_like = _similar(name, self._cards)
+        names = "" if is_like else f"; the names are {', '.join(map(repr, self._cards))}"
+        raise KeyError(unknown(name, self._cards) + names)
 
     def __iter__(self) -> Iterator[str]:
         """Return the names in the order of the file."""

@@ -5,6 +5,7 @@ They hold for smooth homogeneous bodies, on a contact that is small compared wit
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Self, overload
 
@@ -16,14 +17,26 @@ Places = float | Vector | Matrix
 __all__ = ["Ellipse", "Line", "Point", "contact_modulus", "equivalent_radius", "relative_radii"]
 
 
+def _or_straight(radius: float | None) -> float | None:
+    """Return a radius, None where it is infinite."""
+    return None if isinstance(radius, float) and math.isinf(radius) else radius
+
+
+def _straight_pair(radii: tuple[float | None, float | None]) -> tuple[float | None, float | None]:
+    """Return radii, None where they are infinite; what is no pair stays as it is."""
+    if isinstance(radii, tuple | list) and len(radii) == 2:
+        return _or_straight(radii[0]), _or_straight(radii[1])
+    return radii
+
+
 def equivalent_radius(radius: float | None, counter_radius: float | None = None) -> float:
     """Equivalent radius of two surfaces in contact, in one direction: ``1/R = 1/R_1 + 1/R_2``.
 
     Parameters
     ----------
     radius : float or None
-        Radius R_1 [m]: above 0 where the surface is convex, below 0 where it is concave; None where
-        it is straight.
+        Radius R_1 [m]: above 0 where the surface is convex, below 0 where it is concave; None or
+        infinite where it is straight.
     counter_radius : float, optional
         Radius R_2 of the other surface [m], likewise; below 0 for a raceway of an outer ring or a
         groove.
@@ -36,7 +49,7 @@ def equivalent_radius(radius: float | None, counter_radius: float | None = None)
     Raises
     ------
     ValueError
-        If a radius is 0 or not finite, or 1/R is not above 0.
+        If a radius is 0 or not a number, or 1/R is not above 0.
 
     Examples
     --------
@@ -47,7 +60,7 @@ def equivalent_radius(radius: float | None, counter_radius: float | None = None)
     >>> round(nacre.hertz.equivalent_radius(5e-3, -30e-3), 9)
     0.006
     """
-    return core.equivalent_radius(radius, counter_radius)
+    return core.equivalent_radius(_or_straight(radius), _or_straight(counter_radius))
 
 
 def relative_radii(
@@ -63,7 +76,7 @@ def relative_radii(
     ----------
     radii : tuple of float or None
         Radii of one surface along its principal axes x and y [m]: above 0 where it is convex,
-        below 0 where it is concave; None where it is straight.
+        below 0 where it is concave; None or infinite where it is straight.
     counter_radii : tuple of float or None
         Radii of the other surface along its own axes [m], likewise.
     angle : float
@@ -83,7 +96,7 @@ def relative_radii(
     TypeError
         If radii are not pairs of real numbers or None.
     ValueError
-        If a radius is 0 or not finite, the angle is not finite, or the surfaces are not convex
+        If a radius is 0 or not a number, the angle is not finite, or the surfaces are not convex
         together in every direction, as parallel cylinders are not.
 
     Examples
@@ -95,7 +108,7 @@ def relative_radii(
     ([16.0, 5.333333], 30.0)
     >>> crossed = nacre.Paraboloid(*radii)
     """
-    return core.relative_radii(radii, counter_radii, angle)
+    return core.relative_radii(_straight_pair(radii), _straight_pair(counter_radii), angle)
 
 
 def contact_modulus(body: core.Elastic, counterbody: core.Elastic | None = None) -> float:
@@ -337,8 +350,8 @@ class Line(_Hertzian):
 class Ellipse(_Hertzian):
     """Contact of two bodies that are curved differently along x and y, as a ball in a groove.
 
-    The radii are signed: above 0 where a surface is convex, below 0 where it is concave, None where
-    it is straight. Johnson, Contact Mechanics (1985), eqs (4.25)-(4.32),
+    The radii are signed: above 0 where a surface is convex, below 0 where it is concave, None or
+    infinite where it is straight. Johnson, Contact Mechanics (1985), eqs (4.25)-(4.32),
     doi:10.1017/CBO9781139171731.
 
     Parameters
@@ -395,6 +408,9 @@ class Ellipse(_Hertzian):
 
     def __post_init__(self) -> None:
         """Find what follows from the arguments."""
+        for name in self.__match_args__:
+            if "radius" in name:
+                self.__dict__[name] = _or_straight(getattr(self, name))
         contact = core.Hertz.ellipse(*(getattr(self, name) for name in self.__match_args__))
         a, b, peak, approach = contact.numbers()
         self._keep(contact, semi_axes=(a, b), peak_pressure=peak, approach=approach)

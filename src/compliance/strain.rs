@@ -188,28 +188,31 @@ impl StrainWindow {
     /// L p of a field that is 0 outside the window.
     pub(crate) fn resolve(&self, values: &mut [f64]) {
         let [nx, ny] = self.shape;
-        let rows: Vec<(usize, usize)> = (0..nx).map(|i| (i * ny, 1)).collect();
-        let columns: Vec<(usize, usize)> = (0..ny).map(|j| (j, ny)).collect();
         let mut line = Vec::new();
-        for (lines, length) in [(rows, ny), (columns, nx)] {
-            for (start, step) in lines {
-                line.clear();
-                line.extend((0..length).map(|k| values[start + k * step]));
-                let at = |k: usize, by: isize| {
-                    let place = k as isize + by;
-                    let n = length as isize;
-                    match self.repeats {
-                        true => line[place.rem_euclid(n) as usize],
-                        false if (0..n).contains(&place) => line[place as usize],
-                        false => 0.0,
-                    }
-                };
-                for k in 0..length {
-                    let cells = 1 - REACH..REACH;
-                    let parts = cells.map(|by| RESOLVED[by.unsigned_abs()] * at(k, by));
-                    values[start + k * step] = parts.sum();
-                }
+        for row in values.chunks_exact_mut(ny) {
+            line.clear();
+            let places = 1 - REACH..ny as isize + REACH - 1;
+            line.extend(places.map(|k| self.inside(k, ny).map_or(0.0, |k| row[k])));
+            row.fill(0.0);
+            for (first, by) in (1 - REACH..REACH).enumerate() {
+                add(row, RESOLVED[by.unsigned_abs()], &line[first..]);
             }
+        }
+        let before = values.to_vec();
+        for (i, row) in values.chunks_exact_mut(ny).enumerate() {
+            row.fill(0.0);
+            for by in 1 - REACH..REACH {
+                let Some(k) = self.inside(i as isize + by, nx) else { continue };
+                add(row, RESOLVED[by.unsigned_abs()], &before[k * ny..]);
+            }
+        }
+    }
+
+    /// The place among `n`, in the first period where they repeat; `None` beyond.
+    fn inside(&self, place: isize, n: usize) -> Option<usize> {
+        match self.repeats {
+            true => Some(place.rem_euclid(n as isize) as usize),
+            false => usize::try_from(place).ok().filter(|place| *place < n),
         }
     }
 
@@ -248,6 +251,11 @@ impl StrainWindow {
         self.transform.reserve(&mut memory);
         self.transform.convolve_tensor(terms, inputs, outputs, &mut memory, threads);
     }
+}
+
+/// Adds a `weight` times `more` to `sum`, which may be shorter.
+fn add(sum: &mut [f64], weight: f64, more: &[f64]) {
+    sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += weight * more);
 }
 
 /// Strains xx, xy and yy of stresses xx, xy and yy under a `pressure` on the same cell.

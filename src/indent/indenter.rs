@@ -11,7 +11,7 @@ use crate::indent::equation::stack::Stack;
 use crate::indent::equation::{Parts, bracketed, times};
 use crate::indent::point::{Point, PullOff};
 use crate::indent::pressure::bessel_sum;
-use crate::indent::served::ValueTable;
+use crate::indent::table::ValueTable;
 use crate::indent::tip::Tip;
 use crate::numerics::roots::newton;
 

@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Branch, Control};
-use super::curve::{CurveTable, table_at};
 use super::equation::Parts;
 use super::indenter::Indent;
 use super::point::Point;
+use super::table::{CurveTable, ValueTable, table_at};
 use crate::error::Result;
 use crate::numerics::roots;
 
@@ -18,16 +18,6 @@ const FEW: usize = 4;
 /// are missing add up to four times the last one. A change of the logarithm of the width moves the load by that on the zone, some one
 /// to two times that of pull-off. Together that leaves 1e-9.
 const RESOLVED: f64 = 1e-10;
-
-/// Load or approach, and the width of the cohesive zone, over the contact radius.
-#[derive(Debug)]
-pub(super) struct ValueTable {
-    control: Control,
-    /// Size of the value at pull-off.
-    unit: f64,
-    /// Rows of arsinh (value/unit), whose error is that of the value in its own size or that of pull-off, and of ln (c − a).
-    tables: Vec<CurveTable>,
-}
 
 impl Indent {
     /// This tip, prepared for [`Indent::at`] at many `values` of what is given. With the adhesion of Maugis and Dugdale a table of

@@ -14,7 +14,6 @@ use super::half_space::HalfSpacePlan;
 use super::options::StressProgress;
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use super::subcell::STRESSES;
-use super::summary::SAMPLED;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
 use crate::error::Result;
@@ -57,6 +56,9 @@ const TURNING: f64 = 3.8;
 /// Distance behind a traction at which the tension below layers may be largest, in their thickness. Chosen by trial: in 270
 /// line contacts, it is at 5 to 25.
 const BEHIND: f64 = 25.0;
+
+/// Cells of a plane of which one is evaluated before all are: a prime number, so that their columns differ from row to row.
+pub(super) const SAMPLED: usize = 61;
 
 /// Widest grid, in periods of the other axis, where one repeats: the time for its coefficients grows with that number.
 const PERIODS: f64 = 64.0;

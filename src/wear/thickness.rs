@@ -192,7 +192,8 @@ impl Thinned {
             false => enclosing(&window, &self.worn_window),
         };
         let strains = self.layer.strain.window([domain[0].len(), domain[1].len()], threads);
-        Thinning { thinned: self, window, domain, strains, fields: Mutex::default() }
+        let depth = each_cell(&domain).map(|(i, j)| self.depth[[i, j]]).collect();
+        Thinning { thinned: self, window, domain, depth, strains, fields: Mutex::default() }
     }
 }
 
@@ -204,6 +205,8 @@ struct Thinning {
     window: Window,
     /// Those and the worn ones: between them, strains are computed.
     domain: Window,
+    /// w there.
+    depth: Vec<f64>,
     strains: Arc<StrainWindow>,
     fields: Mutex<Fields>,
 }
@@ -226,7 +229,7 @@ impl Beside for Thinning {
         displacement: &mut [f64],
         threads: &Threads,
     ) {
-        let Thinned { depth, layer, .. } = &self.thinned;
+        let (layer, depth) = (&self.thinned.layer, &self.depth);
         let columns = self.window[1].len();
         let wide = self.domain[1].len();
         let cells = self.domain[0].len() * wide;
@@ -251,13 +254,12 @@ impl Beside for Thinning {
         if layer.resolved_share > 0.0 {
             resolved.extend_from_slice(p);
             self.strains.resolve(resolved);
-            let cells = resolved.iter_mut().zip(each_cell(&self.domain));
-            cells.for_each(|(p, (i, j))| *p *= layer.resolved_share * depth[[i, j]]);
+            let cells = resolved.iter_mut().zip(depth);
+            cells.for_each(|(p, w)| *p *= layer.resolved_share * w);
             self.strains.resolve(resolved);
         }
         // From here on p is what the cell's own strains and pressure give.
-        for (at, (i, j)) in each_cell(&self.domain).enumerate() {
-            let w = depth[[i, j]];
+        for (at, w) in depth.iter().enumerate() {
             let mut strains = [0.0; 3];
             (0..count).for_each(|k| strains[k] = tensor[k * cells + at]);
             let strains = &strains[..count];

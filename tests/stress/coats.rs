@@ -17,9 +17,9 @@ use serde_json::Value;
 const ERROR: f64 = 0.01;
 const ERROR_OF_ALL: f64 = 0.02;
 
-/// Stated error of four extremes in five, over the same. It is larger, up to 0.27, for coats of one to ten cells that are three times
+/// Stated error of most extremes, over the same. It is larger, up to 0.25, for coats of one to ten cells that are three times
 /// as stiff as what is below, where the fits near the edge differ.
-const STATED: f64 = 0.05;
+const STATED: f64 = 0.03;
 
 /// Error of the reference over the same, whose largest values are those of sampled places: with more of them two rose by 4e-4.
 const OF_REFERENCE: f64 = 5e-4;
@@ -85,7 +85,7 @@ fn faults(case: &Value, exceeded: &mut [Vec<String>; 2]) -> Result<Vec<String>> 
 }
 
 /// Asserts that no ball has a fault, that errors are at most [`ERROR`] in 95 % of the extremes, and stated ones at most
-/// [`STATED`] in 80 %.
+/// [`STATED`] in 85 %.
 fn assert_faultless<'a>(balls: impl IntoIterator<Item = &'a Value>) -> Result<()> {
     let (mut all, mut exceeded, mut count) = (Vec::new(), [Vec::new(), Vec::new()], 0);
     for case in balls {
@@ -93,8 +93,12 @@ fn assert_faultless<'a>(balls: impl IntoIterator<Item = &'a Value>) -> Result<()
         count += 3;
     }
     assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
-    for (exceeded, part) in exceeded.iter().zip([20, 5]) {
-        assert!(part * exceeded.len() <= count, "{count}:\n{}", exceeded.join("\n"));
+    for (exceeded, part) in exceeded.iter().zip([1.0 / 20.0, 0.15]) {
+        assert!(
+            exceeded.len() as f64 <= part * f64::from(count),
+            "{count}:\n{}",
+            exceeded.join("\n")
+        );
     }
     Ok(())
 }

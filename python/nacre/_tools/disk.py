@@ -14,7 +14,7 @@ import secrets
 import shutil
 import sys
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -148,8 +148,11 @@ def write_dataset(dataset: xarray.Dataset, path: Path, mark: bytes = RESULT) -> 
         import h5netcdf  # noqa: F401
 
     encoding = {name: {"_FillValue": None} for name in dataset.variables}
-    # HDF5 writes to memory: on a full disk it would crash when the process ends.
-    content = dataset.to_netcdf(engine="h5netcdf", encoding=encoding)
+    # HDF5 writes to memory: on a full disk it would crash when the process ends. A client of Dask
+    # would have a lock for all its workers, which a file in memory cannot have.
+    dask = sys.modules.get("dask")
+    with dask.config.set(scheduler="threads") if dask else nullcontext():
+        content = dataset.to_netcdf(engine="h5netcdf", encoding=encoding)
     with path.open("wb") as file:
         file.write(content)
         file.write(mark + hashlib.sha256(content).digest())

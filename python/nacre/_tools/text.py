@@ -6,6 +6,7 @@ import codecs
 import csv
 import re
 import unicodedata
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -101,6 +102,12 @@ def decoded(path: Path, encoding: str | None = None) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode("cp1252", errors="replace")
+
+
+def listed(texts: Sequence[str], most: int = 10) -> str:
+    """Return texts as a list with commas, of which the first ones are shown."""
+    more = len(texts) - most
+    return ", ".join(texts[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def fields_of(line: str, delimiter: str) -> list[str]:

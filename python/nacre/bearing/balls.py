@@ -240,7 +240,9 @@ class AngularContactBall(_Balls):
         """Check the arguments."""
         above("contact_angle", self.contact_angle)
         if self.contact_angle >= math.pi / 2:
-            raise ValueError(f"contact_angle must be below π/2, got {self.contact_angle!r}")
+            raise ValueError(
+                f"contact_angle must be below π/2, in radians, got {self.contact_angle!r}"
+            )
         self._give_way("clearance")
         super().__post_init__()
         if vars(self)["clearance"] not in (None, self.play):

@@ -67,6 +67,8 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 Arrangement = Literal["O", "X", "tandem"]
+ARRANGEMENTS = '"O" (back to back, DB), "X" (face to face, DF) or "tandem" (DT)'
+"""Arrangements in words."""
 Single = AngularContactBall | TaperedRoller
 
 NAMES = ("first", "second")
@@ -157,7 +159,7 @@ class Pair:
                 f"got {self.second!r}"
             )
         if not among(self.arrangement, get_args(Arrangement)):
-            raise ValueError(f'arrangement must be "O", "X" or "tandem", got {self.arrangement!r}')
+            raise ValueError(f"arrangement must be {ARRANGEMENTS}, got {self.arrangement!r}")
         read_fields(self)
         above("distance", self.distance)
         most = FARTHEST * max(bearing.pitch for bearing in self.bearings)

@@ -38,7 +38,7 @@ def _check_angle(angle: float) -> None:
     """Raise an error unless a contact angle is one of a radial bearing."""
     above("contact_angle", angle)
     if angle > math.pi / 4:
-        raise ValueError(f"contact_angle must be at most π/4, got {angle!r}")
+        raise ValueError(f"contact_angle must be at most π/4, in radians, got {angle!r}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ from nacre.bearing import (
 from nacre.bearing.arguments import Model
 from nacre.bearing.bearings import Solvable
 from nacre.bearing.geometry import Ring
-from nacre.bearing.pair import Arrangement
+from nacre.bearing.pair import ARRANGEMENTS, Arrangement
 from nacre.case.schema import Body, Keys, at
 from nacre.case.shapes import AnyProfile
 from nacre.case.tables import (
@@ -260,7 +260,9 @@ class Mounted(Table):
     second: AnySingle | None = Field(
         None, description="Bearing at `z = distance/2`; by default it is equal to the first."
     )
-    arrangement: Arrangement = Field(description=PAIR["arrangement"])
+    arrangement: Annotated[Arrangement, with_words(ARRANGEMENTS)] = Field(
+        description=PAIR["arrangement"]
+    )
 
 
 class PairKind(Mounted):

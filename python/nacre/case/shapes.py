@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 import nacre
 from nacre import rough
@@ -60,10 +60,23 @@ AnyProfile: Any = Annotated[
 ]
 
 
+INFINITE = (float("inf"), float("-inf"))
+
+
 class Shape(Table):
     """Keys that every shape may have: a shift."""
 
     shift: Pair | None = Field(None, description="Distances by which the shape is moved [m].")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _straight(cls, keys: Any) -> Any:
+        """Leave out infinite radii where no radius is straight, as in calls."""
+        if not isinstance(keys, dict):
+            return keys
+        optional = {name for name, key in cls.model_fields.items() if not key.is_required()}
+        flat = {name for name in optional if "radius" in name and keys.get(name) in INFINITE}
+        return {name: value for name, value in keys.items() if name not in flat}
 
     def make(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape; files are in `folder`, and the unit of length has so many metres."""

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._tools.arguments import name_or_number
-from nacre._tools.text import Column, unit_of
+from nacre._tools.text import Column, listed, unit_of
 from nacre.indent._text import Table
 
 Array = npt.NDArray[np.float64]
@@ -30,14 +30,13 @@ NAMES = {
     "time": ("time", "zeit", "temps", "tiempo", "tempo", "t"),
 }
 """Names of columns in small letters, the best first. The words among them may be part of a name."""
-OTHER_QUANTITIES = frozenset(
-    "amp amplitude area cantilever contact creep critical deflection demand dev deviation drift "
-    "dyn dynamic elastic error final friction harmonic horizontal initial lateral limit loss max "
-    "maximum min minimum modulus motor offset peak piezo plastic rate recovered reference residual "
-    "set setpoint shear stage std stiffness storage tangential target thermal threshold transverse "
-    "uncorrected yield zero".split()
+BESIDE = frozenset(
+    "act actual applied appliquée aplicada applicata average corr corrected corrigée corregida "
+    "d da de del della des di du fn in ind indent indenter into korr korrigiert "
+    "korrigierte mean measured normal normale of on penetración penetrazione probe "
+    "pénétration sample surface test the tip vertical".split()
 )
-"""Words of names that are another quantity than the depth, the force and the time of each point."""
+"""Words that leave a quantity what it is; beside any other, such as plastic, none is certain."""
 SECOND = frozenset({"act", "actual", "average", "mean"})
 """Words of names that give way to a name without them."""
 HEIGHT = frozenset({"height", "z", "piezo"})
@@ -111,6 +110,7 @@ def _height(where: str, table: Table) -> int:
     """Return the column of the height of a cantilever's base, the measured one if there are two."""
     words = [re.findall(r"[^\W\d_]+", column.name.lower()) for column in table.columns]
     hits = [k for k, name in enumerate(words) if name and name[0] in HEIGHT]
+    hits = [k for k in hits if BESIDE | HEIGHT >= {*words[k]}]
     hits = [k for k in hits if "measured" in words[k]] or hits
     if len(hits) == 1:
         return hits[0]
@@ -159,9 +159,9 @@ def _named_column(where: str, table: Table, quantity: str) -> int | None:
         if hits:
             return hits[0]
     known = {name for name in NAMES[quantity] if len(name) > 1}
+    usual = BESIDE.union(NAMES[quantity])
     words = {i: set(re.findall(r"[^\W\d_]+", column.name.lower())) for i, column in columns}
-    hits = [i for i, column in columns if column.unit and known & words[i]]
-    hits = [i for i in hits if not OTHER_QUANTITIES & words[i]]
+    hits = [i for i, column in columns if column.unit and known & words[i] and words[i] <= usual]
     if len(hits) > 1:
         hits = [i for i in hits if not SECOND & words[i]]
     return hits[0] if len(hits) == 1 else None
@@ -292,10 +292,12 @@ def chosen_tables(
             return curves or dict(enumerate(tables))
         if len(curves) == 1:
             return curves
-    listing = ", ".join(
-        f"{number} {f'{table.title[:60]!r} ' if table.title else ''}({len(table.rows)} rows from "
-        f"line {table.lines[0]})"
-        for number, table in enumerate(tables)
+    listing = listed(
+        [
+            f"{number} {f'{table.title[:60]!r} ' if table.title else ''}({len(table.rows)} rows "
+            f"from line {table.lines[0]})"
+            for number, table in enumerate(tables)
+        ]
     )
     requirement = "given" if segment is None else f"one of the file's, got {segment}"
     raise ValueError(

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of, unit_of
+from nacre._tools.text import MISSING, Column, column_of, decoded, fields_of, listed, unit_of
 
 Array = npt.NDArray[np.float64]
 
@@ -60,6 +60,13 @@ AXES = (
     frozenset("z|height|heights|h|topography|elevation|höhe|hauteur|altura|altezza".split("|")),
 )
 """First words of headings of x, y and z."""
+BESIDE = frozenset(
+    "achse asse axe axis coord coordinate coordinates corrected direction dir eje in lateral "
+    "measured normal of profile surface the vertical".split()
+)
+"""Words of headings that leave places and heights what they are."""
+DROPS = frozenset({"drop", "drops", "relief"})
+"""First words of headings of drops."""
 NUMBERED = frozenset("|i|id|index|line|n|no|nr|number|point|profile|row|scan|trace".split("|"))
 """Headings of a column that counts."""
 TIMES = frozenset(
@@ -78,6 +85,8 @@ SENTINELS = (
 OFF, LEAST_JITTERED = 0.05, 12
 """Largest distance of a point from its place on the grid, in steps, and the fewest points of a grid
 that is recognised although its points are off."""
+ZYGO = b"Zygo XYZ Data File"
+"""Beginning of Zygo's text form."""
 COLUMNS = re.compile(r"ColumnDef\s*=\s*(.+)", re.IGNORECASE)
 MARKS = frozenset("\"'*!>?")
 """Signs with which programs mark points, as that of the MiniProf does with a quotation mark."""
@@ -104,6 +113,8 @@ class Heights(NamedTuple):
     """Units of columns, in which the numbers are no more."""
     note: str = ""
     """What a message adds to the name of the file."""
+    has_metres: bool = False
+    """Whether the distances are in metres, and not in the unit of the heights."""
 
 
 def npy(path: Path) -> Heights:
@@ -114,8 +125,9 @@ def npy(path: Path) -> Heights:
     except OSError:
         raise
     except Exception as error:  # a damaged head is read as Python
-        raise ValueError(f"{str(path)!r} must hold an array of NumPy's: {error}") from error
-    if heights.ndim != 2 or heights.dtype.kind not in "biuf":
+        reason = " ".join(str(error).split())[:200]
+        raise ValueError(f"{str(path)!r} must hold an array of NumPy's: {reason}") from error
+    if heights.ndim != 2 or not heights.size or heights.dtype.kind not in "biuf":
         raise ValueError(
             f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape "
             f"{heights.shape}"
@@ -123,8 +135,32 @@ def npy(path: Path) -> Heights:
     values, name = heights.astype(np.float64), str(path)
     if (columns := _coordinates([], values)) is not None:
         points, steps = _grid(path, values[:, _xyz_columns(name, columns)])
-        return Heights(points, steps, None, False)
+        return _lengths(Heights(points, steps, None, False), values[:, columns[:2]])
     return Heights(_matrix(name, [], values, "array"), None, None)
+
+
+def zygo(path: Path) -> Heights | None:
+    """Return the heights of Zygo's text form; None where a file is another one.
+
+    Its fourth line ends in the numbers of columns and rows, and the seventh number of the eighth
+    one is the size of a pixel [m], 0 where it is not known. Between lines ``#`` stand column, row
+    and height [µm] of each point.
+    """
+    with path.open("rb") as file:
+        if file.read(len(ZYGO)) != ZYGO:
+            return None
+    lines = [line.strip() for line in decoded(path).splitlines()]
+    try:
+        size, start = float(lines[7].split()[6]), lines.index("#") + 1
+        rows = [line.split(maxsplit=2) for line in lines[start : lines.index("#", start)]]
+        points = [[i, j, "nan" if z == "No Data" else z] for i, j, z in rows]
+        cells = tuple(map(int, lines[3].split()[2:4]))
+        heights, steps = _grid(path, np.array(points, dtype=np.float64))
+    except (ValueError, IndexError) as error:
+        raise ValueError(f"{str(path)!r} must be whole, as Zygo's XYZ: {error}") from error
+    if heights.shape != cells or steps != (1.0, 1.0):
+        raise ValueError(f"{str(path)!r} must have {cells} points, got {heights.shape}")
+    return Heights(heights, (size, size) if size > 0 else None, "µm", has_metres=True)
 
 
 def text(path: Path, channel: str | int | None = None) -> Heights:
@@ -270,7 +306,7 @@ class Text:
                         f"{str(self.path)!r} must hold numbers, line {number} has {wrong[0][:60]!r}"
                     )
             raise ValueError(f"{str(self.path)!r} must hold numbers, got none")
-        texts = dict(lines)
+        texts, defined = dict(lines), self._defined_columns()
         for table in self.tables:
             # Marks at the end of every line separate nothing.
             blank = min(_trailing_marks(texts.get(n, ""), mark) for n in table.lines)
@@ -278,18 +314,20 @@ class Text:
                 table.rows = np.array(table.rows)[:, :-blank]
                 table.headings = table.headings[: table.width]
             if not table.headings:
-                table.headings = self._defined_columns(table.width)
+                table.headings = defined[: table.width] if len(defined) >= table.width else []
 
-    def _defined_columns(self, width: int) -> list[Column]:
+    def _defined_columns(self) -> list[Column]:
         """Return the columns that a line ``ColumnDef=X,Y`` names, as that of a MiniProf does."""
         for _, line in self.above:
             if match := COLUMNS.fullmatch(line):
-                names = [name.strip() for name in match[1].split(",")]
-                return [column_of(name) for name in names[:width]] if len(names) >= width else []
+                return [column_of(name.strip()) for name in match[1].split(",")]
         return []
 
-    def channel_table(self, channel: str | int | None) -> Table:
-        """Return the table that a channel names, or the only one that the head describes."""
+    def channel_table(self, channel: str | int | None, keyword: str = "channel") -> Table:
+        """Return the table that a channel names, or the only one that the head describes.
+
+        `keyword` names the choice in errors; "" where there is none.
+        """
         if len(self.tables) == 1:
             if channel is not None:
                 ending = self.path.suffix
@@ -305,15 +343,15 @@ class Text:
         first = self.tables[0]
         if channel is None and counts and _extra_columns(first, counts) is not None:
             return first
-        listing = ", ".join(
+        tables = [
             f"{k} ({table.title[:60]!r}, {len(table.rows)} lines of {table.width} numbers from "
             f"line {table.lines[0]})"
             for k, table in enumerate(self.tables)
-        )
+        ]
         requirement = "given" if channel is None else f"one of these, got {channel!r}"
+        demand = f"{keyword} must be {requirement}" if keyword else "the file must hold one table"
         raise ValueError(
-            f"channel must be {requirement}: {str(self.path)!r} has {len(self.tables)} tables, "
-            f"{listing}"
+            f"{demand}: {str(self.path)!r} has {len(self.tables)} tables, {listed(tables)}"
         )
 
     def counts(self) -> tuple[int, int] | None:
@@ -349,7 +387,11 @@ class Text:
             axis_units = tuple(str(unit) for unit in units)
             steps = steps[0] * (x / z), steps[1] * (y / z)
             return Heights(heights, steps, units[2], False, axis_units)
-        return Heights(heights, steps, self.unit(), False)
+        if x and y:
+            steps = steps[0] * x, steps[1] * y
+            return Heights(heights, steps, self.unit(), False, has_metres=True)
+        points = Heights(heights, steps, self.unit(), False)
+        return _lengths(points, values[:, columns[:2]], self.spacing())
 
     def matrix(self, table: Table) -> Heights:
         """Return a matrix of heights, as what it cannot be is refused."""
@@ -463,9 +505,17 @@ def _extra_columns(table: Table, counts: tuple[int, int]) -> int | None:
     return None
 
 
+def is_doubtful(column: Column) -> bool:
+    """Return whether a heading names a place, a height or a drop beside an unknown word."""
+    words, lengths = {*re.split(r"[\W_]+", column.name.lower()), ""}, DROPS.union(*AXES)
+    return bool(words & lengths) and not words <= lengths | BESIDE | {""}
+
+
 def first_words(headings: Sequence[Column]) -> list[str]:
-    """Return the first word of each heading, in small letters."""
-    return [re.split(r"[\s_:.-]", column.name.lower().strip())[0] for column in headings]
+    """Return the first word of each heading, in small letters; all where it `is_doubtful`."""
+    names = [column.name.lower().strip() for column in headings]
+    pairs = zip(headings, names, strict=True)
+    return [name if is_doubtful(top) else re.split(r"[\s_:.-]", name)[0] for top, name in pairs]
 
 
 def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] | None:
@@ -481,6 +531,7 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
         if _are_places(values[:, pair]):
             indices = [k for k in range(width) if k not in pair]
             indices = [k for k in indices if not (k == 0 and is_counter(values[:, 0]))]
+            indices = [k for k in indices if not (headings and is_doubtful(headings[k]))]
             return (*pair, *indices) if len(indices) == 1 else pair
     return None
 
@@ -545,6 +596,14 @@ def _grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
     if not np.array_equal(heights[places[0], places[1]], points[:, 2], equal_nan=True):
         raise ValueError(f"{str(path)!r} must have one height at each place, got several")
     return heights, (steps[0], steps[1])
+
+
+def _lengths(points: Heights, places: Array, spacing: tuple[float, float] | None = None) -> Heights:
+    """Return points with another spacing, if any, where x or y counts from 0 or 1."""
+    if any(is_counter(_distinct(column)) for column in places.T):
+        note = ", whose x or y counts points and is no length,"
+        return points._replace(spacing=spacing, note=note)
+    return points
 
 
 def _rises_evenly(values: Array) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import re
 import warnings
@@ -15,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre._tools.extras import extra
-from nacre._tools.text import is_text
+from nacre._tools.text import is_text, listed
 from nacre._tools.typing import Topography
 from nacre.surfaces.heights import Heights, Text
 
@@ -30,6 +29,9 @@ HEADED = ("di", "ezd", "nmm", "mnt")
 """Formats without a mark at the beginning, which may begin with text."""
 NANOSCOPE = re.compile(rb"[\\?]\*File list")
 """First line of a NanoScope image, whose ending is a number."""
+RATIO, LEAST_UNPACKED = 100, 1 << 24
+"""Most bytes that a part of an X3P may unpack to: over those of the file, or these. Heights of 8
+bytes a point shrink to a half or a tenth."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -89,7 +91,7 @@ def _first_content(
                 with reader(_x3p_copy(path) if reader.format() == "x3p" else str(path)) as opened:
                     return take(opened)
             except Unfound as error:
-                raise ValueError(f"{error}, got {channel!r}") from None
+                raise ValueError(f"{error}; the file is {str(path)!r}") from None
             except Other as error:
                 raise ValueError(f"{str(path)!r} {error}") from None
             except Exception as error:  # readers raise anything for a damaged or another file
@@ -106,6 +108,8 @@ def _first_content(
     if is_plain and (surface := table(bool(likely))) is not None:
         return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
+        if ending == "nc":
+            reasons_text += "; HeightMap(xarray.open_dataarray(path), spacing) takes other NetCDF"
         raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
     maybe = [cls for cls in instruments if match[cls] == MagicMatch.MAYBE and cls not in likely]
     surface = read_first([cls for cls in maybe if not is_plain or cls.format() in HEADED])
@@ -126,7 +130,7 @@ class Other(ValueError):
 
 
 class Unfound(ValueError):
-    """A channel that a file does not have."""
+    """A channel that a file does not have, or several of which none is certain."""
 
 
 def _table(text: Text, channel: str | int | None) -> Heights:
@@ -151,7 +155,7 @@ def _table(text: Text, channel: str | int | None) -> Heights:
         with AscReader(io.StringIO(text.plain())) as reader:
             heights = _heights(reader, channel)
     except Unfound as error:
-        raise ValueError(f"{error}, got {channel!r}") from None
+        raise ValueError(f"{error}; the file is {str(text.path)!r}") from None
     except Exception:
         return own._replace(is_metric=False)
     if heights.unit is None and heights.spacing is None:
@@ -162,22 +166,35 @@ def _table(text: Text, channel: str | int | None) -> Heights:
 def _x3p_copy(path: Path) -> str | io.BytesIO:
     """Return an X3P whose name of the standard has a hyphen, and that has no folder.
 
-    Other programs write a dash there, and put all files in a folder.
+    Other programs write a dash there, and put all files in a folder. What the index, main.xml, does
+    not name is left out.
     """
-    with contextlib.suppress(Exception), zipfile.ZipFile(path) as archive:
-        names = archive.namelist()
-        main = next(name for name in names if name.rpartition("/")[2] == "main.xml")
-        folder = main.removesuffix("main.xml")
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w") as copy:
-            for name in names:
+    buffer = io.BytesIO()
+    try:
+        with zipfile.ZipFile(path) as archive, zipfile.ZipFile(buffer, "w") as copy:
+            members = {item.filename: item for item in archive.infolist()}
+            main = next(name for name in members if name.rpartition("/")[2] == "main.xml")
+            folder, largest = main.removesuffix("main.xml"), RATIO * path.stat().st_size
+            named: set[bytes] = set()
+            for name in (main, *(name for name in members if name != main)):
+                if name != main and name.removeprefix(folder).encode() not in named:
+                    continue
+                if members[name].file_size > max(largest, LEAST_UNPACKED):
+                    raise Other(
+                        f"must hold no file out of proportion: {name[:60]!r} would unpack to "
+                        f"{members[name].file_size} bytes"
+                    )
                 content = archive.read(name)
                 if name == main:
                     content = REVISION.sub(rb"\1ISO5436 - 2000\2", content)
+                    named = {text.strip() for text in re.findall(b">([^<>]*)<", content)}
                 copy.writestr(name.removeprefix(folder), content)
-        buffer.seek(0)
-        return buffer
-    return str(path)
+    except Other:
+        raise
+    except Exception:  # the reader says what is wrong
+        return str(path)
+    buffer.seek(0)
+    return buffer
 
 
 class Channel(Protocol):
@@ -187,6 +204,7 @@ class Channel(Protocol):
     dim: int
     physical_sizes: Sequence[float] | None
     nb_grid_pts: Sequence[int]
+    unit: object
 
     def topography(self, **sizes: tuple[float, ...]) -> Any:
         """Return a map or a line."""
@@ -196,7 +214,6 @@ class Reader(Protocol):
     """A reader of SurfaceTopography."""
 
     channels: Sequence[Channel]
-    default_channel: Channel
 
 
 def _heights(reader: Reader, channel: str | int | None) -> Heights:
@@ -212,7 +229,7 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
     if not maps:
         names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
-    map_channel = _channel(reader, channel)
+    map_channel = _channel(reader, channel, 2)
     # A file without sizes needs some, which are not used.
     lacking = map_channel.physical_sizes is None and map_channel.nb_grid_pts is not None
     sizes = {"physical_sizes": tuple(map(float, map_channel.nb_grid_pts))} if lacking else {}
@@ -225,11 +242,7 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
     lines = [item for item in reader.channels if item.dim == 1]
     if not lines:
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
-    line_names = {item.name for item in lines}
-    default = reader.default_channel
-    profile = lines[0] if channel is None and default not in lines else _channel(reader, channel)
-    if profile.dim != 1:
-        raise Unfound(f"height must be one of the channels {', '.join(sorted(line_names))}")
+    profile = _channel(reader, channel, 1)
     line = profile.topography()
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
@@ -264,15 +277,25 @@ def of_topography(surface: Topography) -> Heights:
     return Heights(heights, spacing, unit, False)
 
 
-def _channel(reader: Reader, choice: str | int | None) -> Channel:
-    channels = list(reader.channels)
-    names = [channel.name for channel in channels]
-    if choice is None:
-        return reader.default_channel
-    if isinstance(choice, str):
-        if choice in names:
-            return channels[names.index(choice)]
-    elif 0 <= choice < len(channels):
-        return channels[choice]
-    choices = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
-    raise Unfound(f"channel must be one of {choices}")
+def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
+    """Return the channel that is chosen, or the only one with heights of this dimension."""
+    channels = [(number, item) for number, item in enumerate(reader.channels) if item.dim == dim]
+    heights = [(k, item) for k, item in channels if _kind(item) == "height"] or channels
+    chosen = [item for k, item in channels if choice in (k, item.name)]
+    if choice is None and len(heights) == 1:
+        return heights[0][1]
+    if choice is not None and len(chosen) == 1:
+        return chosen[0]
+    texts = []
+    for number, item in heights if choice is None else channels:
+        size = " x ".join(map(str, item.nb_grid_pts)) if item.nb_grid_pts else "of unknown size"
+        unit = getattr(item, "data_unit", None) or item.unit
+        texts.append(f"{number} {item.name!r} ({size}, {f'in {unit}' if unit else 'no unit'})")
+    keyword = "channel" if dim == 2 else "height"
+    given, got = ("given, as ", "") if choice is None else ("", f", got {choice!r}")
+    raise Unfound(f"{keyword} must be {given}one of {listed(texts)}{got}")
+
+
+def _kind(channel: Channel) -> str:
+    """Return what a channel holds; heights where SurfaceTopography does not say."""
+    return str(getattr(getattr(channel, "data_kind", None), "value", "height"))

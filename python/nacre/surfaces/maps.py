@@ -66,7 +66,8 @@ def read_map(
     detrend : {"plane", "none", "mean", "quadratic"}, optional
         Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
     channel : str or int, optional
-        Channel of the instrument, or table of the text, that is read: its name or its number.
+        Channel of the instrument, or table of the text, that is read: its name or its number;
+        needed where a file has several with heights.
     transpose : bool, optional
         Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one
         line for each y: that needs ``transpose=True``. The first line then has the smallest y. A
@@ -109,14 +110,14 @@ def read_map(
         heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
     factor = _metres(name, surface, unit)
     is_known = unit is not None or surface.unit is not None
-    note = surface.note
+    note, scale = surface.note, 1.0 if surface.has_metres else factor
     del surface  # the map in the file's unit
     heights = heights * factor
     is_spacing_given = spacing is not None
     if spacing is None:
         if sides is None:
             raise ValueError(f"spacing must be given: {name}{note} does not have it")
-        spacing = sides[0] * factor, sides[1] * factor
+        spacing = sides[0] * scale, sides[1] * scale
     _check_size(name, heights, spacing, is_known, is_spacing_given)
     wraps = core.HeightMap(np.zeros((2, 2)), 1.0, periodic=periodic).periodic
     heights = _filled_heights(name, heights, detrend, wraps)
@@ -145,6 +146,8 @@ def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tupl
         if channel is not None:
             raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
         surface = _heights.npy(path)
+    elif channel is None and (points := _heights.zygo(path)) is not None:
+        surface = points
     elif ending in (".csv", ".xyz"):
         surface = _heights.text(path, channel)
     else:

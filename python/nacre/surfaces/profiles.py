@@ -17,6 +17,7 @@ from nacre._tools.typing import Vector
 from nacre._tools.units import written
 from nacre.surfaces.heights import (
     AXES,
+    DROPS,
     LEAST_MEASURED,
     METRES,
     NUMBERED,
@@ -25,6 +26,7 @@ from nacre.surfaces.heights import (
     Text,
     first_words,
     is_counter,
+    is_doubtful,
     is_strict,
     metres,
     without_sentinels,
@@ -32,8 +34,6 @@ from nacre.surfaces.heights import (
 
 Array = npt.NDArray[np.float64]
 
-DROPS = frozenset({"drop", "drops", "relief"})
-"""First words of headings of drops."""
 SIMPACK = (".prr", ".prw")
 """Endings of Simpack's profiles of rails and of wheels."""
 IN_BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
@@ -139,12 +139,13 @@ def _table(
     height: str | int | None,
 ) -> tuple[Array, Array]:
     """Return positions and drops of a table [m]."""
-    table = Text.of(path).channel_table(None)
+    table = Text.of(path).channel_table(None, keyword="")
     values, words = np.array(table.rows), first_words(table.headings)
     if len(values) < 2 or table.width < 2:
         raise ValueError(
             f"{str(path)!r} must have two columns, positions and drops or heights, of two rows or "
-            f"more, got {table.width} of {len(values)}"
+            f"more, got {table.width} of {len(values)}; SDF, SMD and PRF with one column are not "
+            f"read: export positions and heights"
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _word_column(words, AXES[0])
@@ -154,6 +155,8 @@ def _table(
         columns = [k for k in columns if k not in timed]
         is_clear = table.width - counted == 2 or len(columns) < 2
         first = (columns[0] if timed and columns else counted) if is_clear else None
+        if words and first is not None and is_doubtful(table.headings[first]):
+            first = None
     place = _column(path, table, "x", x, first)
     is_drop = drop is not None or (height is None and _word_column(words, DROPS) is not None)
     if is_drop:
@@ -196,6 +199,12 @@ def _sizes(
                 f"unit= can be a pair"
             )
         sizes.append(size)
+    is_named = usual or (table.headings and table.headings[place].unit)
+    if not (is_named or isinstance(unit, tuple)) and is_counter(np.array(table.rows)[:, place]):
+        raise ValueError(
+            f"unit must be a pair, of positions and heights: the positions of {str(path)!r} count "
+            f"points, and may be no lengths; x= can name other ones"
+        )
     return sizes
 
 

@@ -100,8 +100,7 @@ class Ball:
     def __init__(self, a, h, materials, radius):
         self.a, self.h, self.materials = a, h, materials
         self.panel = min(h, a / 16)
-        young, nu = materials[0]
-        modulus = young / (1 - nu**2)
+        modulus = self.modulus()
         kernel = self.kernel()
         ends = np.linspace(0, a, int(np.ceil(a / self.panel)) + 1)
         ends = np.concatenate([ends[:-2], np.linspace(ends[-3], a, 9)[1:]])
@@ -117,18 +116,31 @@ class Ball:
         self.density = CubicSpline([0, *t, a], [0, *g, at_edge])
         self.load = 2 * np.pi * self.gw @ t
 
-    def kernel(self):
-        """Cosine transform of what the substrate adds to the response of a bare coat."""
-        far = 2.05 * self.a / self.h
-        fine = np.linspace(2, 25, max(600, int(23 * far / 5)))
-        kappa, w = gauss([*np.linspace(0, 2, 451), *fine[1:]], 6)
+    def modulus(self):
+        """Contact modulus of short waves, E / (1 - nu^2) of the coat."""
+        young, nu = self.materials[0]
+        return young / (1 - nu**2)
+
+    def excess(self, kappa):
+        """Return what the substrate adds to the response of a coat; kappa is wavenumber * h."""
         nu = self.materials[0][1]
         top = airy_functions(np.zeros_like(kappa), kappa)
         first, third = (
             np.einsum("sk,sk->s", top[k], airy_coefficients(kappa, self.materials)[:, :4, 0])
             for k in (1, 3)
         )
-        excess = ((1 - nu) * third - (2 - nu) * first) / (2 * (1 - nu)) - 1
+        return ((1 - nu) * third - (2 - nu) * first) / (2 * (1 - nu)) - 1
+
+    def waves(self, s, z, below):
+        """Stresses at depth z of waves of pressure and traction."""
+        return waves(s, self.h, self.materials, z, below)
+
+    def kernel(self):
+        """Cosine transform of the excess."""
+        far = 2.05 * self.a / self.h
+        fine = np.linspace(2, 25, max(600, int(23 * far / 5)))
+        kappa, w = gauss([*np.linspace(0, 2, 451), *fine[1:]], 6)
+        excess = self.excess(kappa)
         x = np.concatenate([np.linspace(0, 20, 1201), np.geomspace(20, max(40, far), 800)[1:]])
         return CubicSpline(x, [np.cos(kappa * each) @ (excess * w) for each in x])
 
@@ -153,7 +165,7 @@ class Ball:
         count = int(np.ceil(end * self.a / 2))
         ends = np.linspace(0, end, count + 1)
         s, w = gauss([0, *np.geomspace(1e-4, 1, 6) * ends[1], *ends[2:]], 6)
-        wave = waves(s, self.h, self.materials, z, below)
+        wave = self.waves(s, z, below)
         if z == 0:
             nu = self.materials[0][1]
             half_space = {"pL": -1, "pT": -2 * nu, "pZ": -1, "pX": 0, "lL": 2, "lT": 2 * nu}

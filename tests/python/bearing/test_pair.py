@@ -442,7 +442,7 @@ OUTSIDE: dict[str, tuple[dict[str, Any], str]] = {
     "rows": ({"first": SphericalRoller(count=19, diameter=12e-3, length=11e-3, pitch_diameter=82e-3,
         contact_angle=0.17, profile_radius=46.5e-3)}, "first must be an AngularContactBall"),
     "kinds": ({"second": TAPERED}, "second must be of the kind of first, AngularContactBall"),
-    "arrangement": ({"arrangement": "V"}, 'arrangement must be "O", "X" or "tandem", got \'V\''),
+    "arrangement": ({"arrangement": "V"}, r"O. .back to back, DB.*got 'V'"),
     "distance": ({"distance": 0.0}, "distance must be finite and above 0"),
     "millimetres": ({"distance": 60.0}, "distance must be at most 4.6 m"),
     "words": ({"distance": "wide"}, "distance must be"),

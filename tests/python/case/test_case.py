@@ -427,6 +427,28 @@ def test_every_shape_can_be_described(
     assert Case(base(shape=table), folder=tmp_path).arguments()["shape"] == shape
 
 
+INF = math.inf
+
+
+def test_an_infinite_radius_is_a_straight_line() -> None:
+    hertz, paraboloid = nacre.hertz, {"kind": "paraboloid", "radius_x": 1, "radius_y": 2}
+    for table in ({"kind": "cylinder", "radius": 1}, paraboloid):
+        name = "counter_radius" + "_x" * (table is paraboloid)
+        assert (
+            Case(base(shape=table | {name: INF})).arguments() == Case(base(shape=table)).arguments()
+        )
+    crossed = {"kind": "crossed", "radius_y": 1, "counter_radius_y": 3, "angle": 1.2}
+    same = Case(base(shape=crossed | {"radius_x": -INF})).arguments()
+    assert same == Case(base(shape=crossed)).arguments()
+    assert hertz.equivalent_radius(1.0, INF) == hertz.equivalent_radius(INF, 1.0) == 1.0
+    assert hertz.relative_radii((INF, 1), (INF, 2), 1) == hertz.relative_radii(
+        (None, 1), (None, 2), 1
+    )
+    assert hertz.Ellipse(1, 2, 3, 4, INF) == hertz.Ellipse(1, 2, 3, 4)
+    with pytest.raises(ValueError, match="radius: must be a finite number"):
+        Case(base(shape={"kind": "sphere", "radius": INF})).arguments()
+
+
 def test_bodies_grids_and_motions_can_be_described() -> None:
     layer = {"material": {"young": 1e9, "poisson": 0.5}, "thickness": 1e-3}
     found = Case(

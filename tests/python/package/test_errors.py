@@ -550,7 +550,7 @@ BEARINGS = {
     r"distance.*0\.69 mm, got 1 mm",
     "balls(pitch_diameter=None)": "pitch_diameter must be given",
     "nacre.bearing.AngularContactBall(**BALL_SIZES, contact_angle=2.0)": "contact_angle must be "
-    r"below π/2, got 2\.0",
+    r"below π/2, in radians, got 2\.0",
     "rollers().solve(force=(1.0, None, 5.0))": "force along z must be None or 0: rollers without "
     "a contact angle",
     "rollers().solve(force=(1.0, None))": "force must be 3 numbers or None",
@@ -565,7 +565,7 @@ BEARINGS = {
     "rollers().solve(tolerance=0.0)": "tolerance must be finite and above 0, got 0.0",
     "rollers().solve(speed=NAN)": "speed must be finite, got nan",
     "barrels(rows=3)": "rows must be 1 or 2, got 3",
-    "barrels(contact_angle=0.8)": "contact_angle must be at most π/4, got 0.8",
+    "barrels(contact_angle=0.8)": "contact_angle must be at most π/4, in radians, got 0.8",
     "barrels(contact_angle=0.1)": "contact_angle must be larger for two rows.*overlap by .* mm",
     "barrels(profile_radius=0.048)": "profile_radius must be below those of the raceways, "
     r"47\.5997",
@@ -574,7 +574,7 @@ BEARINGS = {
     "barrels(pitch_diameter=None)": "pitch_diameter must be given",
     "barrels(length=-1.0)": "length must be finite and above 0, got -1",
     "tapered(contact_angle=0.0)": "contact_angle must be finite and above 0, got 0",
-    "tapered(contact_angle=0.8)": "contact_angle must be at most π/4, got 0.8",
+    "tapered(contact_angle=0.8)": "contact_angle must be at most π/4, in radians, got 0.8",
     "tapered(pitch_diameter=None)": "pitch_diameter must be given",
     "tapered(length=0.3)": r"length must be below 225\.6.* mm, where the roller ends at its apex",
     "tapered(count=19)": "count must be at most 18",

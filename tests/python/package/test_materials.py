@@ -172,8 +172,15 @@ def test_an_unknown_name_is_refused_with_close_ones(name: str, close: str) -> No
         nacre.materials[name]
 
 
+@pytest.mark.parametrize("name", ["AISI 52100", "suj2", "1.3505", "DLC", "steel"])
+def test_a_name_of_the_trade_is_found_in_titles(name: str) -> None:
+    card = "'a-C:H', .* 'ta-C'" if name == "DLC" else "'100Cr6'"
+    with pytest.raises(KeyError, match=f"got '{name}'; it is in the title of {card}"):
+        nacre.materials[name]
+
+
 def test_a_name_that_is_like_none_is_refused() -> None:
-    with pytest.raises(KeyError, match=r"name must be one of nacre\.materials, got 'qqq'"):
+    with pytest.raises(KeyError, match=r"materials, got 'qqq'; the names are '100Cr6', 'M50'"):
         nacre.materials["qqq"]
     with pytest.raises(KeyError, match="got 3"):
         nacre.materials[3]  # type: ignore[index]

@@ -347,7 +347,7 @@ def test_a_line_scan_of_an_instrument_is_a_profile(tmp_path: Path) -> None:
         profile = nacre.SampledProfile.read(path, **options)
         assert_close(profile.x, 0.5e-3 * np.arange(60), atol=1e-15)
         assert_close(profile.drop, z.max() - z, atol=1e-15)
-    with pytest.raises(ValueError, match=r"channel must be one of 0 .Default., got 3"):
+    with pytest.raises(ValueError, match=r"height must be one of 0 .Default. .*, got 3"):
         nacre.SampledProfile.read(path, height=3)
     with pytest.raises(ValueError, match="drop must be left out for the line scan"):
         nacre.SampledProfile.read(path, drop=1)

@@ -423,7 +423,13 @@ def test_all_tables_with_a_curve_are_read_and_the_others_named() -> None:
     assert [len(part) for part in whole] == [40, 20]
 
 
-@MARK("word", ["Contact Depth", "Plastic depth", "Max. depth", "residual_displ", "Lateral Disp."])
+@MARK(
+    "word",
+    [
+        *("Contact Depth", "Plastic depth", "Max. depth", "residual_displ", "Lateral Disp."),
+        *("Film depth", "Permanent depth", "plastische Eindringtiefe", "Profondeur plastique"),
+    ],
+)
 @MARK("known", [True, False])
 def test_another_depth_never_is_the_displacement(word: str, known: bool, tmp_path: Path) -> None:
     source = (CASES / "contact_depth_taken" / "dynamic.txt").read_text(encoding="cp1252")

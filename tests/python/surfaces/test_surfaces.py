@@ -97,7 +97,9 @@ def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -
     kept = np.random.default_rng(5).permutation(len(points))[:200]
     np.savetxt(tmp_path / "a.xyz", points[kept], fmt="%.17g")
     with pytest.warns(nacre.NacreWarning, match="80 of 280 heights"):
-        read = nacre.HeightMap.read(tmp_path / "a.xyz", unit="m", detrend="none").heights
+        read = nacre.HeightMap.read(
+            tmp_path / "a.xyz", unit="m", spacing=1.0, detrend="none"
+        ).heights
     measured = np.zeros(heights.shape, dtype=bool)
     measured.ravel()[kept] = True
     assert read[measured].tobytes() == heights[measured].tobytes()
@@ -232,9 +234,9 @@ def test_a_surface_that_was_read_can_be_pressed(tmp_path: Path) -> None:
         ("a.npy", "1,2\n3,4\n", {"spacing": 1.0}, "must hold an array of NumPy's"),
         (
             "a.xyz",
-            "0 0 1\n1 0 1\n0 3 1\n1 3 2\n",
+            "0 0 1\n1.5 0 1\n0 3 1\n1.5 3 2\n",
             {},
-            "unit must be given: .*1 and its sides 1 x 3",
+            "unit must be given: .*1 and its sides 1.5 x 3",
         ),
         ("a.xyz", "0 0 1\n1 nan 1\n0 1 1\n", {}, "finite x and y at every point"),
         ("a.xyz", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n1 1 2\n", {}, "one height at each place"),
