@@ -19,9 +19,7 @@
 //! | `point`, `density` | states; pressure and displacement of a contact and of the cohesive zone around it |
 //! | `adhesion` | kinds of adhesion |
 //! | `change` | derivatives |
-//! | `table` | tables over the radius |
 //! | `curve` | whole curves by interpolation |
-//! | `served` | contacts with a cohesive zone at many loads or approaches, by interpolation |
 //! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
 
 mod adhesion;
@@ -32,8 +30,6 @@ mod indenter;
 mod point;
 mod pressure;
 mod pull_off;
-mod served;
-mod table;
 mod tip;
 
 pub use adhesion::{Adhesion, Branch, Control};

@@ -1,6 +1,7 @@
 //! Whole curves of load over approach with their derivatives, by interpolation in the contact radius. The interpolation is
 //! derived here; it is not published elsewhere.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
@@ -9,11 +10,17 @@ use super::equation::stack::IndentParameter;
 use super::indenter::Indent;
 use super::point::{IndentWarning, Point};
 use crate::error::{Error, Result, finite};
-use crate::indent::table::{CurvePiece, CurveRow, CurveTable, table_at};
 use crate::numerics::roots::newton;
+use crate::numerics::special::barycentric;
 
 /// Last Chebyshev coefficients of the logarithms at which a table counts as resolved.
 const RESOLVED: f64 = 1e-9;
+
+/// Intervals of a table to begin with; they are doubled.
+const FIRST: usize = 12;
+
+/// Intervals at most; where these do not suffice, each point of the curve is solved for.
+const MOST: usize = 96;
 
 /// Approach, of the largest on the curve, below which points are solved for.
 const SHALLOW: f64 = 1e-3;
@@ -35,6 +42,96 @@ pub struct Curve {
     pub derivatives: Vec<Vec<f64>>,
     /// What makes its deepest point doubtful; empty as a rule.
     pub warnings: Vec<IndentWarning>,
+}
+
+/// What is tabulated at a radius: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
+/// slope over ln a; then the derivatives of all S, P_F, δ_H and δ_H − δ with respect to each parameter, relative to them.
+type CurveRow = Vec<f64>;
+
+/// A table on a range of radii, which does not pass a kink of the tip.
+#[derive(Debug)]
+struct CurveTable {
+    low: f64,
+    high: f64,
+    /// Whether there are roots of the distance from the lower end: nodes are the squares of Chebyshev's then.
+    has_root: bool,
+    /// Rows at Chebyshev's points cos(πk/n).
+    rows: Vec<CurveRow>,
+}
+
+impl CurveTable {
+    /// ln a at the position from −1 to 1.
+    fn place(&self, position: f64) -> f64 {
+        let fraction = 0.5 * (1.0 + position);
+        let fraction = if self.has_root { fraction * fraction } else { fraction };
+        self.low + (self.high - self.low) * fraction
+    }
+
+    /// The table of `row` from ln a = `low` to `high`; none where it is not resolved.
+    fn new(
+        [low, high]: [f64; 2],
+        has_root: bool,
+        logs: usize,
+        row: impl Fn(f64) -> Result<CurveRow>,
+    ) -> Result<Option<Self>> {
+        let mut table = Self { low, high, has_root, rows: Vec::new() };
+        for k in 0..=FIRST {
+            table.rows.push(row(table.place(chebyshev(k, FIRST)))?);
+        }
+        loop {
+            if (0..logs).all(|column| table.tail(2 * column) < RESOLVED) {
+                return Ok(Some(table));
+            }
+            let n = 2 * (table.rows.len() - 1);
+            if n > MOST {
+                return Ok(None);
+            }
+            let mut rows = Vec::with_capacity(n + 1);
+            for (k, old) in std::mem::take(&mut table.rows).into_iter().enumerate() {
+                if k > 0 {
+                    rows.push(row(table.place(chebyshev(2 * k - 1, n)))?);
+                }
+                rows.push(old);
+            }
+            table.rows = rows;
+        }
+    }
+
+    /// Size of the last three Chebyshev coefficients of a column.
+    fn tail(&self, column: usize) -> f64 {
+        let n = self.rows.len() - 1;
+        let coefficient = |j: usize| {
+            let term = |(k, row): (usize, &CurveRow)| {
+                let end = if k == 0 || k == n { 0.5 } else { 1.0 };
+                end * row[column] * (PI * (j * k) as f64 / n as f64).cos()
+            };
+            2.0 / n as f64 * self.rows.iter().enumerate().map(term).sum::<f64>()
+        };
+        (n - 2..=n).map(|j| coefficient(j).abs()).fold(0.0, f64::max)
+    }
+
+    /// Barycentric weights of the rows at ln a, normed.
+    fn weights(&self, log: f64) -> Vec<f64> {
+        let fraction = ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
+        let fraction = if self.has_root { fraction.sqrt() } else { fraction };
+        let n = self.rows.len() - 1;
+        let node = |k: usize| {
+            let end = if k == 0 || k == n { 0.5 } else { 1.0 };
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            [chebyshev(k, n), sign * end]
+        };
+        let nodes: Vec<[f64; 2]> = (0..=n).map(node).collect();
+        barycentric(&nodes, 2.0 * fraction - 1.0)
+    }
+
+    fn column(&self, weights: &[f64], column: usize) -> f64 {
+        weights.iter().zip(&self.rows).map(|(w, row)| w * row[column]).sum()
+    }
+}
+
+/// Chebyshev's point k of 0 … n, from 1 down to −1.
+fn chebyshev(k: usize, n: usize) -> f64 {
+    (PI * k as f64 / n as f64).cos()
 }
 
 /// One point of a curve: load, radius, slope, derivatives.
@@ -140,22 +237,6 @@ impl Indent {
             false => self.at_approach(low)?.radius,
         };
         let high = self.at_approach(high)?.radius;
-        let mut tables = Vec::new();
-        let checked = if is_adhering { &[0, 2, 4, 6][..] } else { &[0, 2, 4] };
-        for piece in self.pieces([low, high]) {
-            match CurveTable::new(piece, (checked, RESOLVED), |log| self.row(log.exp(), parameters))
-            {
-                Ok(Some(table)) => tables.push(table),
-                // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
-                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(Some(tables))
-    }
-
-    /// Pieces between the kinks of the tip of the radii from `low` to `high`.
-    pub(super) fn pieces(&self, [low, high]: [f64; 2]) -> Vec<CurvePiece> {
         let mut ends = vec![low.ln() - 1e-9];
         let mut roots = vec![false];
         for kink in &self.tip().kinks {
@@ -169,11 +250,22 @@ impl Indent {
             }
         }
         ends.push(high.ln() + 1e-9);
-        ends.windows(2).zip(roots).map(|(pair, has_root)| ([pair[0], pair[1]], has_root)).collect()
+        let mut tables = Vec::new();
+        for (pair, has_root) in ends.windows(2).zip(roots) {
+            let row = |log: f64| self.row(log.exp(), parameters);
+            let logs = if is_adhering { 4 } else { 3 };
+            match CurveTable::new([pair[0], pair[1]], has_root, logs, row) {
+                Ok(Some(table)) => tables.push(table),
+                // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
+                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(Some(tables))
     }
 
-    /// Row of a table at the radius `a`: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
-    /// slope over ln a; then the derivatives of all S, P_F, δ_H and δ_H − δ with respect to each parameter, relative to them.
+    /// CurveRow of a table at the radius `a`: per quantity its logarithm, the derivative of that with respect to ln a, and one with respect
+    /// to each parameter.
     fn row(&self, a: f64, parameters: &[IndentParameter]) -> Result<CurveRow> {
         let bare = Self::new(self.stack(), self.tip());
         let point = bare.state(a)?;
@@ -237,8 +329,12 @@ impl Indent {
     ) -> Result<CurvePoint> {
         let is_adhering = self.adheres_within();
         let logs = if is_adhering { 4 } else { 3 };
+        let table_at = |log: f64| {
+            let table = tables.iter().find(|table| log <= table.high);
+            table.unwrap_or(&tables[tables.len() - 1])
+        };
         let at = |log: f64| -> [f64; 2] {
-            let table = table_at(tables, log);
+            let table = table_at(log);
             let weights = table.weights(log);
             let column = |k| table.column(&weights, k);
             let (value, slope) = (column(4).exp(), column(5));
@@ -252,7 +348,7 @@ impl Indent {
         };
         let (low, high) = (tables[0].low, tables[tables.len() - 1].high);
         let log = newton(|log| Ok(at(log)), [low, high], high)?;
-        let (table, a) = (table_at(tables, log), log.exp());
+        let (table, a) = (table_at(log), log.exp());
         let weights = table.weights(log);
         let column = |k| table.column(&weights, k);
         let [stiffness, profile, hertzian] = [0, 2, 4].map(|k| column(k).exp());

@@ -10,9 +10,9 @@ use crate::indent::adhesion::{Adhesion, Branch, Control};
 use crate::indent::equation::stack::Stack;
 use crate::indent::equation::{Parts, bracketed, times};
 use crate::indent::point::{Point, PullOff};
-use crate::indent::pressure::bessel_sum;
-use crate::indent::table::ValueTable;
+use crate::indent::pressure::{WHOLE, Zone, bessel_sum};
 use crate::indent::tip::Tip;
+use crate::numerics::parallel::dot;
 use crate::numerics::roots::newton;
 
 /// Smallest contact radius, in end radii or thicknesses, at which a contact is looked for.
@@ -46,8 +46,6 @@ pub struct Indent {
     pub(super) tip: Tip,
     pub(super) adhesion: Adhesion,
     pub(super) lasts: [Arc<OnceLock<PullOff>>; 2],
-    /// What serves contacts at many loads or approaches.
-    pub(super) table: Option<Arc<ValueTable>>,
 }
 
 impl Indent {
@@ -58,7 +56,6 @@ impl Indent {
             tip: tip.clone(),
             adhesion: Adhesion::None,
             lasts: Default::default(),
-            table: None,
         }
     }
 
@@ -79,7 +76,7 @@ impl Indent {
                  Kendall and Roberts",
             ));
         }
-        Ok(Self { adhesion: adhesion.checked()?, ..Self::new(&self.stack, &self.tip) })
+        Ok(Self { adhesion: adhesion.checked()?, lasts: Default::default(), ..self })
     }
 
     /// Bodies.
@@ -205,11 +202,7 @@ impl Indent {
             value,
         };
         let range = [low, high];
-        let found = match self.tabulated(control, value) {
-            Ok(None) => self.nearest(control, value, floor, range),
-            found => found,
-        };
-        let contact = match found {
+        let contact = match self.nearest(control, value, floor, range) {
             Ok(Some(point)) => point.check_disc().map(|()| point),
             // The caller gave no radius.
             Ok(None) | Err(Error::Parameter { name: "radius", .. }) => Err(too_large),
@@ -238,8 +231,8 @@ impl Indent {
         // A bracket from a guess on.
         let smallest = low;
         let guess = self.guess(control, value).clamp(low, high);
-        let (mut top, mut start) = (guess, guess.ln() - 3.0);
-        while self.state_from(top, &mut start)?.value(control) < value {
+        let mut top = guess;
+        while self.value(control, top)? < value {
             if top >= high {
                 return Ok(None);
             }
@@ -248,7 +241,7 @@ impl Indent {
         }
         let mut last = None;
         let error = |log: f64| {
-            let point = self.state_from(log.exp().max(smallest), &mut start)?;
+            let point = self.state(log.exp().max(smallest))?;
             let excess = point.value(control) - value;
             let slope = control.of(point.along()) * point.radius;
             last = Some(point);
@@ -411,8 +404,14 @@ fn with_zone(
         if level.is_some_and(|level| 2.0 * outer > level.length) {
             parts = Arc::new(Parts::new(stack, tip, a, 2.0 * outer)?);
         }
-        let point = Point::cohesive(Arc::clone(&parts), outer, [work, strength]);
-        let gap = point.zone_gap();
+        let zone = Zone::around(&parts, outer, strength);
+        let approach = parts.hertzian() + (zone.density(WHOLE) - zone.answer.edge) / parts.edge[0];
+        let mut point =
+            Point::new(Arc::clone(&parts), Adhesion::Maugis { work, strength }, approach);
+        point.load += zone.load(WHOLE) + 2.0 * PI * dot(&zone.answer.values, &parts.system.ones);
+        point.outer_radius = Some(outer);
+        point.zone = Some(zone);
+        let gap = point.gap(&[outer])?[0];
         Ok((gap - opening, point))
     };
     let most = 0.5 * stack.largest_radius().min(1e6 * a);

@@ -1,6 +1,5 @@
 //! States of an indentation.
 
-use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
@@ -10,7 +9,6 @@ use super::equation::{Parts, add, times};
 use super::pressure::{Answer, Density, WHOLE, Zone, bessel_sum};
 use super::tip::Tip;
 use crate::error::{Result, not_negative};
-use crate::numerics::parallel::dot;
 
 mod disc;
 mod interior;
@@ -53,18 +51,6 @@ impl Point {
             adhesion,
             zone: None,
         }
-    }
-
-    /// The contact of `parts` with a cohesive zone up to `outer`, of a work of adhesion and a strength; φ(a) = ψ(a).
-    pub(super) fn cohesive(parts: Arc<Parts>, outer: f64, [work, strength]: [f64; 2]) -> Self {
-        let zone = Zone::around(&parts, outer, strength);
-        let approach = parts.hertzian() + (zone.density(WHOLE) - zone.answer.edge) / parts.edge[0];
-        let answered = dot(&zone.answer.values, &parts.system.ones);
-        let mut point = Self::new(parts, Adhesion::Maugis { work, strength }, approach);
-        point.load += zone.load(WHOLE) + 2.0 * PI * answered;
-        point.outer_radius = Some(outer);
-        point.zone = Some(zone);
-        point
     }
 
     /// Load or approach, whichever is controlled.
@@ -193,15 +179,6 @@ impl Point {
             if *r <= self.radius { 0.0 } else { self.parts.tip.gap(*r) + u - self.approach }
         };
         Ok(r.iter().zip(self.displacement(r)?).map(gap).collect())
-    }
-
-    /// Gap at the end of the cohesive zone \[m\], by φ between it and the contact alone, as in [`disc`]; 0 without one.
-    pub(super) fn zone_gap(&self) -> f64 {
-        let Some(zone) = &self.zone else { return 0.0 };
-        let density = self.density();
-        let values = |places: &[f64]| density.at(places).iter().map(|[value, _]| *value).collect();
-        let loaded = zone.abel(WHOLE, zone.outer) - density.abel_outside(zone.outer, values);
-        self.parts.stack.short() * loaded
     }
 
     /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.

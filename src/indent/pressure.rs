@@ -7,7 +7,6 @@ use spec_math::cephes64::{j0, j1};
 use crate::indent::equation::basis::{Break, Panel, Waves};
 use crate::indent::equation::{Parts, add, times};
 use crate::indent::tip::{FEW_KINKS, TipParameter};
-use crate::numerics::parallel::dot;
 use crate::numerics::quadrature::Rule;
 
 /// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
@@ -113,7 +112,7 @@ impl Density<'_> {
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
         let rule =
             Rule::kept((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
-        let breaks = self.breaks(a);
+        let breaks = self.breaks();
         // t = r cosh θ takes the root away.
         let (panels, is_axis) = match r > 0.0 {
             true => {
@@ -133,40 +132,33 @@ impl Density<'_> {
         singular - sum
     }
 
-    fn breaks(&self, radius: f64) -> Vec<Break> {
-        self.parts.tip.breaks(radius, FEW_KINKS).unwrap_or_default()
+    fn breaks(&self) -> Vec<Break> {
+        let parts = self.parts;
+        let breaks = parts.tip.breaks(parts.system.radius, FEW_KINKS);
+        breaks.unwrap_or_default()
     }
 
-    /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a.
+    /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a; t = r sin θ takes the root away.
     pub(super) fn abel(&self, r: f64) -> f64 {
         self.in_angles(r, |[value, _], _| value)
     }
 
-    /// ∫_a^r φ(t)/√(r²−t²) dt at r > a, of the values that a function gives at places outside of the contact.
-    pub(super) fn abel_outside(&self, r: f64, values: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-        let (angles, weights) = self.angles(r, [self.parts.system.radius, r]);
-        let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
-        dot(&values(&places), &weights)
-    }
-
     /// ∫ f dθ of a function of φ and φ' at t = r sin θ, and of θ, over the contact; r ≥ a.
     fn in_angles(&self, r: f64, f: impl Fn([f64; 2], f64) -> f64) -> f64 {
-        let (angles, weights) = self.angles(r, [0.0, self.parts.system.radius]);
+        let parts = self.parts;
+        let a = parts.system.radius;
+        let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
+        let rule =
+            Rule::kept((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
+        let angle = |t: f64| (t / r).min(1.0).asin();
+        let breaks = mapped(&self.breaks(), angle);
+        let panels = Panel::between(0.0, &breaks, angle(a)).into_iter();
+        let (angles, weights): (Vec<f64>, Vec<f64>) =
+            panels.flat_map(|panel| panel.nodes(rule)).unzip();
         let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
         let values = self.at(&places);
         let terms = values.iter().zip(angles.iter().zip(&weights));
         terms.map(|(value, (angle, w))| w * f(*value, *angle)).sum()
-    }
-
-    /// Nodes θ, with weights, for t = r sin θ from `low` to `high`, which takes away the root of r² − t².
-    fn angles(&self, r: f64, [low, high]: [f64; 2]) -> (Vec<f64>, Vec<f64>) {
-        let stack = &self.parts.stack;
-        let ratio = stack.thickness().map_or(0.0, |h| (high - low) / h);
-        let rule = Rule::kept((stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
-        let angle = |t: f64| (t / r).min(1.0).asin();
-        let breaks = mapped(&self.breaks(high), angle);
-        let panels = Panel::between(angle(low), &breaks, angle(high)).into_iter();
-        panels.flat_map(|panel| panel.nodes(rule)).unzip()
     }
 }
 

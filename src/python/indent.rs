@@ -1,7 +1,5 @@
 //! Indentation: the classes of tips and adhesion, and the handles that `nacre.indent.solution` is around.
 
-use std::sync::OnceLock;
-
 use ndarray::{Array1, Array2, ArrayD};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
@@ -196,17 +194,10 @@ impl PyIndentation {
         };
         let shape = values.shape().to_vec();
         let indent = self.indent.clone();
-        let values: Vec<f64> = values.into_iter().collect();
-        let (all, served) = (values.clone(), OnceLock::new());
-        let at = move |control: Control, value: f64| {
-            let served = served.get_or_init(|| indent.serving(control, branch, &all));
-            served.at(control, value, branch)
-        };
-        let radial = self.indent.clone();
-        let points = worked(py, progress, values, move |value| match held {
-            Held::Load => at(Control::Load, *value),
-            Held::Approach => at(Control::Approach, *value),
-            Held::Radius => radial.at_radius(*value),
+        let points = worked(py, progress, values.into_iter().collect(), move |value| match held {
+            Held::Load => indent.at(Control::Load, *value, branch),
+            Held::Approach => indent.at(Control::Approach, *value, branch),
+            Held::Radius => indent.at_radius(*value),
         })?;
         if points.is_empty() {
             return Err(PyValueError::new_err(

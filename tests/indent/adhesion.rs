@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nacre::indent::{Adhesion, Branch, Control, Form, Indent, Point, Stack, Tip};
+use nacre::indent::{Adhesion, Branch, Control, Indent, Stack, Tip};
 use nacre::{Elastic, Result};
 
 use super::coated;
@@ -141,51 +141,6 @@ fn maugis_on_bare_and_coated_bodies() -> Result<()> {
         let top = ratio.powf(2.0 / 3.0);
         claim("maugis-jkr", pull_off(&stack, 100.0 * top)? / due - 1.0);
         claim("maugis-dmt", pull_off(&stack, 0.002 * top)? / 2.0 - 1.0);
-    }
-    Ok(())
-}
-
-/// Contacts that a table of the radius serves are those of their radius, to the 1e-9 that is said, on a bare body, on layers, and with
-/// a kink of the tip within the radii. Values without a contact keep their error.
-#[test]
-#[ignore = "slow"]
-fn tables_serve_many_contacts() -> Result<()> {
-    let bare = Stack::plan(&[Elastic::new(0.91, 0.3)?.into()])?;
-    let [soft, stiff] = [0.1, 10.0].map(|ratio| Stack::plan(&[coated(ratio, 0.3)?.into()]));
-    let round = Tip::paraboloid(1.0)?;
-    let kinked = Tip::new(Form::RoundedCone { slope: 1.0, radius: 1.0 })?;
-    for (stack, tip, strength) in
-        [(&bare, &round, 0.5), (&soft?, &round, 0.1), (&stiff?, &kinked, 0.5)]
-    {
-        let adhesion = Adhesion::Maugis { work: WORK, strength };
-        let indent = Indent::new(stack, tip).with_adhesion(adhesion)?;
-        let first = indent.pull_off(Control::Load)?.radius;
-        let points = [1.1, 1.3, 2.0, 2.2, 2.5, 3.0, 3.5].map(|part| indent.at_radius(part * first));
-        let points: Vec<_> = points.into_iter().collect::<Result<_>>()?;
-        for control in [Control::Load, Control::Approach] {
-            let of = |load: f64, approach: f64| match control {
-                Control::Load => load,
-                Control::Approach => approach,
-            };
-            let last = indent.pull_off(control)?;
-            let least = of(last.load, last.approach);
-            // The start of a search under a negative approach may be too small a contact.
-            let points = points.iter().filter(|p| control == Control::Load || p.approach > 0.0);
-            let values: Vec<f64> = points.clone().map(|p| of(p.load, p.approach)).collect();
-            let served = indent.serving(control, Branch::Stable, &values);
-            for (value, due) in values.iter().zip(points) {
-                let point = served.at(control, *value, Branch::Stable)?;
-                let error = (of(point.load, point.approach) - value).abs();
-                below!(error, 1e-9 * least.abs().max(value.abs()), strength, value);
-                near!(point.radius, due.radius, 1e-8, strength, value);
-                let [outer, due_outer] =
-                    [&point, due].map(|p: &Point| p.outer_radius.unwrap_or(0.0));
-                near!(outer, due_outer, 1e-8, strength, value);
-                let [pressure, due_pressure] = [&point, due].map(|p: &Point| p.pressure(&[0.0]));
-                near!(pressure?[0], due_pressure?[0], 1e-7, strength, value);
-            }
-            assert!(served.at(control, 1.1 * least, Branch::Stable).is_err());
-        }
     }
     Ok(())
 }

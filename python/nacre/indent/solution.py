@@ -683,12 +683,6 @@ class Indentation:
             If not exactly one is given, where nothing touches, where the contact would be larger
             than the tip or than 1024 times the thickness of the top layer, and where it is a ring:
             pressure and gap of every contact are checked.
-
-        Notes
-        -----
-        With the adhesion of Maugis and Dugdale, more than four loads or approaches on the stable
-        branch share one table over the contact radius. The load or approach of each contact is
-        then what was given to 1e-9 of it, or of that of pull-off where this is larger.
         """
         return self._at(
             {"load": load, "approach": approach, "radius": radius}, branch, "load", progress

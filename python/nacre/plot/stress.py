@@ -201,7 +201,7 @@ def stress_section(
         normal = "y" if along == "x" else "x"
         title = f"at {normal} = {written(at, 'm', 3)}; the cross marks the largest value, "
         title += written(float(np.nanmax(values)), "Pa", 3)
-        notes = ["triangles: the edge of the contact"] if ends else []
+        notes = []
         if same:
             axes.set_aspect("equal")
             if enlarged:

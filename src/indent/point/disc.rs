@@ -23,10 +23,6 @@ use crate::numerics::special::chebyshev_nodes;
 /// thickness leave (4 + √17)⁻⁸ = 5e-8 of it.
 const NODES: usize = 8;
 
-/// Part of a thickness on a panel outside of a contact with a cohesive zone, from which its gap follows: on the longest, half of a
-/// thickness, eight nodes leave (8 + √65)⁻⁸ = 2e-10, below [`OVERLAP`].
-const FINER: f64 = 1.0 / 3.0;
-
 /// Pressure below 0 that counts as rounding, of the mean one; it lies above what the panels leave.
 const TENSION: f64 = 1e-6;
 
@@ -68,25 +64,24 @@ impl Layers {
         Self { ends, rows }
     }
 
-    /// Value and slope at `t`: the polynomials through those at the nodes of its panel, by the barycentric formula
+    /// The slope at `t`: the polynomial through the values at the nodes of its panel, by the barycentric formula
     /// (Berrut and Trefethen 2004, eq. 4.2, doi:10.1137/S0036144502417715). `points` are the nodes in −1 to 1 with their
     /// barycentric weights. Beyond the first and the last panel these continue.
-    fn at(&self, t: f64, points: &[[f64; 2]; NODES]) -> [f64; 2] {
+    fn slope(&self, t: f64, points: &[[f64; 2]; NODES]) -> f64 {
         let after = self.ends.partition_point(|end| *end <= t);
         let panel = after.clamp(1, self.rows.len()) - 1;
         let [low, high] = [self.ends[panel], self.ends[panel + 1]];
         let x = (2.0 * t - low - high) / (high - low);
-        let (mut sums, mut weights) = ([0.0; 2], 0.0);
-        for ([place, weight], row) in points.iter().zip(&self.rows[panel]) {
+        let (mut weighted_slopes, mut weights) = (0.0, 0.0);
+        for ([place, weight], [_, slope]) in points.iter().zip(&self.rows[panel]) {
             let distance = x - place;
             if distance.abs() < 1e-14 {
-                return *row;
+                return *slope;
             }
-            let weight = weight / distance;
-            sums = [sums[0] + weight * row[0], sums[1] + weight * row[1]];
-            weights += weight;
+            weighted_slopes += weight / distance * slope;
+            weights += weight / distance;
         }
-        sums.map(|sum| sum / weights)
+        weighted_slopes / weights
     }
 }
 
@@ -171,19 +166,16 @@ impl Point {
         }
     }
 
-    /// Ends of panels, at most one thickness long within the contact and half of the distance from all that is loaded more outside,
-    /// that do not pass a kink of the tip.
+    /// Ends of panels, at most one thickness long within the contact and half of the distance from it more outside, that do not pass
+    /// a kink of the tip.
     fn panels(&self, [low, high]: [f64; 2]) -> Vec<f64> {
-        let outer = self.outer_radius.unwrap_or(self.radius);
-        let is_finer = low > 0.0 && self.zone.is_some();
-        let shortest = self.parts.stack.thickness().unwrap_or(f64::INFINITY)
-            * if is_finer { FINER } else { 1.0 };
         let kinks = self.parts.tip.kinks.iter().copied();
         let mut ends = vec![low];
         let mut start = low;
         for end in kinks.filter(|b| *b > low && *b < high).chain([high]) {
             while start < end {
-                let length = shortest + 0.5 * (start - outer).max(0.0);
+                let length = self.parts.stack.thickness().unwrap_or(f64::INFINITY)
+                    + 0.5 * (start - self.radius).max(0.0);
                 start = if end - start < 1.5 * length { end } else { start + length };
                 ends.push(start);
             }
@@ -220,7 +212,7 @@ impl Point {
         }
         let points = chebyshev_nodes();
         let slopes = |places: &[f64]| -> Vec<f64> {
-            let at = |t: &f64| layers.at(*t, &points)[1] - f * tip.transform(*t)[1];
+            let at = |t: &f64| layers.slope(*t, &points) - f * tip.transform(*t)[1];
             places.iter().map(at).collect()
         };
         let mut places = self.knots([0.0, a]);
@@ -269,14 +261,7 @@ impl Point {
         places.extend(nodes(&layers.ends));
         places.retain(|r| *r > c * (1.0 + 1e-9));
         places.sort_by(f64::total_cmp);
-        let (density, points) = (self.density(), chebyshev_nodes());
-        let values = |places: &[f64]| -> Vec<f64> {
-            let at =
-                |t: &f64| layers.at(*t, &points)[0] + f * (self.approach - tip.transform(*t)[0]);
-            places.iter().map(at).collect()
-        };
-        let short = parts.stack.short();
-        let apart = |r: f64| Ok(short * (zone.abel(WHOLE, r) - density.abel_outside(r, values)));
+        let apart = |r: f64| Ok(self.gap(&[r])?[0]);
         let tolerance = OVERLAP * size;
         Ok(least(&inner, apart)? >= -tolerance
             && least(&inner, |r| Ok(opening - apart(r)?))? >= -tolerance

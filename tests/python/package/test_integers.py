@@ -58,7 +58,7 @@ def read_curve(path: Path, **given: Any) -> Any:
 
 
 def read_profile(path: Path, **given: Any) -> Any:
-    options = {"unit": "mm", "x": 0, "drop": 1} | given
+    options = {"unit": ("mm", "mm"), "x": 0, "drop": 1} | given
     return nacre.SampledProfile.read(table(path / "a.txt"), **options)  # type: ignore[arg-type]
 
 

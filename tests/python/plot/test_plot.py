@@ -337,7 +337,6 @@ def test_triangles_mark_the_edge_of_the_contact(ball: nacre.Solution, at: float)
     half = 1e6 * np.sqrt(radius**2 - at**2)
     assert_close(np.asarray(triangles.get_xdata()), [-half, half], rtol=1e-3)
     assert not np.any(triangles.get_ydata())
-    assert "triangles: the edge" in axes.get_title(loc="left")
 
 
 def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solution) -> None:
