@@ -97,8 +97,9 @@ class _Section(NamedTuple):
         peak = (across.factor * self.peak[0], down.factor * self.peak[1])
         for colour, width in (("black", 2.6), ("white", 1.2)):
             axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
-        ends = across.factor * np.array(self.contact)
-        axes.plot(ends, 0.0 * ends, "k", marker=CARETDOWN, linestyle="none", clip_on=False)
+        if self.contact:  # a line without points has no place in the layout
+            ends = across.factor * np.array(self.contact)
+            axes.plot(ends, 0.0 * ends, "k", marker=CARETDOWN, linestyle="none", clip_on=False)
         axes.set(xlabel=f"{self.along} [{across.unit}]", ylabel=f"z [{down.unit}]")
         axes.set_xlim(across.factor * self.ends[0], across.factor * self.ends[1])
         axes.set_ylim(down.factor * bottom, 0.0)

@@ -101,7 +101,7 @@ def saved(name: str, path: Path) -> None:
 
 
 ROUGH = np.random.default_rng(1).normal(size=(8, 6)) * 1e-8
-POINTS = "".join(f"{0.5 * i} {0.5 * j} {z * 1e9:.3f}\n" for (i, j), z in np.ndenumerate(ROUGH))
+POINTS = "".join(f"{2.5 * i} {2.5 * j} {z * 1e9:.3f}\n" for (i, j), z in np.ndenumerate(ROUGH))
 TABLE = "# unit: nm\n# spacing: 1, 2\n" + "".join(
     "; ".join(f"{z * 1e9:.4f}".replace(".", ",") for z in row) + "\n" for row in ROUGH
 )
