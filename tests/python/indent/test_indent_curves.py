@@ -133,7 +133,6 @@ TEXTS: dict[str, tuple[str, str]] = {
 
 
 GIVEN: dict[str, dict[str, Any]] = {
-    "labels and a row of units": {"depth": "Displacement Into Surface"},
     "names of its own": {"depth": "Pd", "force": "Fn"},
 }
 """Columns that are given, since their names are not known or not alone."""
@@ -177,7 +176,7 @@ def test_the_encoding_is_found(encoding: str, tmp_path: Path) -> None:
         ("displacement, mm\tload, nN", (1e-6, 1e6)),
         ("Penetration depth in Å\tNormal Load {kN}", (10, 1e-6)),
         ("depth nm\tload gf", (1, 1 / 9.80665)),
-        ("Depth Corrected (nm)\tRaw Load (mN)", (1, 1)),
+        ("Depth Corrected (nm)\tTest Load (mN)", (1, 1)),
         ("Depth (in)\tForce (mN)", (1e-9 / 0.0254, 1)),
     ],
 )
