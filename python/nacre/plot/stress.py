@@ -202,14 +202,13 @@ def stress_section(
         normal = "y" if along == "x" else "x"
         title = f"at {normal} = {written(at, 'm', 3)}; the cross marks the largest value, "
         title += written(float(np.nanmax(values)), "Pa", 3)
-        notes = []
         if same:
             axes.set_aspect("equal")
             if enlarged:
                 below.set_box_aspect(bottom / (high - low))
         else:
-            notes.append(f"{along} and z to different scales")
-        axes.set_title("\n".join([title, "; ".join(notes)]).rstrip())
+            title += f"\n{along} and z to different scales"
+        axes.set_title(title)
     return axes
 
 
