@@ -202,8 +202,8 @@ class Materials(Mapping[str, Card]):
         """Return the card of a name, or raise a `KeyError` that names others."""
         if isinstance(name, str) and name in self._cards:
             return self._cards[name]
-        is_like = _similar(name, self._cards)
-        names = "" if is_like else f"; the names are {', '.join(map(repr, self._cards))}"
+        hint = _similar(name, self._cards)
+        names = "" if hint else f"; the names are {', '.join(map(repr, self._cards))}"
         raise KeyError(unknown(name, self._cards) + names)
 
     def __iter__(self) -> Iterator[str]:
