@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import os
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -31,6 +32,8 @@ LONGEST = 1000
 """Largest number of characters of an error, whose keys may be long."""
 LARGEST = 10_000_000
 """Largest size of a case file in bytes, which takes a few seconds to read."""
+DEVICE = re.compile(r"(?i):[^\\/]*$|(^|[\\/])(con|prn|aux|nul|com\d|lpt\d)(\.[^\\/]*)?$")
+"""Names of devices, drives and streams on Windows, which no file can have."""
 
 
 class CaseError(ValueError):
@@ -252,6 +255,11 @@ class Case:
             ends = [file.resolve() for file in (path, path.with_suffix(".journal"))]
         except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
             raise CaseError(f"{self.name}: {key}: {error}") from error
+        if DEVICE.search(store):
+            raise CaseError(
+                f"{self.name}: {key}: must be a name that Windows allows for a file, got "
+                f"{_short_repr(store)}"
+            )
         if not all(end.is_relative_to(folder) for end in ends):
             hint = "; nacre sweep --store takes a file anywhere" if key == "sweep.store" else ""
             raise CaseError(

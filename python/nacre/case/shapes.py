@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 import nacre
 from nacre import rough
@@ -104,11 +104,20 @@ SHAPES: dict[str, Any] = {
 READ = parameter_texts(nacre.HeightMap.read)
 
 
+def _on_this_computer(path: str) -> str:
+    """Return a path unless Windows would log in to another computer to open it."""
+    if path.startswith(("\\\\", "//")):
+        raise ValueError(f"must be a file of this computer, got {path!r}; copy it beside the case")
+    return path
+
+
 class HeightMap(Shape):
     """A measured surface in a file."""
 
     kind: Literal["height_map"] = Field(description="Kind, which decides on the other keys.")
-    path: str = Field(description="File, relative to the folder of the case. " + READ["path"])
+    path: Annotated[str, AfterValidator(_on_this_computer)] = Field(
+        description="File, relative to the folder of the case. " + READ["path"]
+    )
     spacing: Number | Pair | None = Field(None, description=READ["spacing"])
     unit: str | None = Field(None, description=READ["unit"])
     detrend: Literal["none", "mean", "plane", "quadratic"] = Field(

@@ -116,8 +116,8 @@ class FrictionReport(Result):
     """Order of steady rolling in the length of a cell; 0 in sliding and in rolling cell by cell."""
     tolerance: float
     """Tolerance that was asked for."""
-    seconds: float
-    """Seconds that the step took, without planning."""
+    seconds: float = dataclasses.field(compare=False)
+    """Seconds that the step took, without planning; they do not count in comparisons."""
     warnings: tuple[str, ...] = ()
     """Warnings about the solution; each was also issued as a `nacre.NacreWarning`."""
 

@@ -643,3 +643,10 @@ def test_the_case_of_the_page_is_one(tmp_path: Path, capsys: Capture) -> None:
     assert "9 cases, 0 failed" in printed
     assert command("solve", path) == 0
     assert "safety factor" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("path", [r"\\server\share\a.npy", "//server/share/a.npy", r"\\?\UNC\b"])
+def test_a_case_opens_no_file_of_another_computer(path: str) -> None:
+    table = tomllib.loads(TEXT) | {"shape": MAP | {"path": path}}
+    with pytest.raises(CaseError, match=r"shape\.path: must be a file of this computer, got"):
+        Case(table)

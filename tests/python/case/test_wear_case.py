@@ -135,6 +135,10 @@ def test_every_keyword_of_wear_is_a_key_unless_it_is_an_array_or_stands_elsewher
         ({"wear": {"steps": 0}}, 'wear.steps: must be "auto", an integer above 0, or a list'),
         ({"wear": {"until": "worn"}}, 'wear.until: must be "through", got'),
         ({"wear": {"store": "../worn.nc"}}, "wear.store: must be in the folder of the case"),
+        *(
+            ({"wear": {"store": name}}, "wear.store: must be a name that Windows allows for a file")
+            for name in ("NUL.nc", "below\\con", "com1.a.nc", "a:worn.nc", "worn.nc:stream")
+        ),
         ({"solve": {"hardness": 1e9}}, "solve.hardness: must not be given beside the table wear"),
         ({"slide": {"friction": 0.1}, "roll": ROLL}, "roll: must not be given beside the table"),
     ],

@@ -88,6 +88,30 @@ def test_a_state_that_is_wrong_is_refused(kind: str) -> None:
         values.decode(other)
 
 
+def slower(state: Any) -> Any:
+    """Return a state whose solves took a second more."""
+    if isinstance(state, dict):
+        later = {key: slower(value) for key, value in state.items()}
+        return later | ({"seconds": state["seconds"] + 1.0} if "seconds" in state else {})
+    return [slower(value) for value in state] if isinstance(state, list) else state
+
+
+@every_result
+def test_the_seconds_of_a_solve_do_not_count_in_comparisons(kind: str) -> None:
+    result = RESULTS[kind]
+    state = result.to_dict()
+    assert kind == "Report" or type(result).from_dict(slower(state)) == result
+    assert type(result).from_dict(state) == result
+
+
+def test_a_contact_solved_twice_is_the_same_solution() -> None:
+    again = nacre.solve(
+        BALL, results.COATED, STEEL, grid=GRID, load=10.0, tilt=(None, 1e-4), tolerance=1e-6
+    )
+    assert again.report.seconds != SOLUTION.report.seconds
+    assert again == SOLUTION
+
+
 @pytest.mark.parametrize(
     ("key", "value"),
     [
