@@ -16,7 +16,7 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.text import is_text, listed
 from nacre._tools.typing import Topography
-from nacre.surfaces.heights import Heights, Text
+from nacre.surfaces.heights import NO_MAP, Heights, Text
 
 Array = npt.NDArray[np.float64]
 Content = TypeVar("Content")
@@ -218,14 +218,10 @@ class Reader(Protocol):
 
 def _heights(reader: Reader, channel: str | int | None) -> Heights:
     """Return the heights of a channel, which must be a map."""
-    maps = [item for item in reader.channels if item.dim == 2]
-    lines = [item for item in reader.channels if item.dim == 1]
+    maps = [item for item in reader.channels if _dim(item) == 2]
+    lines = [item for item in reader.channels if _dim(item) == 1]
     if lines and not maps:
-        raise Other(
-            f"holds a profile, places beside heights, not a map: a surface must have two "
-            f"dimensions, got a line in the channel {lines[0].name!r}; SampledProfile.read reads "
-            f"it for a Roller"
-        )
+        raise Other(NO_MAP.format(f" in the channel {lines[0].name!r}"))
     if not maps:
         names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
@@ -239,14 +235,14 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
 
 def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a channel, which must be a line, and their unit."""
-    lines = [item for item in reader.channels if item.dim == 1]
-    if not lines:
+    if all(_dim(item) != 1 for item in reader.channels):
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
     profile = _channel(reader, channel, 1)
     line = profile.topography()
+    positions = line.positions() if line.dim == 1 else line.positions()[0]
     places, heights = (
-        np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
-        for values in (line.positions(), line.heights())
+        np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan).ravel()
+        for values in (positions, line.heights())
     )
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
@@ -279,7 +275,7 @@ def of_topography(surface: Topography) -> Heights:
 
 def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
     """Return the channel that is chosen, or the only one with heights of this dimension."""
-    channels = [(number, item) for number, item in enumerate(reader.channels) if item.dim == dim]
+    channels = [(k, item) for k, item in enumerate(reader.channels) if _dim(item) == dim]
     heights = [(k, item) for k, item in channels if _kind(item) == "height"] or channels
     chosen = [item for k, item in channels if choice in (k, item.name)]
     if choice is None and len(heights) == 1:
@@ -294,6 +290,11 @@ def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
     keyword = "channel" if dim == 2 else "height"
     given, got = ("given, as ", "") if choice is None else ("", f", got {choice!r}")
     raise Unfound(f"{keyword} must be {given}one of {listed(texts)}{got}")
+
+
+def _dim(channel: Channel) -> int:
+    """Return 2 for a map, and 1 for a line, also where it is the only one of a map."""
+    return 1 if channel.dim == 2 and 1 in (channel.nb_grid_pts or ()) else channel.dim
 
 
 def _kind(channel: Channel) -> str:

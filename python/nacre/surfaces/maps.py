@@ -15,8 +15,9 @@ from nacre._tools.arguments import name_or_number
 from nacre._tools.progress import lasting
 from nacre._tools.typing import AnyPath, Pair, Topography
 from nacre.surfaces import heights as _heights
-from nacre.surfaces.heights import LEAST_MEASURED, METRES, Heights, without_sentinels
+from nacre.surfaces.heights import LEAST_MEASURED, METRES, NO_MAP, Heights, without_sentinels
 from nacre.surfaces.missing import harmonic
+from nacre.surfaces.scans import scan
 
 Array = npt.NDArray[np.float64]
 
@@ -146,6 +147,8 @@ def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tupl
         if channel is not None:
             raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
         surface = _heights.npy(path)
+    elif scan(path) is not None:
+        raise ValueError(f"{str(path)!r} {NO_MAP.format('')}")
     elif channel is None and (points := _heights.zygo(path)) is not None:
         surface = points
     elif ending in (".csv", ".xyz"):
