@@ -7,7 +7,9 @@ import re
 import warnings
 import zipfile
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -16,7 +18,7 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.text import is_text, listed
 from nacre._tools.typing import Topography
-from nacre.surfaces.heights import NO_MAP, Heights, Text
+from nacre.surfaces.heights import NO_MAP, OFF, Heights, Text, metres
 
 Array = npt.NDArray[np.float64]
 Content = TypeVar("Content")
@@ -55,6 +57,65 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
         return _table(text, channel)
 
     return _first_content(path, channel, lambda reader: _heights(reader, channel), table)
+
+
+def netcdf(path: Path, channel: str | int | None) -> Heights:
+    """Return the heights in a file of NetCDF, by xarray where SurfaceTopography does not know it.
+
+    The coordinates x and y have units, or the spacing is not known.
+    """
+    with suppress(ValueError, ModuleNotFoundError):
+        if (known := instrument(path, channel)).spacing is not None:
+            return known
+    with extra("files"):
+        import xarray
+    try:
+        with xarray.open_dataset(path, decode_times=False, create_default_indexes=False) as file:
+            arrays = [a for a in file.data_vars.values() if a.ndim == 2 and a.dtype.kind in "biuf"]
+            if not arrays:
+                raise Unfound("the file must hold heights, an array of two dimensions, got none")
+            channels = [
+                SimpleNamespace(name=a.name, dim=2, nb_grid_pts=a.shape, unit=a.attrs.get("units"))
+                for a in arrays
+            ]
+            chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
+            array = arrays[channels.index(chosen)]
+            if array.nbytes > max(RATIO * path.stat().st_size, LEAST_UNPACKED):
+                raise Unfound(
+                    f"heights must be in proportion to the file, got {array.nbytes} bytes"
+                )
+            heights = array.values.astype(np.float64)
+            steps = [_step(file[name]) if name in file else None for name in map(str, array.dims)]
+    except Unfound as error:
+        raise ValueError(f"{error}; the file is {str(path)!r}") from None
+    except Exception as error:  # xarray raises anything for a damaged file
+        raise ValueError(
+            f"{str(path)!r} cannot be read: {' '.join(str(error).split())[:200]}"
+        ) from error
+    ascending = tuple(slice(None, None, -1 if step and step < 0 else 1) for step in steps)
+    heights, (dx, dy) = heights[ascending], (abs(step) if step else None for step in steps)
+    if array.dims == ("y", "x"):
+        heights, dx, dy = heights.T, dy, dx
+    return Heights(
+        heights,
+        (dx, dy) if dx and dy else None,
+        chosen.unit if isinstance(chosen.unit, str) else None,
+        False,
+        note=", whose coordinates have no unit of length,",
+        has_metres=True,
+    )
+
+
+def _step(coordinate: Any) -> float | None:
+    """Return the distance between the places of a map [m], or None where they are no lengths."""
+    places, unit = coordinate.values.astype(np.float64), str(coordinate.attrs.get("units", ""))
+    size = metres(unit)
+    if size is None or places.size < 2:
+        return None
+    step = float(places[-1] - places[0]) / (places.size - 1)
+    if not (np.abs(places - places[0] - step * np.arange(places.size)) <= OFF * abs(step)).all():
+        raise ValueError(f"its places along {coordinate.name} must be on a regular grid")
+    return step * size
 
 
 def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:
@@ -108,8 +169,6 @@ def _first_content(
     if is_plain and (surface := table(bool(likely))) is not None:
         return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
-        if ending == "nc":
-            reasons_text += "; HeightMap(xarray.open_dataarray(path), spacing) takes other NetCDF"
         raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
     maybe = [cls for cls in instruments if match[cls] == MagicMatch.MAYBE and cls not in likely]
     surface = read_first([cls for cls in maybe if not is_plain or cls.format() in HEADED])
@@ -239,7 +298,9 @@ def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str 
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
     profile = _channel(reader, channel, 1)
     line = profile.topography()
-    positions = line.positions() if line.dim == 1 else line.positions()[0]
+    positions = line.positions()
+    if line.dim == 2:
+        positions = positions[int(np.argmax(line.nb_grid_pts))]
     places, heights = (
         np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan).ravel()
         for values in (positions, line.heights())

@@ -56,8 +56,8 @@ def read_map(
         heights, with one line for each x in a ``.csv`` and one for each y in any other and below
         the head of an instrument. Heads, headings, units such as ``# unit: um`` and
         ``# spacing: 0.5 0.5``, decimal commas, and numbers that stand for missing points are
-        recognised; a profile is refused. SurfaceTopography reads any other file. A topography is
-        an object of that library.
+        recognised; a profile is refused. Xarray reads its own NetCDF files, whose coordinates need
+        units, and SurfaceTopography any other file. A topography is an object of that library.
     spacing : float or tuple of float, optional
         Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
     unit : str, optional
@@ -153,6 +153,10 @@ def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tupl
         surface = points
     elif ending in (".csv", ".xyz"):
         surface = _heights.text(path, channel)
+    elif ending == ".nc":
+        from nacre.surfaces.instruments import netcdf
+
+        surface = netcdf(path, channel)
     else:
         from nacre.surfaces.instruments import instrument
 
