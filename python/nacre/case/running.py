@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import warnings
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -43,6 +44,11 @@ def solve(
 ) -> None:
     """Solve the contact, wear, indentation or bearing of a case file."""
     case_file = _read_case(case, units)
+    if case_file.has_sweep:
+        print(
+            f"nacre: {case}: solves the case alone; nacre sweep solves the study in its [sweep]",
+            file=sys.stderr,
+        )
     if case_file.kind not in SAVED:
         if initial is not None:
             raise CaseError(f"{case}: --initial must not be given for {ARTICLES[case_file.kind]}")

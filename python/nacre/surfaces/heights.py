@@ -280,6 +280,9 @@ class Text:
             fields = re.split(r"\s*[:=]\s*|\t|\s{2,}", " ".join(fields).strip(), maxsplit=1)
         if len(fields) == 1 and (match := NAMED_NUMBER.fullmatch(fields[0])):
             fields = [match[1], match[2]]
+        column = column_of(line)
+        if column.unit and first_words([column])[0] in AXES[2]:  # a title such as "z [um]"
+            self.head.setdefault("z unit", [column.unit])
         name, values = fields[0].strip(" :=").lower(), " ".join(fields[1:]).split()
         if name and values:
             self.head.setdefault(name, [value.replace(",", ".") for value in values])

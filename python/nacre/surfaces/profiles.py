@@ -158,7 +158,9 @@ def _table(
     spacing: float | None,
 ) -> tuple[Array, Array]:
     """Return positions and drops of a table [m]."""
-    table = Text.of(path).channel_table(None, keyword="")
+    file = Text.of(path)
+    table = file.channel_table(None, keyword="")
+    unit = unit or (file.unit() if table.width == 1 else None)
     values, words = np.array(table.rows), first_words(table.headings)
     if len(values) < 2 or (table.width < 2 and spacing is None):
         raise ValueError(

@@ -77,6 +77,7 @@ def _axes(records: list[str]) -> tuple[float, float, float]:
     given = [line.split()[2:] for line in records[1].splitlines() if "SPACING CX" in line]
     step = float(given[0][0]) if given else steps[0]
     factor = numbers["CX"][0] if is_standard else 1.0
-    if axes["CX"][1] != axes["CZ"][1]:
-        raise ValueError(f"its head has {axes['CX'][1]} places and {axes['CZ'][1]} heights")
-    return float(axes["CZ"][1]), step * factor * sizes["CX"], numbers["CZ"][0] * sizes["CZ"]
+    places, count = (float(axes[name][1]) for name in ("CX", "CZ"))
+    if places != count:
+        raise ValueError(f"its head has {places:g} places and {count:g} heights")
+    return count, step * factor * sizes["CX"], numbers["CZ"][0] * sizes["CZ"]
