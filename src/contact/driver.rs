@@ -19,7 +19,8 @@ use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Gap, Progress, Report, Resultants, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
-    Sampled, check_curved, check_seam, checked_gaps, initial_pressure, uniform_pressure, yielding_pressure,
+    Sampled, check_curved, check_seam, checked_gaps, initial_pressure, uniform_pressure,
+    yielding_pressure,
 };
 use crate::error::{Error, Result};
 use crate::model::grid::Window;

@@ -51,7 +51,12 @@ fn curvature(name: &'static str, radius: Option<f64>) -> Result<f64> {
     let Some(value) = radius else {
         return Ok(0.0);
     };
-    require(name, value, value.abs() > 0.0, "a number other than 0 (infinite or None for a straight surface)")?;
+    require(
+        name,
+        value,
+        value.abs() > 0.0,
+        "other than 0 (infinite or None for a straight surface)",
+    )?;
     Ok(1.0 / value)
 }
 

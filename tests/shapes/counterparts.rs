@@ -144,7 +144,7 @@ fn equivalent_radii_are_those_of_the_sum_of_curvatures() -> Result<()> {
         (Some(-1.0), Some(-1.0)),
         (Some(0.0), None),
         (Some(f64::NAN), None),
-        (Some(1.0), Some(f64::INFINITY)),
+        (Some(f64::INFINITY), Some(-1.0)),
     ] {
         assert!(equivalent_radius(one, two).is_err(), "{one:?} {two:?}");
     }
@@ -231,8 +231,7 @@ fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
 
 #[test]
 fn a_concave_counterpart_must_be_wider() -> Result<()> {
-    let (nan, infinity) = (f64::NAN, f64::INFINITY);
-    for radius in [-5e-3, -4e-3, 0.0, nan, infinity, -infinity] {
+    for radius in [-5e-3, -4e-3, 0.0, f64::NAN] {
         let cylinder = Cylinder::new(5e-3)?.with_counter_radius(radius);
         assert!(cylinder.is_err(), "{radius}");
         let sphere = Sphere::new(5e-3)?.with_counter_radii([None, Some(radius)]);
@@ -485,8 +484,7 @@ fn an_infinite_radius_is_flat() -> Result<()> {
 
 #[test]
 fn a_flat_shape_touches_where_the_grid_repeats_or_not_at_all() -> Result<()> {
-    let (flat, trough) =
-        (Cylinder::new(f64::INFINITY)?, Paraboloid::new(f64::INFINITY, 5e-3)?);
+    let (flat, trough) = (Cylinder::new(f64::INFINITY)?, Paraboloid::new(f64::INFINITY, 5e-3)?);
     let hertz = Line::new(5e-3, contact_modulus(&steel()?, None), 1e5)?;
     // 40 cells on a half-width.
     let line = Grid::line(120, 3.0 * hertz.half_width)?;
