@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import io
+import math
 import re
+import struct
 import warnings
 import zipfile
-from collections.abc import Callable, Sequence
+import zlib
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
@@ -34,6 +37,9 @@ NANOSCOPE = re.compile(rb"[\\?]\*File list")
 RATIO, LEAST_UNPACKED = 100, 1 << 24
 """Most bytes that a part of an X3P may unpack to: over those of the file, or these. Heights of 8
 bytes a point shrink to a half or a tenth."""
+UNPROPORTIONAL = "must hold nothing out of proportion: {} would unpack to {} bytes"
+COMPRESSED = 15
+"""Kind of a compressed element in a file of MATLAB's."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -56,7 +62,9 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
             return None
         return _table(text, channel)
 
-    return _first_content(path, channel, lambda reader: _heights(reader, channel), table)
+    return _first_content(
+        path, channel, lambda reader: _heights(reader, channel, _most(path)), table
+    )
 
 
 def netcdf(path: Path, channel: str | int | None) -> Heights:
@@ -80,10 +88,8 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
             ]
             chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
             array = arrays[channels.index(chosen)]
-            if array.nbytes > max(RATIO * path.stat().st_size, LEAST_UNPACKED):
-                raise Unfound(
-                    f"heights must be in proportion to the file, got {array.nbytes} bytes"
-                )
+            if array.nbytes > _most(path):
+                raise Unfound("the file " + UNPROPORTIONAL.format(repr(array.name), array.nbytes))
             heights = array.values.astype(np.float64)
             steps = [_step(file[name]) if name in file else None for name in map(str, array.dims)]
     except Unfound as error:
@@ -137,6 +143,7 @@ def _first_content(
         warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
         from SurfaceTopography.IO import MagicMatch, readers
 
+    _check_sizes(path)
     content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
     instruments = [reader for reader in readers if reader.format() not in TABLES]
     match = {reader: reader.can_read(content[:512]) for reader in instruments}
@@ -182,6 +189,37 @@ def _first_content(
         f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
         ".csv and .xyz"
     )
+
+
+def _most(path: Path) -> int:
+    """Return how many bytes a part of a file may unpack to."""
+    return max(RATIO * path.stat().st_size, LEAST_UNPACKED)
+
+
+def _check_sizes(path: Path) -> None:
+    """Refuse an archive with a part out of proportion; `_x3p_copy` looks at the parts of an X3P."""
+    parts: list[tuple[str, int]] = []
+    if path.suffix.lower() == ".mat":
+        with suppress(struct.error, zlib.error):  # of a damaged file
+            parts = [("a matrix", size) for size in _sizes_in_mat(path.read_bytes())]
+    elif path.suffix.lower() != ".x3p" and zipfile.is_zipfile(path):
+        with suppress(zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
+            parts = [(item.filename, item.file_size) for item in archive.infolist()]
+    for name, size in parts:
+        if size > _most(path):
+            raise ValueError(f"{str(path)!r} {UNPROPORTIONAL.format(repr(name[:60]), size)}")
+
+
+def _sizes_in_mat(content: bytes) -> Iterator[int]:
+    """Yield the bytes that the compressed elements of a file of MATLAB's version 5 unpack to."""
+    tag = struct.Struct("<II" if content[126:128] == b"IM" else ">II")
+    at = 128
+    while at + tag.size <= len(content):
+        kind, size = tag.unpack_from(content, at)
+        at += tag.size
+        if kind == COMPRESSED:
+            yield tag.unpack(zlib.decompressobj().decompress(content[at : at + 100], tag.size))[1]
+        at += size
 
 
 class Other(ValueError):
@@ -233,16 +271,13 @@ def _x3p_copy(path: Path) -> str | io.BytesIO:
         with zipfile.ZipFile(path) as archive, zipfile.ZipFile(buffer, "w") as copy:
             members = {item.filename: item for item in archive.infolist()}
             main = next(name for name in members if name.rpartition("/")[2] == "main.xml")
-            folder, largest = main.removesuffix("main.xml"), RATIO * path.stat().st_size
+            folder = main.removesuffix("main.xml")
             named: set[bytes] = set()
             for name in (main, *(name for name in members if name != main)):
                 if name != main and name.removeprefix(folder).encode() not in named:
                     continue
-                if members[name].file_size > max(largest, LEAST_UNPACKED):
-                    raise Other(
-                        f"must hold no file out of proportion: {name[:60]!r} would unpack to "
-                        f"{members[name].file_size} bytes"
-                    )
+                if (size := members[name].file_size) > _most(path):
+                    raise Other(UNPROPORTIONAL.format(repr(name[:60]), size))
                 content = archive.read(name)
                 if name == main:
                     content = REVISION.sub(rb"\1ISO5436 - 2000\2", content)
@@ -275,8 +310,8 @@ class Reader(Protocol):
     channels: Sequence[Channel]
 
 
-def _heights(reader: Reader, channel: str | int | None) -> Heights:
-    """Return the heights of a channel, which must be a map."""
+def _heights(reader: Reader, channel: str | int | None, most: float = math.inf) -> Heights:
+    """Return the heights of a channel, which must be a map of at most so many bytes."""
     maps = [item for item in reader.channels if _dim(item) == 2]
     lines = [item for item in reader.channels if _dim(item) == 1]
     if lines and not maps:
@@ -285,6 +320,8 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
         names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
     map_channel = _channel(reader, channel, 2)
+    if (size := 8 * math.prod(map_channel.nb_grid_pts or ())) > most:
+        raise Other(UNPROPORTIONAL.format(repr(map_channel.name), size))
     # A file without sizes needs some, which are not used.
     lacking = map_channel.physical_sizes is None and map_channel.nb_grid_pts is not None
     sizes = {"physical_sizes": tuple(map(float, map_channel.nb_grid_pts))} if lacking else {}

@@ -1,10 +1,15 @@
 """Profiles in forms with a head are read with its spacing and units; damaged ones are refused."""
 
 import struct
+import time
+import tracemalloc
+import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
@@ -229,3 +234,42 @@ def test_numbers_that_the_head_does_not_have_are_not_read(name: str, tmp_path: P
     else:
         with pytest.raises(ValueError, match=r"must be whole, .* and it has 4000000 heights"):
             nacre.SampledProfile.read(tmp_path / "a.smd")
+
+
+def unpacked(path: Path) -> None:
+    """Write zeros that unpack to 200 MB in the form of a file's ending."""
+    kind, cells = path.suffix, (5000, 5000)
+    if kind in (".h5", ".nc"):
+        with h5py.File(path, "w") as file:
+            chunks = {"chunks": (500, 500), "compression": "gzip", "fillvalue": 0.0}
+            file.create_dataset("height", cells, "f8", **chunks)
+    elif kind == ".mat":
+        head = b"MATLAB 5.0".ljust(124) + b"\x00\x01IM"
+        packed = zlib.compress(struct.pack("<II", 14, 200_000_000) + bytes(100_000))
+        path.write_bytes(head + struct.pack("<II", 15, len(packed)) + packed)
+    elif kind == ".sdf":
+        numbers = struct.pack("<HHddddBBB", *cells, STEP, STEP, 1e-9, -1.0, 0, 7, 0)
+        path.write_bytes(b"bISO-1.0" + b"made up".ljust(10) + 2 * b"010120261200" + numbers)
+    else:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("height.npy", bytes(20_000_000))
+
+
+@pytest.mark.parametrize("ending", ["h5", "nc", "mat", "sdf", "npz", "zip", "xlsx"])
+def test_what_would_unpack_out_of_proportion_is_refused(ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"a.{ending}"
+    path.write_bytes(b"\x89HDF\r\n\x1a\n")
+    with pytest.raises(ValueError, match="cannot be read|must be text|has no format"):
+        nacre.HeightMap.read(path)  # which imports the libraries
+    unpacked(path)
+    tracemalloc.start()
+    start = time.process_time()
+    try:
+        with pytest.raises(
+            ValueError, match=r"nothing out of proportion: .* would unpack to [0-9]+ b"
+        ):
+            nacre.HeightMap.read(path, unit="m", spacing=1e-6)
+        assert tracemalloc.get_traced_memory()[1] < 200e6
+    finally:
+        tracemalloc.stop()
+    assert time.process_time() - start < 1  # of the processor
