@@ -78,12 +78,20 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
     with extra("files"):
         import xarray
     try:
-        with xarray.open_dataset(path, decode_times=False, create_default_indexes=False) as file:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of HDF5 without dimensions
+            file = xarray.open_dataset(path, decode_times=False, create_default_indexes=False)
+        with file:
             arrays = [a for a in file.data_vars.values() if a.ndim == 2 and a.dtype.kind in "biuf"]
             if not arrays:
                 raise Unfound("the file must hold heights, an array of two dimensions, got none")
             channels = [
-                SimpleNamespace(name=a.name, dim=2, nb_grid_pts=a.shape, unit=a.attrs.get("units"))
+                SimpleNamespace(
+                    name=a.name,
+                    dim=2,
+                    nb_grid_pts=a.shape,
+                    unit=a.attrs.get("units", a.attrs.get("unit")),
+                )
                 for a in arrays
             ]
             chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
@@ -114,10 +122,10 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
 
 def _step(coordinate: Any) -> float | None:
     """Return the distance between the places of a map [m], or None where they are no lengths."""
-    places, unit = coordinate.values.astype(np.float64), str(coordinate.attrs.get("units", ""))
-    size = metres(unit)
-    if size is None or places.size < 2:
+    size = metres(str(coordinate.attrs.get("units", "")))
+    if size is None or coordinate.ndim != 1 or coordinate.size < 2:
         return None
+    places = coordinate.values.astype(np.float64)
     step = float(places[-1] - places[0]) / (places.size - 1)
     if not (np.abs(places - places[0] - step * np.arange(places.size)) <= OFF * abs(step)).all():
         raise ValueError(f"its places along {coordinate.name} must be on a regular grid")

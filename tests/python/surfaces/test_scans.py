@@ -259,7 +259,7 @@ def unpacked(path: Path) -> None:
 def test_what_would_unpack_out_of_proportion_is_refused(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"a.{ending}"
     path.write_bytes(b"\x89HDF\r\n\x1a\n")
-    with pytest.raises(ValueError, match="cannot be read|must be text|has no format"):
+    with pytest.raises(ValueError, match=r"cannot be read|must be text|has no format"):
         nacre.HeightMap.read(path)  # which imports the libraries
     unpacked(path)
     tracemalloc.start()
