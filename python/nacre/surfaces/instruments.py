@@ -95,7 +95,7 @@ def netcdf(path: Path, channel: str | int | None) -> Heights:
                 for a in arrays
             ]
             chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
-            array = arrays[channels.index(chosen)]
+            array = next(a for a in arrays if a.name == chosen.name)
             if array.nbytes > _most(path):
                 raise Unfound("the file " + UNPROPORTIONAL.format(repr(array.name), array.nbytes))
             heights = array.values.astype(np.float64)
@@ -129,7 +129,7 @@ def _step(coordinate: Any) -> float | None:
     step = float(places[-1] - places[0]) / (places.size - 1)
     if not (np.abs(places - places[0] - step * np.arange(places.size)) <= OFF * abs(step)).all():
         raise ValueError(f"its places along {coordinate.name} must be on a regular grid")
-    return step * size
+    return float(step * size)
 
 
 def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:

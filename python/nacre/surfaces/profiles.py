@@ -188,7 +188,7 @@ def _table(
     heights = without_sentinels(values[:, vertical]) * sizes[1]
     drops = heights if is_drop else _depths(heights)
     if place is None:
-        return (spacing or 0.0) * np.arange(len(values)), drops
+        return np.arange(len(values), dtype=np.float64) * (spacing or 0.0), drops
     is_named = path.suffix.lower() in MINIPROF or (table.headings and table.headings[place].unit)
     if not (is_named or isinstance(unit, tuple)) and is_counter(values[:, place]):
         hint = "; x= can name other ones" if x is None else ""

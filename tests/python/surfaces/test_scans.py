@@ -119,7 +119,7 @@ def test_damaged_profiles_are_refused_in_a_sentence(name: str, tmp_path: Path) -
         with pytest.raises(
             ValueError, match=f"must be whole, as a profile in S.*{message}"
         ) as error:
-            read(path)  # type: ignore[operator]
+            read(path)
         assert len(str(error.value)) < 500
 
 
