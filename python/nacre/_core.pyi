@@ -269,8 +269,8 @@ class Sphere(Shape):
 class Paraboloid(Shape):
     def __new__(
         cls,
-        radius_x: float,
-        radius_y: float,
+        radius_x: float | None,
+        radius_y: float | None,
         counter_radius_x: float | None = None,
         counter_radius_y: float | None = None,
     ) -> Self: ...
@@ -289,7 +289,7 @@ class Paraboloid(Shape):
 
 @final
 class Cylinder(Shape):
-    def __new__(cls, radius: float, counter_radius: float | None = None) -> Self: ...
+    def __new__(cls, radius: float | None, counter_radius: float | None = None) -> Self: ...
     @property
     def radius(self) -> float: ...
     @property
@@ -379,6 +379,7 @@ class SampledProfile:
         x: str | int | None = None,
         drop: str | int | None = None,
         height: str | int | None = None,
+        spacing: float | None = None,
         smooth: bool = True,
         corners: _Vector | None = None,
         smoothing: float | None = None,

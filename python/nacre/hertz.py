@@ -22,13 +22,6 @@ def _or_straight(radius: float | None) -> float | None:
     return None if isinstance(radius, float) and math.isinf(radius) else radius
 
 
-def _straight_pair(radii: tuple[float | None, float | None]) -> tuple[float | None, float | None]:
-    """Return radii, None where they are infinite; what is no pair stays as it is."""
-    if isinstance(radii, tuple | list) and len(radii) == 2:
-        return _or_straight(radii[0]), _or_straight(radii[1])
-    return radii
-
-
 def equivalent_radius(radius: float | None, counter_radius: float | None = None) -> float:
     """Equivalent radius of two surfaces in contact, in one direction: ``1/R = 1/R_1 + 1/R_2``.
 
@@ -60,7 +53,7 @@ def equivalent_radius(radius: float | None, counter_radius: float | None = None)
     >>> round(nacre.hertz.equivalent_radius(5e-3, -30e-3), 9)
     0.006
     """
-    return core.equivalent_radius(_or_straight(radius), _or_straight(counter_radius))
+    return core.equivalent_radius(radius, counter_radius)
 
 
 def relative_radii(
@@ -108,7 +101,7 @@ def relative_radii(
     ([16.0, 5.333333], 30.0)
     >>> crossed = nacre.Paraboloid(*radii)
     """
-    return core.relative_radii(_straight_pair(radii), _straight_pair(counter_radii), angle)
+    return core.relative_radii(radii, counter_radii, angle)
 
 
 def contact_modulus(body: core.Elastic, counterbody: core.Elastic | None = None) -> float:

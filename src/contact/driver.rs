@@ -19,7 +19,8 @@ use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Gap, Progress, Report, Resultants, Solution};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, polonsky_keer};
 use crate::contact::start::{
-    Sampled, check_seam, checked_gaps, initial_pressure, uniform_pressure, yielding_pressure,
+    Sampled, check_curved, check_seam, checked_gaps, initial_pressure, uniform_pressure,
+    yielding_pressure,
 };
 use crate::error::{Error, Result};
 use crate::model::grid::Window;
@@ -121,6 +122,7 @@ impl Contact {
     ) -> Result<Solution> {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
+        check_curved(shape, &self.grid)?;
         self.check_memory_of_solve(options.hardness.is_some())?;
         if let Some(compliance) = &options.compliance {
             let springs = compliance.on(&self.grid)?;

@@ -5,9 +5,9 @@ use std::sync::{Arc, Weak};
 use ndarray::{Array2, ArrayRef2};
 
 use crate::contact::problem::{Problem, array};
-use crate::error::{Error, Result, none_negative, same_shape};
+use crate::error::{Error, Result, none_negative, refuse_if, same_shape};
 use crate::model::grid::Grid;
-use crate::model::surface::Surface;
+use crate::model::surface::{Extent, Surface};
 use crate::numerics::layout::slice_mut;
 use crate::numerics::parallel::{ONE, Rows, all, sum};
 
@@ -49,6 +49,18 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
         return Err(Error::NonFinite { name: "shape", index: [cell / columns, cell % columns] });
     }
     Ok(gaps)
+}
+
+/// An error where `shape` is flat, or along the line of a line contact, and the grid does not repeat: every cell of the
+/// grid touches, however large it is.
+pub(super) fn check_curved(shape: &dyn Surface, grid: &Grid) -> Result<()> {
+    let axes = usize::from(grid.is_line())..2;
+    let is_flat = axes.clone().all(|axis| shape.extent()[axis] == Extent::Endless);
+    let repeats = axes.clone().all(|axis| grid.is_periodic()[axis]);
+    refuse_if(
+        is_flat && !repeats,
+        "shape must be curved across the contact: a flat one without end touches the whole grid, however large it is",
+    )
 }
 
 /// An error where `shape` repeats along an axis and `grid` does not as it does, or where its gap jumps at the seam of a

@@ -16,10 +16,10 @@ use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 /// ```
 ///
 /// `radius` and `counter_radius` \[m\] are above 0 where the surface is convex, below 0 where it is
-/// concave (a raceway, a groove), and `None` where it is straight.
+/// concave (a raceway, a groove), and `None` or infinite where it is straight.
 ///
 /// # Errors
-/// Unless each radius is finite and not 0, and 1/R is above 0.
+/// Unless no radius is 0, and 1/R is above 0.
 ///
 /// ```
 /// use nacre::hertz::equivalent_radius;
@@ -31,7 +31,8 @@ use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 pub fn equivalent_radius(radius: Option<f64>, counter_radius: Option<f64>) -> Result<f64> {
     curvature("radius", radius)?;
     curvature("counter_radius", counter_radius)?;
-    let equivalent = match (radius, counter_radius) {
+    let curved = |radius: Option<f64>| radius.filter(|radius| radius.is_finite());
+    let equivalent = match (curved(radius), curved(counter_radius)) {
         // Below 0 where both are concave, or the wider one is the convex one.
         (Some(one), Some(two)) => one * (two / (one + two)),
         (Some(one), None) | (None, Some(one)) => one,
@@ -50,8 +51,12 @@ fn curvature(name: &'static str, radius: Option<f64>) -> Result<f64> {
     let Some(value) = radius else {
         return Ok(0.0);
     };
-    let is_curved = finite(name, value)?.abs() > 0.0;
-    require(name, value, is_curved, "other than 0 (None for a straight surface)")?;
+    require(
+        name,
+        value,
+        value.abs() > 0.0,
+        "other than 0 (infinite or None for a straight surface)",
+    )?;
     Ok(1.0 / value)
 }
 
@@ -64,12 +69,12 @@ fn curvature(name: &'static str, radius: Option<f64>) -> Result<f64> {
 /// ```
 ///
 /// `radii` and `counter_radii` \[m\] are those of each surface along its own principal axes x and y, above 0 where it is
-/// convex, below 0 where it is concave, `None` where it is straight; the x axis of the second surface is at the `angle` φ
+/// convex, below 0 where it is concave, `None` or infinite where it is straight; the x axis of the second surface is at the `angle` φ
 /// \[rad\] from that of the first. A is computed from 4AB, the determinant of the sum of both curvatures, which has no
 /// cancellation between convex surfaces. Johnson (1985), eqs (4.4) and (4.5).
 ///
 /// # Errors
-/// Unless each radius is finite and not 0, the angle is finite, and A > 0.
+/// Unless no radius is 0, the angle is finite, and A > 0.
 ///
 /// ```
 /// use nacre::hertz::relative_radii;

@@ -3,6 +3,7 @@
 Tests of fields, values, case files and messages take their rows from here.
 """
 
+import math
 import re
 from typing import Any, NamedTuple
 
@@ -33,7 +34,7 @@ SHAPES = {
         {
             "Sphere(0.0)": r"radius must be .*above 0, got 0",
             "Sphere(1.0, counter_radius_x=-1.0)": r"counter_radius_x must be .*groove.*got -1",
-            "Sphere(5e-3, counter_radius_y=NAN)": r"counter_radius_y must be finite.*got NaN",
+            "Sphere(5e-3, counter_radius_y=NAN)": r"counter_radius_y must be above 0.*got NaN",
         },
     ),
     "Paraboloid": Row(
@@ -41,18 +42,28 @@ SHAPES = {
             {"radius_x": 5e-3, "radius_y": 1.0},
             {"radius_x": 5e-3, "radius_y": 1.0, "counter_radius_x": -1e-2 / 3 * 2},
             {"radius_x": 5e-3, "radius_y": 1.0, "counter_radius_x": 0.1, "counter_radius_y": -3.0},
+            {"radius_x": math.inf, "radius_y": 1.0},
+            {"radius_x": 5e-3, "radius_y": math.inf, "counter_radius_y": 0.1},
         ],
         {
+            "Paraboloid(1.0, -INF)": r"radius_y must be .*above 0, got -inf",
             "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
             "Paraboloid(1.0, 1.0, counter_radius_y=-0.5)": r"counter_radius_y must be .*got -0\.5",
         },
     ),
     "Cylinder": Row(
-        [{"radius": 5e-3}, {"radius": 5e-3, "counter_radius": 1e-1 / 3}],
+        [
+            {"radius": 5e-3},
+            {"radius": 5e-3, "counter_radius": 1e-1 / 3},
+            {"radius": math.inf},
+            {"radius": math.inf, "counter_radius": 0.1},
+        ],
         {
             "Cylinder(-2.0)": r"radius must be .*raceway or groove use counter_radius.*got -2",
             "Cylinder(1.0, -0.5)": r"counter_radius must be .*raceway.*wider.*got -0\.5",
-            "Cylinder(1.0, 0.0)": r"counter_radius must be finite, and above 0.*got 0",
+            "Cylinder(1.0, 0.0)": r"counter_radius must be above 0.*got 0",
+            "Cylinder(INF, -1.0)": r"counter_radius must be .*wider than the shape.*got -1",
+            "Cylinder(NAN)": r"radius must be .*above 0, got NaN",
         },
     ),
     "Roller": Row(

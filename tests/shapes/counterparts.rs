@@ -13,6 +13,7 @@ use nacre::{
 };
 use ndarray::Array2;
 
+use crate::support::checks::kept;
 use crate::support::settings::{against, plan, steel};
 
 /// Rounding of a few operations, of which the differences of nearly equal circles lose two digits.
@@ -143,7 +144,7 @@ fn equivalent_radii_are_those_of_the_sum_of_curvatures() -> Result<()> {
         (Some(-1.0), Some(-1.0)),
         (Some(0.0), None),
         (Some(f64::NAN), None),
-        (Some(1.0), Some(f64::INFINITY)),
+        (Some(f64::INFINITY), Some(-1.0)),
     ] {
         assert!(equivalent_radius(one, two).is_err(), "{one:?} {two:?}");
     }
@@ -230,8 +231,7 @@ fn relative_radii_are_those_of_bodies_at_an_angle() -> Result<()> {
 
 #[test]
 fn a_concave_counterpart_must_be_wider() -> Result<()> {
-    let (nan, infinity) = (f64::NAN, f64::INFINITY);
-    for radius in [-5e-3, -4e-3, 0.0, nan, infinity, -infinity] {
+    for radius in [-5e-3, -4e-3, 0.0, f64::NAN] {
         let cylinder = Cylinder::new(5e-3)?.with_counter_radius(radius);
         assert!(cylinder.is_err(), "{radius}");
         let sphere = Sphere::new(5e-3)?.with_counter_radii([None, Some(radius)]);
@@ -437,5 +437,68 @@ fn a_superposition_is_the_sum_of_its_shapes() -> Result<()> {
     assert_relative_eq!(list.gap(1e-4, 2e-4), pair.gap(1e-4, 2e-4));
     let none = Superposition::<Sphere>::new([]);
     assert!(none.is_err_and(|error| error.to_string().contains("at least one shape")));
+    Ok(())
+}
+
+#[test]
+fn an_infinite_radius_is_flat() -> Result<()> {
+    let (r, y) = (20e-3, 3e-3);
+    let flat = Cylinder::new(f64::INFINITY)?;
+    assert_eq!((flat.gap(1.0, 2.0), flat.equivalent_radius()), (0.0, f64::INFINITY));
+    assert_eq!((flat.extent(), flat.parameters()), ([Extent::Endless; 2], vec![]));
+    // On a convex raceway a plane has the gap of the raceway; a concave one is not wider.
+    let on_a_ring = flat.with_counter_radius(r)?;
+    near!(on_a_ring.gap(1.0, y), circle(r, y), ROUNDING);
+    assert_eq!(on_a_ring.equivalent_radius(), r);
+    assert_eq!(on_a_ring.extent()[1], Extent::Within([-r, r]));
+    assert!(flat.with_counter_radius(-r).is_err());
+    for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+        let counter = [Some(infinite), Some(-2.0 * r)];
+        assert_eq!(Cylinder::new(r)?.with_counter_radius(infinite)?, Cylinder::new(r)?);
+        assert_eq!(
+            Sphere::new(r)?.with_counter_radii(counter)?,
+            Sphere::new(r)?.with_counter_radii([None, Some(-2.0 * r)])?
+        );
+        assert_eq!(Paraboloid::new(r, r)?.with_counter_radii(counter)?.counter_radii()[0], None);
+        assert_eq!(equivalent_radius(Some(infinite), Some(r))?, r);
+        assert_eq!(
+            relative_radii([Some(infinite), Some(r)], [Some(r), Some(infinite)], 0.3)?,
+            relative_radii([None, Some(r)], [Some(r), None], 0.3)?
+        );
+        assert!(equivalent_radius(Some(infinite), None).is_err());
+    }
+    for wrong in [f64::NEG_INFINITY, f64::NAN, 0.0] {
+        assert!(Cylinder::new(wrong).is_err() && Paraboloid::new(wrong, r).is_err());
+        assert!(equivalent_radius(Some(r), Some(wrong)).is_err() || wrong.is_infinite());
+    }
+    // A parabolic trough: x²/2R, and as long as the grid along y.
+    let trough = Paraboloid::new(r, f64::INFINITY)?;
+    near!(trough.gap(y, 7.0), y * y / (2.0 * r), ROUNDING);
+    assert_eq!(trough.extent(), [Extent::Rising, Extent::Endless]);
+    assert_eq!(trough.parameters(), [("radius_x".to_owned(), r)]);
+    kept(&flat);
+    kept(&on_a_ring);
+    kept(&trough);
+    Ok(())
+}
+
+#[test]
+fn a_flat_shape_touches_where_the_grid_repeats_or_not_at_all() -> Result<()> {
+    let (flat, trough) = (Cylinder::new(f64::INFINITY)?, Paraboloid::new(f64::INFINITY, 5e-3)?);
+    let hertz = Line::new(5e-3, contact_modulus(&steel()?, None), 1e5)?;
+    // 40 cells on a half-width.
+    let line = Grid::line(120, 3.0 * hertz.half_width)?;
+    let solved = |shape: &dyn Surface, grid: &Grid, load: f64| -> Result<f64> {
+        let contact = plan(steel()?, grid.clone())?;
+        let solution = contact.solve(shape, &Motion::load(load), &Options::default())?;
+        Ok(solution.peak_pressure())
+    };
+    near!(solved(&trough, &line, 1e5)?, hertz.peak_pressure, ON_THE_GRID);
+    for grid in [line, Grid::new([8, 8], [1e-3, 1e-3])?] {
+        let error = solved(&flat, &grid, 1e3).map_err(|error| error.to_string());
+        assert!(error.is_err_and(|text| text.contains("shape must be curved across the contact")));
+    }
+    let repeating = Grid::new([8, 8], [1e-3, 1e-3])?.periodic([true, true])?;
+    near!(solved(&flat, &repeating, 1e3)?, 1e9, ROUNDING);
     Ok(())
 }

@@ -197,6 +197,11 @@ class Case:
             data = core.with_value(data, key, value)
         return Case(data, self.name, self.folder).arguments()
 
+    @property
+    def has_sweep(self) -> bool:
+        """Whether the case has a table of a study."""
+        return self._table.sweep is not None
+
     def study(self, store: Path | None = None) -> dict[str, Any]:
         """Return the arguments of `nacre.sweep` besides the case, with another store if given.
 

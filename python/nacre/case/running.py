@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import warnings
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -43,6 +44,15 @@ def solve(
 ) -> None:
     """Solve the contact, wear, indentation or bearing of a case file."""
     case_file = _read_case(case, units)
+    _solve_kind(case, case_file, save, initial, as_json)
+    if case_file.has_sweep:
+        print(f"nacre: {case}: nacre sweep solves the study in [sweep]", file=sys.stderr)
+
+
+def _solve_kind(
+    case: Path, case_file: Case, save: Sequence[Path], initial: Path | None, as_json: bool
+) -> None:
+    """Solve what a case file is."""
     if case_file.kind not in SAVED:
         if initial is not None:
             raise CaseError(f"{case}: --initial must not be given for {ARTICLES[case_file.kind]}")

@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 import nacre
 from nacre import rough
@@ -60,23 +60,10 @@ AnyProfile: Any = Annotated[
 ]
 
 
-INFINITE = (float("inf"), float("-inf"))
-
-
 class Shape(Table):
     """Keys that every shape may have: a shift."""
 
     shift: Pair | None = Field(None, description="Distances by which the shape is moved [m].")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _straight(cls, keys: Any) -> Any:
-        """Leave out infinite radii where no radius is straight, as in calls."""
-        if not isinstance(keys, dict):
-            return keys
-        optional = {name for name, key in cls.model_fields.items() if not key.is_required()}
-        flat = {name for name in optional if "radius" in name and keys.get(name) in INFINITE}
-        return {name: value for name, value in keys.items() if name not in flat}
 
     def make(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape; files are in `folder`, and the unit of length has so many metres."""
@@ -174,16 +161,16 @@ class Crossed(Shape):
     """
 
     kind: Literal["crossed"] = Field(description="Kind, which decides on the other keys.")
-    radius_x: Number | None = Field(
+    radius_x: float | None = Field(
         None, description="Radius of one body along x [m]; straight by default."
     )
-    radius_y: Number | None = Field(
+    radius_y: float | None = Field(
         None, description="Radius of one body along y [m]; straight by default."
     )
-    counter_radius_x: Number | None = Field(
+    counter_radius_x: float | None = Field(
         None, description="Radius of the other body along its own x axis [m]; straight by default."
     )
-    counter_radius_y: Number | None = Field(
+    counter_radius_y: float | None = Field(
         None, description="Radius of the other body along its own y axis [m]; straight by default."
     )
     angle: Number = Field(description=CROSSED["angle"])
@@ -211,6 +198,14 @@ class Sum(Shape):
         return first
 
 
+FLAT: dict[str, dict[str, Any]] = {
+    "cylinder": {"radius": float},
+    "paraboloid": {"radius_x": float, "radius_y": float},
+}
+"""Types of radii that may be infinite, by kind of shape."""
+COUNTER: dict[str, Any] = dict.fromkeys(
+    ("counter_radius", "counter_radius_x", "counter_radius_y"), float | None
+)
 OWN_TABLES: dict[str, type[Shape]] = {
     "height_map": HeightMap,
     "random_surface": RandomSurface,
@@ -218,7 +213,7 @@ OWN_TABLES: dict[str, type[Shape]] = {
     "sum": Sum,
 }
 TABLES: dict[str, type[Shape]] = {
-    kind: table_of(kind, shape_class, Shape, {"profile": AnyProfile})
+    kind: table_of(kind, shape_class, Shape, {"profile": AnyProfile} | COUNTER | FLAT.get(kind, {}))
     for kind, shape_class in SHAPES.items()
     if kind not in OWN_TABLES
 } | OWN_TABLES

@@ -64,7 +64,7 @@ class Setup(Group):
         """Return the setup, or raise a `ValueError` that names a grid if a cylinder has none."""
         load, initial = keywords.get("load"), keywords.get("initial")
         given = self.grid is not None or initial is not None
-        if given or not isinstance(shape, core.Cylinder):
+        if given or not isinstance(shape, core.Cylinder) or math.isinf(shape.equivalent_radius):
             return self
         compliance = _compliance(self.body) + _compliance(self.counterbody)
         if compliance > 0 and isinstance(load, int | float) and 0 < load < math.inf:

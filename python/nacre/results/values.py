@@ -144,7 +144,11 @@ def encode(value: object, *, digest: bool = False) -> Any:
             return {"shifted": [of(arguments["."]), *arguments["shift"]]}
         name, make = type(value).__name__, value.__reduce__()[0]
         maker = getattr(make, "func", make).__name__
-        fields = {k: of(v) for k, v in arguments.items() if not (k in LATER and v in ABSENT)}
+        # JSON has no infinite radii, and a shape takes None for one.
+        shown = {
+            k: None if isinstance(v, float) and np.isinf(v) else v for k, v in arguments.items()
+        }
+        fields = {k: of(v) for k, v in shown.items() if not (k in LATER and v in ABSENT)}
         return {name if maker == name or maker.startswith("_") else f"{name}.{maker}": fields}
 
     return of(value)

@@ -85,6 +85,11 @@ SENTINELS = (
 OFF, LEAST_JITTERED = 0.05, 12
 """Largest distance of a point from its place on the grid, in steps, and the fewest points of a grid
 that is recognised although its points are off."""
+NO_MAP = (
+    "holds a profile, places beside heights, not a map: a surface must have two dimensions, got a "
+    "line{}; SampledProfile.read reads it for a Roller"
+)
+"""What is wrong with a profile."""
 ZYGO = b"Zygo XYZ Data File"
 """Beginning of Zygo's text form."""
 COLUMNS = re.compile(r"ColumnDef\s*=\s*(.+)", re.IGNORECASE)
@@ -275,6 +280,9 @@ class Text:
             fields = re.split(r"\s*[:=]\s*|\t|\s{2,}", " ".join(fields).strip(), maxsplit=1)
         if len(fields) == 1 and (match := NAMED_NUMBER.fullmatch(fields[0])):
             fields = [match[1], match[2]]
+        column = column_of(line)
+        if column.unit and first_words([column])[0] in AXES[2]:  # a title such as "z [um]"
+            self.head.setdefault("z unit", [column.unit])
         name, values = fields[0].strip(" :=").lower(), " ".join(fields[1:]).split()
         if name and values:
             self.head.setdefault(name, [value.replace(",", ".") for value in values])
@@ -660,10 +668,7 @@ def is_strict(line: Array) -> bool:
 
 def _refuse_profile(name: str, headings: Sequence[Column], values: Array) -> None:
     if _is_profile(headings, values):
-        raise ValueError(
-            f"{name!r} holds a profile, places beside heights, not a map: a surface must have two "
-            f"dimensions, got a line; SampledProfile.read reads it for a Roller"
-        )
+        raise ValueError(f"{name!r} {NO_MAP.format('')}")
 
 
 def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) -> Array:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import io
+import math
 import re
+import struct
 import warnings
 import zipfile
-from collections.abc import Callable, Sequence
+import zlib
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -16,7 +21,7 @@ import numpy.typing as npt
 from nacre._tools.extras import extra
 from nacre._tools.text import is_text, listed
 from nacre._tools.typing import Topography
-from nacre.surfaces.heights import Heights, Text
+from nacre.surfaces.heights import NO_MAP, OFF, Heights, Text, metres
 
 Array = npt.NDArray[np.float64]
 Content = TypeVar("Content")
@@ -32,6 +37,9 @@ NANOSCOPE = re.compile(rb"[\\?]\*File list")
 RATIO, LEAST_UNPACKED = 100, 1 << 24
 """Most bytes that a part of an X3P may unpack to: over those of the file, or these. Heights of 8
 bytes a point shrink to a half or a tenth."""
+UNPROPORTIONAL = "must hold nothing out of proportion: {} would unpack to {} bytes"
+COMPRESSED = 15
+"""Kind of a compressed element in a file of MATLAB's."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -54,7 +62,74 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
             return None
         return _table(text, channel)
 
-    return _first_content(path, channel, lambda reader: _heights(reader, channel), table)
+    return _first_content(
+        path, channel, lambda reader: _heights(reader, channel, _most(path)), table
+    )
+
+
+def netcdf(path: Path, channel: str | int | None) -> Heights:
+    """Return the heights in a file of NetCDF, by xarray where SurfaceTopography does not know it.
+
+    The coordinates x and y have units, or the spacing is not known.
+    """
+    with suppress(ValueError, ModuleNotFoundError):
+        if (known := instrument(path, channel)).spacing is not None:
+            return known
+    with extra("files"):
+        import xarray
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of HDF5 without dimensions
+            file = xarray.open_dataset(path, decode_times=False, create_default_indexes=False)
+        with file:
+            arrays = [a for a in file.data_vars.values() if a.ndim == 2 and a.dtype.kind in "biuf"]
+            if not arrays:
+                raise Unfound("the file must hold heights, an array of two dimensions, got none")
+            channels = [
+                SimpleNamespace(
+                    name=a.name,
+                    dim=2,
+                    nb_grid_pts=a.shape,
+                    unit=a.attrs.get("units", a.attrs.get("unit")),
+                )
+                for a in arrays
+            ]
+            chosen = _channel(SimpleNamespace(channels=channels), channel, 2)
+            array = next(a for a in arrays if a.name == chosen.name)
+            if array.nbytes > _most(path):
+                raise Unfound("the file " + UNPROPORTIONAL.format(repr(array.name), array.nbytes))
+            heights = array.values.astype(np.float64)
+            steps = [_step(file[name]) if name in file else None for name in map(str, array.dims)]
+    except Unfound as error:
+        raise ValueError(f"{error}; the file is {str(path)!r}") from None
+    except Exception as error:  # xarray raises anything for a damaged file
+        raise ValueError(
+            f"{str(path)!r} cannot be read: {' '.join(str(error).split())[:200]}"
+        ) from error
+    ascending = tuple(slice(None, None, -1 if step and step < 0 else 1) for step in steps)
+    heights, (dx, dy) = heights[ascending], (abs(step) if step else None for step in steps)
+    if array.dims == ("y", "x"):
+        heights, dx, dy = heights.T, dy, dx
+    return Heights(
+        heights,
+        (dx, dy) if dx and dy else None,
+        chosen.unit if isinstance(chosen.unit, str) else None,
+        False,
+        note=", whose coordinates have no unit of length,",
+        has_metres=True,
+    )
+
+
+def _step(coordinate: Any) -> float | None:
+    """Return the distance between the places of a map [m], or None where they are no lengths."""
+    size = metres(str(coordinate.attrs.get("units", "")))
+    if size is None or coordinate.ndim != 1 or coordinate.size < 2:
+        return None
+    places = coordinate.values.astype(np.float64)
+    step = float(places[-1] - places[0]) / (places.size - 1)
+    if not (np.abs(places - places[0] - step * np.arange(places.size)) <= OFF * abs(step)).all():
+        raise ValueError(f"its places along {coordinate.name} must be on a regular grid")
+    return float(step * size)
 
 
 def line_scan(path: Path, channel: str | int | None) -> tuple[Array, Array, str | None]:
@@ -76,6 +151,7 @@ def _first_content(
         warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
         from SurfaceTopography.IO import MagicMatch, readers
 
+    _check_sizes(path)
     content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
     instruments = [reader for reader in readers if reader.format() not in TABLES]
     match = {reader: reader.can_read(content[:512]) for reader in instruments}
@@ -108,8 +184,6 @@ def _first_content(
     if is_plain and (surface := table(bool(likely))) is not None:
         return surface
     if any(ending in (reader.file_extensions() or ()) for reader in likely):
-        if ending == "nc":
-            reasons_text += "; HeightMap(xarray.open_dataarray(path), spacing) takes other NetCDF"
         raise ValueError(f"{str(path)!r} cannot be read: {reasons_text}")
     maybe = [cls for cls in instruments if match[cls] == MagicMatch.MAYBE and cls not in likely]
     surface = read_first([cls for cls in maybe if not is_plain or cls.format() in HEADED])
@@ -123,6 +197,37 @@ def _first_content(
         f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
         ".csv and .xyz"
     )
+
+
+def _most(path: Path) -> int:
+    """Return how many bytes a part of a file may unpack to."""
+    return max(RATIO * path.stat().st_size, LEAST_UNPACKED)
+
+
+def _check_sizes(path: Path) -> None:
+    """Refuse an archive with a part out of proportion; `_x3p_copy` looks at the parts of an X3P."""
+    parts: list[tuple[str, int]] = []
+    if path.suffix.lower() == ".mat":
+        with suppress(struct.error, zlib.error):  # of a damaged file
+            parts = [("a matrix", size) for size in _sizes_in_mat(path.read_bytes())]
+    elif path.suffix.lower() != ".x3p" and zipfile.is_zipfile(path):
+        with suppress(zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
+            parts = [(item.filename, item.file_size) for item in archive.infolist()]
+    for name, size in parts:
+        if size > _most(path):
+            raise ValueError(f"{str(path)!r} {UNPROPORTIONAL.format(repr(name[:60]), size)}")
+
+
+def _sizes_in_mat(content: bytes) -> Iterator[int]:
+    """Yield the bytes that the compressed elements of a file of MATLAB's version 5 unpack to."""
+    tag = struct.Struct("<II" if content[126:128] == b"IM" else ">II")
+    at = 128
+    while at + tag.size <= len(content):
+        kind, size = tag.unpack_from(content, at)
+        at += tag.size
+        if kind == COMPRESSED:
+            yield tag.unpack(zlib.decompressobj().decompress(content[at : at + 100], tag.size))[1]
+        at += size
 
 
 class Other(ValueError):
@@ -174,16 +279,13 @@ def _x3p_copy(path: Path) -> str | io.BytesIO:
         with zipfile.ZipFile(path) as archive, zipfile.ZipFile(buffer, "w") as copy:
             members = {item.filename: item for item in archive.infolist()}
             main = next(name for name in members if name.rpartition("/")[2] == "main.xml")
-            folder, largest = main.removesuffix("main.xml"), RATIO * path.stat().st_size
+            folder = main.removesuffix("main.xml")
             named: set[bytes] = set()
             for name in (main, *(name for name in members if name != main)):
                 if name != main and name.removeprefix(folder).encode() not in named:
                     continue
-                if members[name].file_size > max(largest, LEAST_UNPACKED):
-                    raise Other(
-                        f"must hold no file out of proportion: {name[:60]!r} would unpack to "
-                        f"{members[name].file_size} bytes"
-                    )
+                if (size := members[name].file_size) > _most(path):
+                    raise Other(UNPROPORTIONAL.format(repr(name[:60]), size))
                 content = archive.read(name)
                 if name == main:
                     content = REVISION.sub(rb"\1ISO5436 - 2000\2", content)
@@ -216,20 +318,18 @@ class Reader(Protocol):
     channels: Sequence[Channel]
 
 
-def _heights(reader: Reader, channel: str | int | None) -> Heights:
-    """Return the heights of a channel, which must be a map."""
-    maps = [item for item in reader.channels if item.dim == 2]
-    lines = [item for item in reader.channels if item.dim == 1]
+def _heights(reader: Reader, channel: str | int | None, most: float = math.inf) -> Heights:
+    """Return the heights of a channel, which must be a map of at most so many bytes."""
+    maps = [item for item in reader.channels if _dim(item) == 2]
+    lines = [item for item in reader.channels if _dim(item) == 1]
     if lines and not maps:
-        raise Other(
-            f"holds a profile, places beside heights, not a map: a surface must have two "
-            f"dimensions, got a line in the channel {lines[0].name!r}; SampledProfile.read reads "
-            f"it for a Roller"
-        )
+        raise Other(NO_MAP.format(f" in the channel {lines[0].name!r}"))
     if not maps:
         names = ", ".join(repr(item.name) for item in reader.channels) or _titles(reader) or "none"
         raise ValueError(f"the file holds no channel with heights; its channels are {names}")
     map_channel = _channel(reader, channel, 2)
+    if (size := 8 * math.prod(map_channel.nb_grid_pts or ())) > most:
+        raise Other(UNPROPORTIONAL.format(repr(map_channel.name), size))
     # A file without sizes needs some, which are not used.
     lacking = map_channel.physical_sizes is None and map_channel.nb_grid_pts is not None
     sizes = {"physical_sizes": tuple(map(float, map_channel.nb_grid_pts))} if lacking else {}
@@ -239,14 +339,16 @@ def _heights(reader: Reader, channel: str | int | None) -> Heights:
 
 def _line(reader: Reader, channel: str | int | None) -> tuple[Array, Array, str | None]:
     """Return places and heights of a channel, which must be a line, and their unit."""
-    lines = [item for item in reader.channels if item.dim == 1]
-    if not lines:
+    if all(_dim(item) != 1 for item in reader.channels):
         raise Other("holds no profile: its heights must be a line; HeightMap.read reads a map")
     profile = _channel(reader, channel, 1)
     line = profile.topography()
+    positions = line.positions()
+    if line.dim == 2:
+        positions = positions[int(np.argmax(line.nb_grid_pts))]
     places, heights = (
-        np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan)
-        for values in (line.positions(), line.heights())
+        np.ma.filled(np.ma.masked_invalid(values).astype(np.float64), np.nan).ravel()
+        for values in (positions, line.heights())
     )
     return places, heights, line.unit if isinstance(line.unit, str) else None
 
@@ -279,7 +381,7 @@ def of_topography(surface: Topography) -> Heights:
 
 def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
     """Return the channel that is chosen, or the only one with heights of this dimension."""
-    channels = [(number, item) for number, item in enumerate(reader.channels) if item.dim == dim]
+    channels = [(k, item) for k, item in enumerate(reader.channels) if _dim(item) == dim]
     heights = [(k, item) for k, item in channels if _kind(item) == "height"] or channels
     chosen = [item for k, item in channels if choice in (k, item.name)]
     if choice is None and len(heights) == 1:
@@ -294,6 +396,11 @@ def _channel(reader: Reader, choice: str | int | None, dim: int) -> Channel:
     keyword = "channel" if dim == 2 else "height"
     given, got = ("given, as ", "") if choice is None else ("", f", got {choice!r}")
     raise Unfound(f"{keyword} must be {given}one of {listed(texts)}{got}")
+
+
+def _dim(channel: Channel) -> int:
+    """Return 2 for a map, and 1 for a line, also where it is the only one of a map."""
+    return 1 if channel.dim == 2 and 1 in (channel.nb_grid_pts or ()) else channel.dim
 
 
 def _kind(channel: Channel) -> str:

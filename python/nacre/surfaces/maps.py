@@ -15,8 +15,9 @@ from nacre._tools.arguments import name_or_number
 from nacre._tools.progress import lasting
 from nacre._tools.typing import AnyPath, Pair, Topography
 from nacre.surfaces import heights as _heights
-from nacre.surfaces.heights import LEAST_MEASURED, METRES, Heights, without_sentinels
+from nacre.surfaces.heights import LEAST_MEASURED, METRES, NO_MAP, Heights, without_sentinels
 from nacre.surfaces.missing import harmonic
+from nacre.surfaces.scans import scan
 
 Array = npt.NDArray[np.float64]
 
@@ -55,8 +56,8 @@ def read_map(
         heights, with one line for each x in a ``.csv`` and one for each y in any other and below
         the head of an instrument. Heads, headings, units such as ``# unit: um`` and
         ``# spacing: 0.5 0.5``, decimal commas, and numbers that stand for missing points are
-        recognised; a profile is refused. SurfaceTopography reads any other file. A topography is
-        an object of that library.
+        recognised; a profile is refused. Xarray reads its own NetCDF files, whose coordinates need
+        units, and SurfaceTopography any other file. A topography is an object of that library.
     spacing : float or tuple of float, optional
         Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
     unit : str, optional
@@ -146,10 +147,16 @@ def _read_heights(path: AnyPath | Topography, channel: str | int | None) -> tupl
         if channel is not None:
             raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
         surface = _heights.npy(path)
+    elif scan(path) is not None:
+        raise ValueError(f"{str(path)!r} {NO_MAP.format('')}")
     elif channel is None and (points := _heights.zygo(path)) is not None:
         surface = points
     elif ending in (".csv", ".xyz"):
         surface = _heights.text(path, channel)
+    elif ending == ".nc":
+        from nacre.surfaces.instruments import netcdf
+
+        surface = netcdf(path, channel)
     else:
         from nacre.surfaces.instruments import instrument
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +31,7 @@ from nacre.surfaces.heights import (
     metres,
     without_sentinels,
 )
+from nacre.surfaces.scans import scan
 
 Array = npt.NDArray[np.float64]
 
@@ -52,6 +53,7 @@ def read_profile(
     x: str | int | None = None,
     drop: str | int | None = None,
     height: str | int | None = None,
+    spacing: float | None = None,
     smooth: bool = True,
     corners: Vector | None = None,
     smoothing: float | None = None,
@@ -60,14 +62,15 @@ def read_profile(
 
     Lines above the table, names and units of columns, delimiter and decimal mark are found from
     the file, and signs with which a program marks points are skipped. Simpack's profiles of rails
-    (``.prr``) and wheels (``.prw``) are known, and MiniProf's (``.ban``, ``.whl``) are in mm. Line
-    scans in other files of instruments are read by SurfaceTopography, with
-    ``nacre-contact[surfaces]``.
+    (``.prr``) and wheels (``.prw``) are known, and MiniProf's (``.ban``, ``.whl``) are in mm. Heads
+    of SMD (ISO 5436-2), SDF (ISO 25178-71) and PRF have the spacing and the units. Line scans in
+    other files of instruments are read by SurfaceTopography, with ``nacre-contact[surfaces]``.
 
     Parameters
     ----------
     path : str or path
-        Text file with a column of positions, and one of drops or of heights; or a line scan.
+        Text file with a column of positions, and one of drops or of heights, or with `spacing` of
+        drops or heights alone; or a line scan.
     unit : str or pair of str, optional
         Unit of the columns ("um", "mm", ...), or of the positions and of the other column, where
         the file names none. Heights without a unit have that of the positions.
@@ -77,6 +80,8 @@ def read_profile(
     drop, height : str or int, optional
         Column of the drops, or of heights, of which the drop is the distance from the highest. By
         default the one with such a name. Of line scans `height` is the channel.
+    spacing : float, optional
+        Distance between positions [m], in place of a column of positions.
     smooth, corners, smoothing : optional
         How the stations are joined, true edges [m], and a wavelength against noise [m], as those of
         `SampledProfile`.
@@ -114,12 +119,25 @@ def read_profile(
         raise ValueError(
             "drop and height must not both be given: the drop is one below the highest"
         )
+    if spacing is not None:
+        if x is not None:
+            raise ValueError(f"x must be left out where spacing is given, got {x!r}")
+        if not 0 < (spacing := core.real("spacing", spacing)) < np.inf:
+            raise ValueError(f"spacing must be finite and above 0, got {spacing:g}")
+    given = {"unit": unit, "x": x, "drop": drop, "height": height, "spacing": spacing}
     if path.suffix.lower() in SIMPACK:
         places, drops = _simpack(path)
+    elif (found := scan(path)) is not None:
+        if wrong := [f"{name}={value!r}" for name, value in given.items() if value is not None]:
+            raise ValueError(
+                f"{' and '.join(wrong)} must be left out: the head of {str(path)!r} says what its "
+                f"numbers are"
+            )
+        places, drops = found[0], _depths(found[1])
     elif is_text(path.read_bytes()):
-        places, drops = _table(path, unit, x, drop, height)
+        places, drops = _table(path, unit, x, drop, height, spacing)
     else:
-        places, drops = _scan(path, unit, x, drop, height)
+        places, drops = _scan(path, unit, {k: given[k] for k in ("x", "drop", "spacing")}, height)
     order = np.argsort(places, kind="stable")
     places, drops = _measured_points(path, places[order], drops[order])
     twice = np.flatnonzero(np.diff(places) <= 0)
@@ -137,15 +155,17 @@ def _table(
     x: str | int | None,
     drop: str | int | None,
     height: str | int | None,
+    spacing: float | None,
 ) -> tuple[Array, Array]:
     """Return positions and drops of a table [m]."""
-    table = Text.of(path).channel_table(None, keyword="")
+    file = Text.of(path)
+    table = file.channel_table(None, keyword="")
+    unit = unit or (file.unit() if table.width == 1 else None)
     values, words = np.array(table.rows), first_words(table.headings)
-    if len(values) < 2 or table.width < 2:
+    if len(values) < 2 or (table.width < 2 and spacing is None):
         raise ValueError(
             f"{str(path)!r} must have two columns, positions and drops or heights, of two rows or "
-            f"more, got {table.width} of {len(values)}; SDF, SMD and PRF with one column are not "
-            f"read: export positions and heights"
+            f"more, got {table.width} of {len(values)}; spacing= goes with drops or heights alone"
         )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _word_column(words, AXES[0])
@@ -157,15 +177,26 @@ def _table(
         first = (columns[0] if timed and columns else counted) if is_clear else None
         if words and first is not None and is_doubtful(table.headings[first]):
             first = None
-    place = _column(path, table, "x", x, first)
+    place = None if spacing is not None else _column(path, table, "x", x, first)
+    only = 0 if table.width == 1 and not words else None
     is_drop = drop is not None or (height is None and _word_column(words, DROPS) is not None)
     if is_drop:
-        vertical = _column(path, table, "drop", drop, _word_column(words, DROPS))
+        vertical = _column(path, table, "drop", drop, _word_column(words, DROPS, only))
     else:
-        vertical = _column(path, table, "height", height, _word_column(words, AXES[2]))
-    sizes = _sizes(path, table, unit, place, vertical)
+        vertical = _column(path, table, "height", height, _word_column(words, AXES[2], only))
+    sizes = _sizes(path, table, unit, vertical if place is None else place, vertical)
     heights = without_sentinels(values[:, vertical]) * sizes[1]
-    return values[:, place] * sizes[0], heights if is_drop else _depths(heights)
+    drops = heights if is_drop else _depths(heights)
+    if place is None:
+        return np.arange(len(values), dtype=np.float64) * (spacing or 0.0), drops
+    is_named = path.suffix.lower() in MINIPROF or (table.headings and table.headings[place].unit)
+    if not (is_named or isinstance(unit, tuple)) and is_counter(values[:, place]):
+        hint = "; x= can name other ones" if x is None else ""
+        raise ValueError(
+            f"unit must be a pair, of positions and heights, or spacing= given: the positions of "
+            f"{str(path)!r} count points, and may be no lengths{hint}"
+        )
+    return values[:, place] * sizes[0], drops
 
 
 def _sizes(
@@ -190,7 +221,9 @@ def _sizes(
             stacklevel=5,
         )
     sizes = []
-    for name, unit_name in zip(("x", "heights"), units, strict=True):
+    for name, unit_name in zip(
+        ("heights" if place == vertical else "x", "heights"), units, strict=True
+    ):
         size = metres(unit_name or "")
         if size is None:
             got = "names none" if unit_name is None else f"got {unit_name!r}"
@@ -199,26 +232,19 @@ def _sizes(
                 f"unit= can be a pair"
             )
         sizes.append(size)
-    is_named = usual or (table.headings and table.headings[place].unit)
-    if not (is_named or isinstance(unit, tuple)) and is_counter(np.array(table.rows)[:, place]):
-        raise ValueError(
-            f"unit must be a pair, of positions and heights: the positions of {str(path)!r} count "
-            f"points, and may be no lengths; x= can name other ones"
-        )
     return sizes
 
 
 def _scan(
     path: Path,
     unit: str | tuple[str, str] | None,
-    x: str | int | None,
-    drop: str | int | None,
+    others: Mapping[str, object],
     height: str | int | None,
 ) -> tuple[Array, Array]:
     """Return positions and drops of a line scan in a file of an instrument [m]."""
     from nacre.surfaces.instruments import line_scan
 
-    for keyword, column in (("x", x), ("drop", drop)):
+    for keyword, column in others.items():
         if column is not None:
             raise ValueError(
                 f"{keyword} must be left out for the line scan in {str(path)!r}, whose heights are "
@@ -271,10 +297,12 @@ def _measured_points(path: Path, places: Array, drops: Array) -> tuple[Array, Ar
     return places, drops
 
 
-def _word_column(words: Sequence[str], headings: frozenset[str]) -> int | None:
-    """Return the only column whose heading begins with one of some words."""
+def _word_column(
+    words: Sequence[str], headings: frozenset[str], only: int | None = None
+) -> int | None:
+    """Return the only column whose heading begins with one of some words, or the `only` one."""
     hits = [k for k, word in enumerate(words) if word in headings]
-    return hits[0] if len(hits) == 1 else None
+    return hits[0] if len(hits) == 1 else only
 
 
 def _column(

@@ -18,6 +18,25 @@ pub(super) fn convex(name: &'static str, radius: f64) -> Result<f64> {
     positive(name, radius)
 }
 
+/// Returns the radius of a shape that is convex, or flat where it is infinite.
+fn convex_or_flat(name: &'static str, radius: f64) -> Result<f64> {
+    if radius == f64::INFINITY { Ok(radius) } else { convex(name, radius) }
+}
+
+/// Radii that are infinite as data: nothing, as JSON has no infinite numbers.
+#[cfg(feature = "serde")]
+mod flat_as_nothing {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(radius: &f64, to: S) -> Result<S::Ok, S::Error> {
+        Some(*radius).filter(|radius| radius.is_finite()).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(of: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(of)?.unwrap_or(f64::INFINITY))
+    }
+}
+
 /// Names of the radii of a counterpart along x and y.
 const COUNTER_RADII: [&str; 2] = ["counter_radius_x", "counter_radius_y"];
 
@@ -51,10 +70,10 @@ impl Sphere {
     }
 
     /// This sphere on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
-    /// convex, below 0 where it is concave (a groove, a socket), `None` where it is straight.
+    /// convex, below 0 where it is concave (a groove, a socket), `None` or infinite where it is straight.
     ///
     /// # Errors
-    /// Unless each radius is finite and above 0, or below minus the radius of the sphere.
+    /// Unless each radius is above 0, or below minus the radius of the sphere.
     pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
         Ok(Self { counterpart: Counterpart::new(COUNTER_RADII, radii, [self.radius; 2])?, ..self })
     }
@@ -125,9 +144,11 @@ impl Surface for Sphere {
     }
 }
 
-/// Names and values of the numbers that a shape has.
+/// Names and values of the radii that a shape has.
 fn present<'a>(numbers: impl Iterator<Item = (&'a str, Option<f64>)>) -> Vec<(String, f64)> {
-    let named = |(name, value): (&str, Option<f64>)| Some((name.to_owned(), value?));
+    let named = |(name, value): (&str, Option<f64>)| {
+        Some((name.to_owned(), value.filter(|radius| radius.is_finite())?))
+    };
     numbers.filter_map(named).collect()
 }
 
@@ -160,33 +181,34 @@ pub struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// A paraboloid of radii of curvature `radius_x` and `radius_y` \[m\] at its apex.
+    /// A paraboloid of radii of curvature `radius_x` and `radius_y` \[m\] at its apex, infinite where it is straight.
     ///
     /// # Errors
-    /// Unless both radii are finite and above 0.
+    /// Unless both radii are above 0.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self> {
-        let (radius_x, radius_y) = (convex("radius_x", radius_x)?, convex("radius_y", radius_y)?);
+        let radius_x = convex_or_flat("radius_x", radius_x)?;
+        let radius_y = convex_or_flat("radius_y", radius_y)?;
         let (counterpart, equivalent_radii) = (Counterpart::default(), [radius_x, radius_y]);
         Ok(Self { radius_x, radius_y, counterpart, equivalent_radii })
     }
 
     /// This paraboloid on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
-    /// convex, below 0 where it is concave (a groove, a raceway), `None` where it is straight.
+    /// convex, below 0 where it is concave (a groove, a raceway), `None` or infinite where it is straight.
     ///
     /// # Errors
-    /// Unless each radius is finite and above 0, or below minus that of the paraboloid.
+    /// Unless each radius is above 0, or below minus that of the paraboloid.
     pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
         let own = [self.radius_x, self.radius_y];
         let counterpart = Counterpart::new(COUNTER_RADII, radii, own)?;
         Ok(Self { counterpart, equivalent_radii: counterpart.equivalent(own), ..self })
     }
 
-    /// Radius of curvature along x \[m\].
+    /// Radius of curvature along x \[m\]; ∞ where it is straight.
     pub fn radius_x(&self) -> f64 {
         self.radius_x
     }
 
-    /// Radius of curvature along y \[m\].
+    /// Radius of curvature along y \[m\]; ∞ where it is straight.
     pub fn radius_y(&self) -> f64 {
         self.radius_y
     }
@@ -204,7 +226,9 @@ impl Paraboloid {
 
 value! {
     Paraboloid by ParaboloidData {
+        #[serde(with = "flat_as_nothing")]
         radius_x: f64 = of.radius_x();
+        #[serde(with = "flat_as_nothing")]
         radius_y: f64 = of.radius_y();
         counter_radius_x: Option<f64> = of.counter_radii()[0];
         counter_radius_y: Option<f64> = of.counter_radii()[1];
@@ -217,6 +241,10 @@ impl Surface for Paraboloid {
     fn gap(&self, x: f64, y: f64) -> f64 {
         let [radius_x, radius_y] = self.equivalent_radii;
         x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y)
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        self.equivalent_radii.map(|r| if r.is_finite() { Extent::Rising } else { Extent::Endless })
     }
 
     fn is_round(&self) -> bool {
@@ -267,24 +295,24 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// A cylinder of `radius` \[m\].
+    /// A cylinder of `radius` \[m\], which is a plane where it is infinite.
     ///
     /// # Errors
-    /// Unless `radius` is finite and above 0.
+    /// Unless `radius` is above 0.
     pub fn new(radius: f64) -> Result<Self> {
-        Ok(Self { radius: convex("radius", radius)?, counterpart: Counterpart::default() })
+        Ok(Self { radius: convex_or_flat("radius", radius)?, counterpart: Counterpart::default() })
     }
 
     /// This cylinder on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
-    /// convex, as of an inner ring, and below 0 where it is concave, as of an outer ring.
+    /// convex, as of an inner ring, below 0 where it is concave, as of an outer ring, and infinite for a plane.
     ///
     /// # Errors
-    /// Unless `counter_radius` is finite and above 0, or below minus the radius of the cylinder.
+    /// Unless `counter_radius` is above 0, or below minus the radius of the cylinder.
     pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
         Ok(Self { counterpart: Counterpart::cylindrical(counter_radius, self.radius)?, ..self })
     }
 
-    /// Radius of the cylinder \[m\].
+    /// Radius of the cylinder \[m\]; ∞ for a plane.
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -302,6 +330,7 @@ impl Cylinder {
 
 value! {
     Cylinder by CylinderData {
+        #[serde(with = "flat_as_nothing")]
         radius: f64 = of.radius();
         counter_radius: Option<f64> = of.counter_radius();
     }
@@ -321,7 +350,8 @@ impl Surface for Cylinder {
 
     fn extent(&self) -> [Extent; 2] {
         let [_, half] = self.counterpart.reach([self.radius; 2]);
-        [Extent::Endless, Extent::Within([-half, half])]
+        let across = if half.is_finite() { Extent::Within([-half, half]) } else { Extent::Endless };
+        [Extent::Endless, across]
     }
 
     fn radii(&self) -> [f64; 2] {
@@ -412,7 +442,7 @@ impl Surface for FlatPunch {
 /// ```
 ///
 /// A radius is above 0 where the counterpart is convex, below 0 where it is concave, and `None` where it
-/// is straight.
+/// is straight, which an infinite one becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Counterpart {
     /// Radii along x and y \[m\].
@@ -427,14 +457,14 @@ impl Counterpart {
         shape: [f64; 2],
     ) -> Result<Self> {
         for ((name, counter), own) in names.into_iter().zip(radii).zip(shape) {
-            let requirement = "finite, and above 0 (convex) or below minus the radius of the shape (a concave raceway or \
-                               groove is wider than the shape)";
-            if let Some(value) = counter {
+            let requirement = "above 0 (convex), below minus the radius of the shape (a concave raceway or groove is wider \
+                               than the shape), or infinite (flat)";
+            if let Some(value) = counter.filter(|radius| !radius.is_infinite()) {
                 let is_convex = equivalent_radius(Some(own), counter).is_ok();
                 require(name, value, is_convex, requirement)?;
             }
         }
-        Ok(Self { radii })
+        Ok(Self { radii: radii.map(|radius| radius.filter(|radius| radius.is_finite())) })
     }
 
     /// A counterpart that is straight along x.
@@ -445,9 +475,12 @@ impl Counterpart {
 
     /// Equivalent radii \[m\] of a shape with the radii `shape` on this counterpart.
     pub(super) fn equivalent(&self, shape: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| match equivalent_radius(Some(shape[axis]), self.radii[axis]) {
-            Ok(radius) => radius,
-            Err(_) => unreachable!("the constructor has checked it"),
+        [0, 1].map(|axis| match (shape[axis], self.radii[axis]) {
+            (f64::INFINITY, None) => f64::INFINITY,
+            (own, counter) => match equivalent_radius(Some(own), counter) {
+                Ok(radius) => radius,
+                Err(_) => unreachable!("the constructor has checked it"),
+            },
         })
     }
 

@@ -75,11 +75,11 @@ impl Roller {
     }
 
     /// This roller on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
-    /// convex, as of an inner ring, and below 0 where it is concave, as of an outer ring. A crown of the
-    /// raceway is part of the profile: its drop adds to that of the roller.
+    /// convex, as of an inner ring, below 0 where it is concave, as of an outer ring, and infinite for a plane. A
+    /// crown of the raceway is part of the profile: its drop adds to that of the roller.
     ///
     /// # Errors
-    /// Unless `counter_radius` is finite and above 0, or below minus the radius of the roller.
+    /// Unless `counter_radius` is above 0, or below minus the radius of the roller.
     pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
         Ok(Self { counterpart: Counterpart::cylindrical(counter_radius, self.radius)?, ..self })
     }

@@ -7,6 +7,11 @@ use super::shape_class;
 use crate::model::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 use crate::python::arguments::Real;
 
+/// A radius, infinite where there is none, as in data.
+fn or_flat(radius: Option<Real>) -> f64 {
+    radius.map_or(f64::INFINITY, |radius| radius.0)
+}
+
 shape_class! {
     /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
     ///
@@ -20,7 +25,7 @@ shape_class! {
     ///     Radius [m], above 0.
     /// counter_radius_x, counter_radius_y : float, optional
     ///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
-    ///     (a raceway, a groove, a socket), which must be wider than the sphere. Straight by default.
+    ///     (a raceway, a groove, a socket), which must be wider than the sphere. Straight where infinite, and by default.
     ///
     /// Raises
     /// ------
@@ -68,15 +73,16 @@ shape_class! {
     /// Parameters
     /// ----------
     /// radius_x, radius_y : float
-    ///     Radii of curvature at the apex [m], above 0.
+    ///     Radii of curvature at the apex [m], above 0; infinite where the shape is straight. A shape that is straight in
+    ///     a direction needs a grid.
     /// counter_radius_x, counter_radius_y : float, optional
     ///     Radii of the counterpart along x and y [m]: above 0 where it is convex, below 0 where it is concave
-    ///     (a raceway, a groove), which must be wider than the paraboloid. Straight by default.
+    ///     (a raceway, a groove), which must be wider than the paraboloid. Straight where infinite, and by default.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If a radius is not finite and above 0, or a concave counterpart is not wider.
+    ///     If a radius is not above 0, or a concave counterpart is not wider.
     ///
     /// Examples
     /// --------
@@ -85,10 +91,10 @@ shape_class! {
     PyParaboloid(Paraboloid) is "Paraboloid";
     |of, py|
     arguments {
-        /// Radius of curvature along x [m].
-        radius_x(Real): f64 = of.radius_x();
-        /// Radius of curvature along y [m].
-        radius_y(Real): f64 = of.radius_y();
+        /// Radius of curvature along x [m]; inf where the shape is straight.
+        radius_x(Option<Real>): f64 = of.radius_x();
+        /// Radius of curvature along y [m]; inf where the shape is straight.
+        radius_y(Option<Real>): f64 = of.radius_y();
         /// Radius of the counterpart along x [m], below 0 where it is concave; None where it is straight.
         counter_radius_x(Option<Real> = None): Option<f64> = of.counter_radii()[0];
         /// Radius of the counterpart along y [m], below 0 where it is concave; None where it is straight.
@@ -102,7 +108,8 @@ shape_class! {
     }
     make {
         let counter = [counter_radius_x, counter_radius_y].map(|radius| radius.map(|r| r.0));
-        Paraboloid::new(radius_x.0, radius_y.0)?.with_counter_radii(counter)?
+        let [radius_x, radius_y] = [radius_x, radius_y].map(or_flat);
+        Paraboloid::new(radius_x, radius_y)?.with_counter_radii(counter)?
     }
 }
 
@@ -115,15 +122,16 @@ shape_class! {
     /// Parameters
     /// ----------
     /// radius : float
-    ///     Radius [m], above 0.
+    ///     Radius [m], above 0; infinite for a plane.
     /// counter_radius : float, optional
     ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
-    ///     where it is concave, as of an outer ring, which must be wider than the cylinder. A plane by default.
+    ///     where it is concave, as of an outer ring, which must be wider than the cylinder. A plane where it is
+    ///     infinite, and by default.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If the radius is not finite and above 0, or a concave raceway is not wider.
+    ///     If the radius is not above 0, or a concave raceway is not wider.
     ///
     /// Examples
     /// --------
@@ -132,8 +140,8 @@ shape_class! {
     PyCylinder(Cylinder) is "Cylinder";
     |of, py|
     arguments {
-        /// Radius [m].
-        radius(Real): f64 = of.radius();
+        /// Radius [m]; inf for a plane.
+        radius(Option<Real>): f64 = of.radius();
         /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
         counter_radius(Option<Real> = None): Option<f64> = of.counter_radius();
     }
@@ -142,7 +150,7 @@ shape_class! {
         equivalent_radius: f64 = of.equivalent_radius();
     }
     make {
-        let cylinder = Cylinder::new(radius.0)?;
+        let cylinder = Cylinder::new(or_flat(radius))?;
         match counter_radius {
             Some(counter_radius) => cylinder.with_counter_radius(counter_radius.0)?,
             None => cylinder,

@@ -32,7 +32,8 @@ shape_class! {
     ///     arrays: places along the axis [m], and how far the surface has dropped there [m].
     /// counter_radius : float, optional
     ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
-    ///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.
+    ///     where it is concave, as of an outer ring, which must be wider than the roller. A plane where it is
+    ///     infinite, and by default.
     /// apex : float, optional
     ///     Coordinate x [m] of the apex that a tapered roller and its raceway share; x is along the line of
     ///     contact, and both radii are those at x = 0 in the section normal to it. Cylinders by default.

@@ -257,7 +257,7 @@ def test_a_notebook_shows_every_result_as_a_table() -> None:
 
 @pytest.mark.parametrize("value", MADE_BY_A_CALL.values(), ids=MADE_BY_A_CALL.keys())
 def test_repr_is_the_call_that_makes_it(value: object) -> None:
-    back = eval(repr(value), {"array": np.array} | vars(nacre) | vars(nacre.hertz))
+    back = eval(repr(value), {"array": np.array, "inf": np.inf} | vars(nacre) | vars(nacre.hertz))
     assert back == value
 
 

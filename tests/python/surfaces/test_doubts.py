@@ -161,6 +161,7 @@ def lines(names: str, *columns: Any, times: int = 1) -> str:
     return "\n\n".join(times * ["\n".join([names, *table] if names else table)])
 
 
+SPACED = {"spacing": 1e-6}
 ROW, LINE = (grid.ravel() for grid in np.indices((16, 12)))
 X, Y, Z = 0.5 * ROW, 0.5 * LINE, HEIGHTS.ravel() / 1e-9
 PLACE = 0.3 * np.arange(20.0)
@@ -193,7 +194,10 @@ OF_PROFILES: dict[str, tuple[str, dict[str, Any], str]] = {
     ),
     "of the place": (lines("x error;drop", PLACE, CROWN), {"unit": "mm"}, "x= must name a column"),
     "two tables": (lines("x;drop", PLACE, CROWN, times=2), {"unit": "mm"}, "must hold one table"),
-    "one column": (lines("", CROWN), {"unit": "mm"}, "SDF, SMD and PRF with one column are"),
+    "one column": (lines("", CROWN), {"unit": "mm"}, "got 1 of 20; spacing= goes with drops or"),
+    "no unit of it": (lines("", CROWN), {"spacing": 1e-6}, "for the heights of .* names none"),
+    "another word": (lines("z error", CROWN), {"unit": "mm", **SPACED}, "must name .* 0 'z error'"),
+    "places alone": (lines("x", PLACE), {"unit": "mm", **SPACED}, "must name a column .* 0 'x'"),
 }
 OF_CURVES: dict[str, tuple[str, dict[str, Any], str]] = {
     "no unit": (lines("depth;force", PLACE, CROWN), {}, "units must be given: .* names no unit"),
@@ -289,12 +293,81 @@ def test_zygos_text_has_the_size_of_a_pixel(tmp_path: Path) -> None:
                 nacre.HeightMap.read(path)
 
 
-def test_another_netcdf_says_who_reads_it(tmp_path: Path) -> None:
-    xarray.DataArray(HEIGHTS, dims=("x", "y")).to_netcdf(tmp_path / "a.nc")
-    with pytest.raises(ValueError, match=r"HeightMap\(xarray.open_dataarray\(path\), spacing\)"):
-        nacre.HeightMap.read(tmp_path / "a.nc")
-    array: Any = xarray.open_dataarray(tmp_path / "a.nc")
-    np.testing.assert_array_equal(nacre.HeightMap(array, 1e-6).heights, HEIGHTS)
+def array(
+    unit: str | None = "m", places: str | None = "m", size: float = 1e-6, order: int = 1
+) -> xarray.DataArray:
+    """Return heights with coordinates from 3 steps of a size on, which may descend."""
+    attrs = {} if places is None else {"units": places}
+    coords = {
+        axis: (axis, size * np.arange(3, 3 + cells)[::order], attrs)
+        for axis, cells in zip("xy", HEIGHTS.shape, strict=True)
+    }
+    named = {} if unit is None else {"units": unit}
+    heights = HEIGHTS[::order, ::order]
+    return xarray.DataArray(heights, coords, ("x", "y"), "topography", named)
+
+
+NETCDF = {
+    "as it is": array(),
+    "y first": array().T,
+    "descending": array(order=-1),
+    "in other units": array("nm", "um", 1.0) * 1e9,
+    "beside a line": array().to_dataset().assign(line=("x", np.arange(16.0))),
+}
+NETCDF["in other units"].attrs["units"] = "nm"
+
+
+@pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT"])
+@pytest.mark.parametrize("name", NETCDF)
+def test_xarrays_files_are_read_as_they_are(name: str, form: Any, tmp_path: Path) -> None:
+    NETCDF[name].to_netcdf(tmp_path / "a.nc", format=form)
+    read = nacre.HeightMap.read(tmp_path / "a.nc", detrend="none")
+    assert read.spacing == pytest.approx((1e-6, 1e-6))
+    assert_close(read.heights, HEIGHTS, rtol=1e-15)
+
+
+TWO_ARRAYS = xarray.Dataset({"error": array(), "height": array()})
+UNEVEN = array().assign_coords(x=("x", 1e-6 * np.arange(16.0) ** 2, {"units": "m"}))
+OF_NETCDF: dict[str, tuple[Any, dict[str, Any], str]] = {
+    "no unit": (array(unit=None), {}, "unit must be given: .* names none"),
+    "another unit": (array("V"), {}, "unit must be given: .* has 'V'"),
+    "no unit of places": (array(places=None), {}, "spacing must be given: .* no unit of length"),
+    "pixel numbers": (array(places=None, size=1.0), {}, "spacing must be given: .* no unit of l"),
+    "numbers in pixels": (array(places="px"), {}, "spacing must be given: .* no unit of length"),
+    "no coordinates": (array().drop_vars(["x", "y"]), {}, "spacing must be given"),
+    "two arrays": (TWO_ARRAYS, {}, r"as one of 0 'error' \(16 x 12, in m\), 1 'height' \(16 x"),
+    "an unknown channel": (TWO_ARRAYS, {"channel": "z"}, "channel must be one of .* got 'z'"),
+    "uneven places": (UNEVEN, {}, "places along x must be on a regular grid"),
+    "a line": (array()[:, 0], {}, "must hold heights, an array of two dimensions, got none"),
+    "words": (array().astype(str), SPACED, "must hold heights, an array of two dimensions"),
+}
+
+
+@pytest.mark.parametrize("name", OF_NETCDF)
+def test_of_netcdf_the_certain_is_taken(name: str, tmp_path: Path) -> None:
+    data, options, message = OF_NETCDF[name]
+    data.to_netcdf(tmp_path / "a.nc")
+    with pytest.raises(ValueError, match=message):
+        nacre.HeightMap.read(tmp_path / "a.nc", **options)
+
+
+def test_netcdf_takes_what_is_given(tmp_path: Path) -> None:
+    TWO_ARRAYS.to_netcdf(tmp_path / "a.nc")
+    for name in (1, "height"):
+        read = nacre.HeightMap.read(tmp_path / "a.nc", channel=name, detrend="none")
+        np.testing.assert_array_equal(read.heights, HEIGHTS)
+    array(unit=None, places=None).to_netcdf(tmp_path / "b.nc")
+    read = nacre.HeightMap.read(tmp_path / "b.nc", unit="m", spacing=4e-6, detrend="none")
+    assert read.spacing == (4e-6, 4e-6)
+    np.testing.assert_array_equal(read.heights, HEIGHTS)
+
+
+@pytest.mark.parametrize("begin", [b"CDF\x01", b"CDF\x02", b"\x89HDF\r\n\x1a\n", b"x"])
+def test_damaged_netcdf_is_refused(begin: bytes, tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_bytes(begin + bytes(range(256)))
+    with pytest.raises(ValueError, match=r"'.*a\.nc' cannot be read: .") as error:
+        nacre.HeightMap.read(tmp_path / "a.nc", unit="m", spacing=1e-6)
+    assert len(str(error.value)) < 400
 
 
 def channel(name: str, kind: str = "height", dim: int = 2, unit: str | None = "m") -> Any:
