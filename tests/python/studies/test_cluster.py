@@ -148,7 +148,9 @@ def test_a_killed_client_leaves_its_cases_in_the_store_and_no_process(tmp_path: 
     study = xarray.load_dataset(tmp_path / "study.nc", engine="h5netcdf")
     loads = [float(load) for load in range(1, 10)]
     assert study.held.values.tolist() == study["load"].values.tolist() == loads
-    assert (study.approach == nacre.sweep(CASE, {"load": loads}, outputs=["approach"]).approach).all()
+    assert (
+        study.approach == nacre.sweep(CASE, {"load": loads}, outputs=["approach"]).approach
+    ).all()
 
 
 class Lost(Executor):
