@@ -66,8 +66,8 @@ UNCOMPARED = (
     "version=..., and change it whenever the outputs change"
 )
 CANCELLED = (
-    "the executor has cancelled a case, as a cluster does that is closed or lost; with a store, the "
-    "same call solves what is not finished"
+    "the executor has cancelled a case, as a cluster does that is closed or lost; with a store, "
+    "the same call solves what is not finished"
 )
 """Error of cases that are neither finished nor failed."""
 
@@ -512,7 +512,7 @@ def _run(
 
 
 def _record(future: Future[Record], arguments: Mapping[str, Any]) -> Record:
-    """Return the record of a case, which has failed where each worker of Dask that tried it died."""
+    """Return the record of a case; it has failed if each worker of Dask that tried it died."""
     try:
         return future.result()
     except getattr(sys.modules.get("distributed"), "KilledWorker", ()) as error:
