@@ -180,6 +180,10 @@ def sweep(
         If the case does not describe a solve, or an argument is of the wrong kind.
     FileNotFoundError
         If the folder of the store does not exist.
+    BlockingIOError
+        If another call writes the store, in this process or in another.
+    concurrent.futures.CancelledError
+        If the executor cancels a case, as a cluster does that is closed or lost.
 
     Examples
     --------
