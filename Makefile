@@ -9,12 +9,17 @@ CASES ?= 1000
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := .venv
 BIN := $(VENV)/bin
-SOURCES := Cargo.toml Cargo.lock pyproject.toml \
+SOURCES := Cargo.toml Cargo.lock pyproject.toml $(wildcard LICENSE-*) \
 	$(shell find src python -type f ! -name '*.py[cd]' ! -name '*.so')
 
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 unexport CONDA_PREFIX PYTHONHOME PYTHONPATH
+
+# Messages of panics name the sources of other crates: without the home folder of who builds them.
+# All release builds have this flag, so that they share those crates. Cargo splits flags at spaces.
+CARGO_HOME ?= $(HOME)/.cargo
+REMAPPED := $(if $(word 2,$(CARGO_HOME)),,CARGO_BUILD_RUSTFLAGS=--remap-path-prefix=$(CARGO_HOME)=cargo)
 
 # Stamps: empty files that record what has been installed into .venv.
 BUILD := $(VENV)/.build
@@ -22,7 +27,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test test-rust test-python quick check check-rust check-python bench counts compare-counts fuzz peers references kappa constants torch develop stubs docs links publishable
+.PHONY: help demo test test-rust test-python quick check check-rust check-python bench counts compare-counts fuzz peers references kappa constants torch develop stubs docs links licences publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -61,6 +66,7 @@ check-rust: $(BUILD)
 		else echo "$$target is not installed: not checked"; fi; \
 	done
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+	$(BIN)/python packaging/licences.py --check
 	@if [ -d "$$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-emscripten/lib" ]; \
 	then set -x; cargo check --target wasm32-unknown-emscripten --features serde; \
 	PYO3_CROSS_PYTHON_VERSION=3.14 PYO3_NO_PYTHON=1 cargo check --target wasm32-unknown-emscripten --features python,serde; \
@@ -73,19 +79,20 @@ check-python: $(WHEEL) $(DEV) $(DOCS)
 	$(BIN)/python -m mypy.stubtest nacre._core
 	$(BIN)/python tests/house.py
 	$(BIN)/python tests/metadata.py
+	$(BIN)/python tests/wheel.py $(TARGET)/wheels/*.whl
 	$(BIN)/lint-imports
 
 bench: ## time the Rust benchmarks, print the change since the last run, append to benches/history.csv
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
-	cargo bench --bench '*' -- --save-baseline $(BASELINE)
+	$(REMAPPED) cargo bench --bench '*' -- --save-baseline $(BASELINE)
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
 
 # Another load of the machine does not change counts, so that they tell a change of a few per cent, which times do not.
 counts: ## count instructions and convolutions of small problems under Valgrind: benches/counts.csv, in two minutes once built
-	$(PYTHON) benches/counts.py
+	$(REMAPPED) $(PYTHON) benches/counts.py
 
 compare-counts: ## compare them with benches/counts.csv: a rise by more than 2 % is an error; changes nothing
-	$(PYTHON) benches/counts.py --compare
+	$(REMAPPED) $(PYTHON) benches/counts.py --compare
 
 fuzz: $(WHEEL) $(DEV) ## random contacts, calls, files and indentations: CASES=1000 of each kind, more than ten thousand in all
 	NACRE_FUZZ=$(CASES) cargo test --test contacts --test frictions fuzz -- --include-ignored
@@ -115,15 +122,18 @@ torch: $(WHEEL) ## tests of nacre.torch, with PyTorch in an environment of its o
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)
-	$(BIN)/maturin develop --release
+	$(REMAPPED) $(BIN)/maturin develop --release
 	$(BIN)/python -m pip install --quiet 'nacre-contact[all]'  # the extras of the nacre just installed
 
 stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core
 
+licences: ## collect the licences of the crates in the compiled module: LICENSE-THIRD-PARTY
+	$(PYTHON) packaging/licences.py
+
 # Nothing is uploaded: cargo and twine say whether the crate, the wheel and the source distribution would be accepted.
 publishable: $(WHEEL) $(DEV) ## dry run of both publications: the crate and the distribution
-	cargo publish --dry-run --target-dir $(TARGET)/publish
+	cargo publish --locked --dry-run --target-dir $(TARGET)/publish
 	rm -rf $(TARGET)/publish-source
 	mkdir -p $(TARGET)/publish-source
 	git ls-files -z | xargs -0 cp --parents -t $(TARGET)/publish-source
@@ -161,7 +171,7 @@ $(DOCS): $(BUILD)
 # Tests run on the wheel, as users get it, and not on the checkout.
 $(WHEEL): $(SOURCES) $(BUILD)
 	rm -rf $(TARGET)/wheels
-	$(BIN)/maturin build --release --interpreter $(BIN)/python --out $(TARGET)/wheels
+	$(REMAPPED) $(BIN)/maturin build --release --interpreter $(BIN)/python --out $(TARGET)/wheels
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(TARGET)/wheels/*.whl
 	$(BIN)/python -m pip install --quiet "$$(echo $(TARGET)/wheels/*.whl)[all]"
 	@touch $@

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -101,6 +102,12 @@ def python(*arguments: object, folder: Path | None = None, **options: Any) -> An
     asked = [sys.executable, *map(str, arguments)]
     options = {"capture_output": True, "text": True, "timeout": HANG} | options
     return subprocess.run(asked, cwd=folder, check=False, **options)
+
+
+def taken(store: Path, process: int, kind: str) -> str:
+    """Return the pattern of the error of a store that another process writes."""
+    holder = f"process {process}" if sys.platform == "linux" else "another process"
+    return re.escape(f"store {str(store)!r} is being written: {holder} is running this {kind}")
 
 
 def printed(program: Path, folder: Path) -> str:

@@ -475,7 +475,7 @@ def wear(
         If an argument is out of range, a layer is unknown or has no rate, or not exactly one of
         `sliding`, `cycles` and `passes` is given; or if the history to go on from is another.
     BlockingIOError
-        If another process writes the store.
+        If another call writes the store, in this process or in another.
     ConvergenceError
         If a contact did not converge. This and every other exception carries what is finished as
         `history`.

@@ -373,8 +373,8 @@ def wear_history(
             stored._keep(journal)
         march = WearMarch(shape, motion, bodies, sliding, control, on, journal, stored)
         history = march.run()
-    if control.store is not None:
-        history.save(control.store)
+        if control.store is not None:
+            history.save(control.store)
     for text in march.later_warnings(history):
         warn(text)
     return history

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import re
+import struct
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -23,14 +24,17 @@ from nacre.results.values import FORMAT, check_format
 Record = dict[str, Any]
 
 HEAD = f"nacre {__version__}, journal of format {FORMAT}\n".encode()
+OPEN: dict[tuple[int, str], Journal] = {}
+"""Journals that are open, by process and path: the lock of the system does not tell threads apart,
+and ends where any reader of the file in this process closes it."""
 
 
 class Journal:
     """Records by key, kept in a file that only grows; without a path they are in memory only.
 
     A record is on the disk when `add` returns; one that the disk has no room for leaves the file
-    as it was. A line that a kill cut short is dropped when the file is opened again. One process
-    writes at a time; a second one is refused.
+    as it was. A line that a kill cut short is dropped when the file is opened again. One call
+    writes at a time; a second one, of this process or of another, is refused.
     """
 
     def __init__(self, path: Path | None, kind: str = "study") -> None:
@@ -38,14 +42,17 @@ class Journal:
         self.kind = kind
         self.records: dict[str, Record] = {}
         self._file: IO[bytes] | None = None
+        self._key = _key(path or Path())
 
     def __enter__(self) -> Self:
         """Open the file, and read what it holds."""
         if self.path is not None:
             if self.path.exists() and not self.path.is_file():
                 raise ValueError(f"{self._no_journal}: it is not a file")
-            self._file = self.path.open("a+b", buffering=0)
+            if OPEN.setdefault(self._key, self) is not self:
+                raise _taken(self.path, "this process", self.kind)
             try:
+                self._file = self.path.open("a+b", buffering=0)
                 _lock(self._file, self.kind)
                 self._file.seek(0)
                 with open(self._file.fileno(), "rb", closefd=False) as lines:
@@ -55,7 +62,7 @@ class Journal:
                     _append(self._file, HEAD)
                     sync_folder(self.path)
             except BaseException:
-                self._file.close()
+                self._close()
                 raise
         return self
 
@@ -66,8 +73,13 @@ class Journal:
         traceback: TracebackType | None,
     ) -> None:
         """Close the file."""
+        self._close()
+
+    def _close(self) -> None:
         if self._file is not None:
             self._file.close()
+        if self.path is not None:
+            del OPEN[self._key]
 
     @property
     def _no_journal(self) -> str:
@@ -86,9 +98,11 @@ class Journal:
 
     @classmethod
     def stored(cls, path: Path, kind: str) -> dict[str, Record]:
-        """Return the records of a file, which another process may be writing."""
-        journal = cls(path, kind)
-        with path.open("rb") as lines:
+        """Return the records of a file, which this or another process may be writing."""
+        journal, writer = cls(path, kind), OPEN.get(_key(path))
+        own = writer._file if writer else None
+        with open(own.fileno() if own else path, "rb", closefd=own is None) as lines:
+            lines.seek(0)
             journal._read(lines)
         return journal.records
 
@@ -157,4 +171,27 @@ def _lock(file: IO[bytes], kind: str) -> None:
 
             fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
-        raise BlockingIOError(f"{file.name!r}: another process is running this {kind}") from error
+        raise _taken(Path(file.name), _holder(file), kind) from error
+
+
+def _holder(file: IO[bytes]) -> str:
+    """Return the process that has the lock of a file, with its number where Linux tells it."""
+    number = 0
+    if sys.platform == "linux":
+        import fcntl
+
+        layout = "hhqqi4x"  # of `struct flock`: kind, reference, begin, length, process
+        asked = struct.pack(layout, fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
+        with suppress(OSError):
+            *_, number = struct.unpack(layout, fcntl.fcntl(file, fcntl.F_GETLK, asked))
+    return f"process {number}" if number > 0 else "another process"  # not on another computer
+
+
+def _taken(path: Path, holder: str, kind: str) -> BlockingIOError:
+    """Return the error of a journal that is being written."""
+    store = str(path.with_suffix(".nc"))
+    return BlockingIOError(f"store {store!r} is being written: {holder} is running this {kind}")
+
+
+def _key(path: Path) -> tuple[int, str]:
+    return os.getpid(), os.path.realpath(path)

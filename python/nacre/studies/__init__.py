@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import inspect
 import os
+import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from functools import partial
@@ -64,6 +65,11 @@ UNCOMPARED = (
     "outputs use what cannot be compared with an earlier run: {}; all cases are solved again. Give "
     "version=..., and change it whenever the outputs change"
 )
+CANCELLED = (
+    "the executor has cancelled a case, as a cluster does that is closed or lost; with a store, "
+    "the same call solves what is not finished"
+)
+"""Error of cases that are neither finished nor failed."""
 
 
 def sweep(
@@ -174,6 +180,10 @@ def sweep(
         If the case does not describe a solve, or an argument is of the wrong kind.
     FileNotFoundError
         If the folder of the store does not exist.
+    BlockingIOError
+        If another call writes the store, in this process or in another.
+    concurrent.futures.CancelledError
+        If the executor cancels a case, as a cluster does that is closed or lost.
 
     Examples
     --------
@@ -466,7 +476,7 @@ def _run(
     def end(key: str, future: Future[Record]) -> None:
         try:
             with turn:
-                keep(key, future.result())
+                keep(key, _record(future, tasks[key]))
         except BaseException as error:  # from the executor or the disk: raised below
             endings.put(error)
         else:
@@ -503,6 +513,16 @@ def _run(
             future.cancel()
         if executor is None:
             pool.shutdown()
+
+
+def _record(future: Future[Record], arguments: Mapping[str, Any]) -> Record:
+    """Return the record of a case; it has failed if each worker of Dask that tried it died."""
+    try:
+        return future.result()
+    except getattr(sys.modules.get("distributed"), "KilledWorker", ()) as error:
+        return {"error": _reason(error)} | _marks(arguments)
+    except CancelledError as error:
+        raise CancelledError(CANCELLED) from error
 
 
 def default_threads() -> int:

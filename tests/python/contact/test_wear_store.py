@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +13,7 @@ import numpy as np
 import pytest
 
 import nacre
-from support import assert_close
+from support import assert_close, python, taken
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Layer(nacre.Elastic(young=300e9, poisson=0.2), 2e-6, name="DLC")
@@ -92,11 +94,38 @@ nacre.wear(nacre.Cylinder(1e-2), steel, store="store.nc", progress=wait, **keywo
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, cwd=tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"held\n"
-        with pytest.raises(
-            BlockingIOError, match="another process is running this history of wear"
-        ):
-            worn(store=tmp_path / "store.nc")
+        store = tmp_path / "store.nc"
+        with pytest.raises(BlockingIOError, match=taken(store, process.pid, "history of wear")):
+            worn(store=store)
+        assert not store.exists()
         process.kill()
+    # The lock has ended with its process, and what that has kept is there: of another body.
+    with pytest.raises(ValueError, match="store must be a history of the same body"):
+        worn(store=store)
+
+
+def test_a_history_that_is_loaded_while_it_is_written_stays_locked(tmp_path: Path) -> None:
+    store, refusals = tmp_path / "store.nc", []
+    known: list[int] = []
+    other = f"""
+import nacre
+steel, grid = nacre.Elastic(210e9, 0.3), nacre.Grid.line(64, 6e-4)
+keywords = {{"load": 1e5, "rate": 1e-17, "sliding": 1.0, "steps": 1, "grid": grid}}
+nacre.wear(nacre.Cylinder(1e-2), steel, store={str(store)!r}, **keywords)
+"""
+
+    def progress(_: nacre.types.WearState) -> None:
+        known.append(len(nacre.load(store.with_suffix(".journal"))))
+        if len(known) == 2:
+            refusals.append(python("-c", other).stderr.splitlines()[-1])
+            with pytest.raises(BlockingIOError, match="this process is running this history"):
+                worn(store=store)
+
+    history = worn(store=store, progress=progress)
+    assert known == [1, 2, 3]
+    (refusal,) = refusals
+    assert re.search(taken(store, os.getpid(), "history of wear"), refusal)
+    assert worn(store=store).states == history.states
 
 
 def test_what_is_no_store_of_wear_stays_as_it_is(tmp_path: Path) -> None:

@@ -49,6 +49,38 @@ def test_a_workflow_says_what_it_may_and_pins_its_actions(path: Path) -> None:
     assert [line for line in lines if not re.search(r"@[0-9a-f]{40} # v\d+\.\d+\.\d+$", line)] == []
 
 
+RUST = "rustup toolchain install 1.95.0 && rustup default 1.95.0"
+BUILDS = re.compile(r"\b(?:cargo|maturin|make|cibuildwheel|sphinx-build)\b|\.ci/run")
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
+def test_rust_and_its_tools_have_versions(path: Path) -> None:
+    """The newest Rust is where all is the newest; the oldest, where the crate's own is named."""
+    for name, job in read(path)["jobs"].items():
+        ready = (path.stem, name) in {("weekly", "newest"), ("tests", "least")}
+        for step in job.get("steps", []):
+            run = step.get("run", "")
+            ready |= run == RUST
+            assert ready or not BUILDS.search(run), (name, run)
+            assert "rustup update" not in run or (path.stem, name) == ("weekly", "newest")
+            assert re.findall(r"cargo install (?!--locked [\w-]+@\d+\.\d+\.\d+$)", run, re.M) == []
+            assert re.findall(r"cargo publish(?! --locked)", run) == []
+            if "maturin-action" in step.get("uses", ""):
+                assert step["with"]["rust-toolchain"] == RUST.split()[-1]
+    assert "cargo publish --locked" in (ROOT / "Makefile").read_text(encoding="utf-8")
+
+
+def test_wheels_are_looked_into_before_they_are_uploaded() -> None:
+    jobs = read(ROOT / ".github" / "workflows" / "wheels.yml")["jobs"]
+    for name in ("wheel", "threaded"):
+        runs = [step.get("run", step.get("uses")) for step in jobs[name]["steps"]]
+        looked = runs.index("python tests/wheel.py dist/*.whl")
+        (uploaded,) = (k for k, run in enumerate(runs) if "upload-artifact" in run)
+        assert looked < uploaded
+        # Wheels of Linux are built in containers, by root.
+        assert "--remap-path-prefix=/root/.cargo=cargo" in jobs[name]["env"]["RUSTFLAGS"].split()
+
+
 @pytest.mark.parametrize("path", OTHERS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_other_files_parse(path: Path) -> None:
     assert isinstance(read(path), dict)

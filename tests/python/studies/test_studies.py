@@ -33,7 +33,7 @@ from bodies import BALL, ROD, STEEL, coated, quiet
 from nacre import design
 from nacre._tools import disk, threads
 from nacre.bearing import CylindricalRoller
-from support import Capture, Patch, assert_close, python
+from support import Capture, Patch, assert_close, python, taken
 
 Output = str | Callable[[Any], Any]
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
@@ -778,9 +778,29 @@ nacre.sweep(case, {"load": [1.0]}, outputs={"wait": wait}, store="study.nc", pro
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, cwd=tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"held\n"
-        with pytest.raises(BlockingIOError, match="another process is running this study"):
+        with pytest.raises(BlockingIOError, match=taken(store, process.pid, "study")):
             nacre.sweep(ball, PARAMETERS, store=store)
         process.communicate()
+    assert nacre.sweep(ball, PARAMETERS, store=store).error.size == 6
+
+
+def test_two_threads_do_not_write_one_study(tmp_path: Path, monkeypatch: Patch) -> None:
+    """The store may have another name there; the one that is refused takes no lock away."""
+    store, refusals = tmp_path / "study.nc", []
+    monkeypatch.chdir(tmp_path)
+
+    def other(solution: nacre.Solution) -> float:
+        try:
+            nacre.sweep(ball, PARAMETERS, store="study.nc")
+        except BlockingIOError as error:
+            refusals.append(str(error))
+        writes = f"import nacre; nacre.sweep({{}}, {{'load': [1.0]}}, store={str(store)!r})"
+        refusals.append(python("-c", writes).stderr.splitlines()[-1])
+        return solution.load
+
+    nacre.sweep(ball, ONE, outputs=[other], store=store, progress=False)
+    assert refusals[0] == ("store 'study.nc' is being written: this process is running this study")
+    assert re.search(taken(store, os.getpid(), "study"), refusals[1])
     assert nacre.sweep(ball, PARAMETERS, store=store).error.size == 6
 
 
