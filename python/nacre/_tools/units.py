@@ -261,6 +261,11 @@ def system() -> System:
     return _block.get() or outside
 
 
+def are_declared() -> bool:
+    """Return whether somebody has said here in which units numbers are, SI too."""
+    return _block.get() is not None or system() is not SI
+
+
 def _hold(units: System) -> None:
     """Set units as a statement does: to the end of a block around it, or until the next call."""
     global _process

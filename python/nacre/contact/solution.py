@@ -7,7 +7,7 @@ import math
 import os
 import types
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
@@ -17,6 +17,7 @@ import numpy as np
 import nacre._core as core
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre._tools.units import printable, written
+from nacre.contact import plausible
 from nacre.contact.gradient import (
     Direction,
     Gradient,
@@ -139,7 +140,8 @@ class Report(Result):
 
     They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
     "coarse spots", "large contact", "outside grid", "peak error", "stations", "unknown stations"
-    and "endless crown".
+    and "endless crown"; and of numbers that are not plausible "high pressure", "thick layer" and
+    "odd modulus".
     """
     grid: core.Grid
     """Grid of the solve."""
@@ -299,7 +301,13 @@ class Solution(NormalContact, Shown, Result):
     @cached_property
     def report(self) -> Report:
         """Report: how the solution came about, and how good it is."""
-        return Report._of(self._solved.report())
+        report = Report._of(self._solved.report())
+        found = dict(plausible.of_contact(self, report))
+        return replace(
+            report,
+            warnings=[*report.warnings, *found.values()],
+            warning_kinds=[*report.warning_kinds, *found],
+        )
 
     def stiffness(self) -> Field:
         """Exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.

@@ -1282,9 +1282,11 @@ def caution_of(solution: Stressed) -> str | None:
 
 def kinds_of(normal: Solution) -> Iterator[str]:
     """Yield the kinds of the warnings of a contact, that of flat bodies by its size."""
-    for warning in cast(list[dict[str, Any]], normal.report._data["warnings"]):
+    solved = cast(list[dict[str, Any]], normal.report._data["warnings"])
+    for warning in solved:
         is_flat = warning["kind"] != "large contact" or warning["figure"] <= LARGEST_CONTACT
         yield warning["kind"] if is_flat else "very large contact"
+    yield from normal.report.warning_kinds[len(solved) :]
 
 
 def _doubts_of(solution: Stressed) -> dict[str, Any]:
