@@ -102,9 +102,10 @@ LONGEST_TYPED = 60
 """Largest number of characters of a number with its unit."""
 FACTOR = re.compile(r"(^| ?/ ?| )([^\W\d]+|[°′'%‰]|1(?!\d))(-?\d)?")
 """A unit in a product or a quotient as it is typed: the sign before it, its name and its power."""
-SPELLINGS = str.maketrans({"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ"} | {
-    sign: str(power) for sign, power in zip("²³⁴¹⁻", (2, 3, 4, 1, "-"), strict=True)
-})
+SPELLINGS = str.maketrans(
+    {"·": " ", "⋅": " ", "*": " ", "^": "", "μ": "µ"}
+    | {sign: str(power) for sign, power in zip("²³⁴¹⁻", (2, 3, 4, 1, "-"), strict=True)}
+)
 
 
 @cache

@@ -150,7 +150,8 @@ class RandomSurface(Shape):
         None, description="Root of the mean square of the slope, in place of that of the height."
     )
     rms_height: Number | None = Field(
-        None, description="Root of the mean square of the height [m], in place of that of the slope."
+        None,
+        description="Root of the mean square of the height [m], in place of that of the slope.",
     )
     seed: Count = Field(
         description="Number that chooses the surface: the same one makes the same surface."

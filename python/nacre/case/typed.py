@@ -85,7 +85,9 @@ def steps_of(data: object, path: str) -> Keys:
     for word in re.findall(r"[^.\[\]]+", path):
         step: int | str = word
         if isinstance(data, Sequence):
-            names = [{str(n), item.get("name")} for n, item in enumerate(data) if isinstance(item, dict)]
+            names = [
+                {str(n), item.get("name")} for n, item in enumerate(data) if isinstance(item, dict)
+            ]
             step = next((number for number, own in enumerate(names) if word in own), word)
         steps.append(step)
         try:

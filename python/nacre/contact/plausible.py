@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 MOST = {
     "share of the modulus": (0.08, "diamond, the hardest solid, has a hardness of 0.08 of it"),
-    "widths of the contact": (1000.0, "a body below as thick a layer moves nothing by a thousandth"),
+    "widths of the contact": (
+        1000.0,
+        "a body below as thick a layer moves nothing by a thousandth",
+    ),
     "friction": (3.0, "clean metals in vacuum and soft rubber reach 1 to 3"),
     "creepage": (0.05, "wheels and rollers slide as a whole from 1 % on, and nobody steers 5 %"),
 }

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
 import numpy as np
 
 import nacre._core as core
+from nacre._tools.groups import names_itself
 from nacre._tools.typing import Ending, Field, Matrix, Pair, Planned, Vector
 from nacre._tools.units import printable, written
 from nacre.contact import plausible
@@ -627,6 +628,7 @@ class Solution(NormalContact, Shown, Result):
         """
         return files.gridded(self)
 
+    @names_itself
     def save(
         self,
         path: str | os.PathLike[str],
@@ -686,8 +688,9 @@ class Solution(NormalContact, Shown, Result):
         if not whole:
             writers[".csv"] = lambda file: tables.write_sections(self, file)
         if depths is None and options:
-            names = ", ".join(sorted(options))
-            raise TypeError(f"{names}: without depths there are no such options")
+            name, *_ = sorted(options)
+            words = "without depths there are no options of stresses"
+            raise TypeError(f"unexpected keyword argument {name!r}: {words}")
         for is_given, ending, name in (
             (depths is not None, ".vtr", "depths are"),
             (whole, ".csv", "whole is"),

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._tools.groups import with_units
+from nacre._tools.groups import names_itself, with_units
 from nacre._tools.notices import warn
 from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
@@ -779,6 +779,7 @@ class Stressed:
         """Contact below the traction; without friction this one."""
         return cast("Solution", getattr(self, "normal", self))
 
+    @names_itself
     def stress(
         self,
         z: Depths,
@@ -870,6 +871,7 @@ class Stressed:
         options = StressOptions(body, friction, direction, residual, threads, progress)
         return _warned(Stress(**core.stress(self._solved, z, fields, options)))
 
+    @names_itself
     @with_units(yield_stress="Pa", strength="Pa", residual="Pa")
     def stress_summary(
         self,
