@@ -96,7 +96,7 @@ DEFINED = {
 own. A minute's inverse is a speed of rotation, in which everybody counts turns."""
 PREFIXED = ("g", "m", "s", "N", "Pa", "J", "rad", "bar", "Nm", "Pas", "P", "St", "Hz")
 """Units that may have a prefix."""
-TYPED = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(\S.*)")
+TYPED = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d{1,3}+)?+)\s*((?!1$)\S.*)")
 """A number and its unit."""
 LONGEST_TYPED = 60
 """Largest number of characters of a number with its unit."""

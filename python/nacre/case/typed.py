@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -16,6 +16,8 @@ Keys = tuple[int | str, ...]
 
 NUMERIC = re.compile(r"\s*[+\-−]?\.?\d")
 """How a text begins that is meant as a number."""
+FIXED = ("const", "enum")
+"""Keys of a schema that allow certain texts alone."""
 STUDY = ("sweep", "parameters")
 """Place of the values of a study, whose units are those of the keys that they change."""
 DISTANCES = ("steps", "required_distance")
@@ -60,7 +62,7 @@ def _unit_of_texts(data: Mapping[str, object], keys: Keys, system: System) -> st
         keys = steps_of(data, str(keys[2]))
     here = place(data, keys)
     kinds = [kind for option in options(here.node) for kind in (option, option.get("items", {}))]
-    is_text = any(kind.get("type") == "string" and "enum" not in kind for kind in kinds)
+    is_text = any(kind.get("type") == "string" and kind.keys().isdisjoint(FIXED) for kind in kinds)
     if here.path != keys or is_text or not any(kind.get("type") == "number" for kind in kinds):
         return None
     return system.unit(si_unit(data, keys))[1]
@@ -84,11 +86,9 @@ def steps_of(data: object, path: str) -> Keys:
     steps: list[int | str] = []
     for word in re.findall(r"[^.\[\]]+", path):
         step: int | str = word
-        if isinstance(data, Sequence):
-            names = [
-                {str(n), item.get("name")} for n, item in enumerate(data) if isinstance(item, dict)
-            ]
-            step = next((number for number, own in enumerate(names) if word in own), word)
+        for number, item in enumerate(data if isinstance(data, list) else ()):
+            if word == str(number) or (isinstance(item, dict) and item.get("name") == word):
+                step = number
         steps.append(step)
         try:
             data = data[step]  # type: ignore[index]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -48,8 +48,8 @@ def of_contact(solution: Solution, report: Report) -> Found:
             peak, modulus = (written(n, "Pa") for n in (solution.peak_pressure, 1 / compliance))
             yield (
                 "high pressure",
-                f"the peak pressure, {peak}, is {share:.2g} of the contact modulus, {modulus}, and no "
-                "solid bears more than 0.08: are lengths and forces in the units of the moduli?",
+                f"the peak pressure, {peak}, is {share:.2g} of the contact modulus, {modulus}, and "
+                "no solid bears more than 0.08: are lengths and forces in the units of the moduli?",
             )
     layers = [layer for body in bodies for layer in body.layers]
     thickest = max((layer.thickness for layer in layers), default=0.0)
@@ -57,8 +57,8 @@ def of_contact(solution: Solution, report: Report) -> Found:
     if 0 < MOST["widths of the contact"][0] * width < thickest:
         yield (
             "thick layer",
-            f"a layer is {written(thickest, 'm')} thick, and the contact {written(width, 'm')} wide: "
-            "what lies below does not count; is the thickness in the unit of the radii?",
+            f"a layer is {written(thickest, 'm')} thick, and the contact {written(width, 'm')} "
+            "wide: what lies below does not count; is the thickness in the unit of the radii?",
         )
     size, unit = system().unit("Pa")
     low, high = MODULI
@@ -74,7 +74,7 @@ def of_contact(solution: Solution, report: Report) -> Found:
 
 def of_friction(solution: FrictionSolution) -> Found:
     """Yield what is not plausible of friction and creepage."""
-    yield from coefficient(float(np.max(solution.friction, initial=0.0)))
+    yield from of_coefficient(solution.friction)
     largest = max(map(abs, solution.creepage or (0.0,)))
     is_large = "large motion" in solution.normal.report.warning_kinds
     if largest > MOST["creepage"][0] and not is_large:
@@ -84,10 +84,12 @@ def of_friction(solution: FrictionSolution) -> Found:
         )
 
 
-def coefficient(friction: float) -> Found:
-    """Yield what is not plausible of a coefficient of friction."""
-    if friction > MOST["friction"][0]:
+def of_coefficient(friction: Any) -> Found:
+    """Yield what is not plausible of coefficients of friction."""
+    largest = 0.0 if friction is None else float(np.max(friction, initial=0.0))
+    if largest > MOST["friction"][0]:
         yield (
             "high friction",
-            f"the coefficient of friction is {friction:.3g}, and materials have 3 at most: 30 % are 0.3",
+            f"the coefficient of friction is {largest:.3g}, and materials have 3 at most: "
+            "30 % are 0.3",
         )

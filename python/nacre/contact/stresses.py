@@ -18,6 +18,7 @@ from nacre._tools.progress import lasting
 from nacre._tools.typing import ByLayer, Direction, Member, Pair, Real, Side, among
 from nacre._tools.units import rounded, written
 from nacre.cards import Limits, materials, names_of, numbers_of
+from nacre.contact import plausible
 from nacre.results import display, files, values
 from nacre.results.base import Result, Warned, as_text, same
 from nacre.results.charts import Axis, Chart, Curve, enlarged_depth
@@ -525,7 +526,10 @@ class StressSummary(Shown, Warned, Result):
     ) -> Self:
         layers = [LayerStress._from_fields(layer) for layer in fields["layers"]]
         interfaces = [InterfaceStress._from_fields(face) for face in fields["interfaces"]]
-        parts = {"layers": layers, "interfaces": interfaces, "friction": friction}
+        parts: dict[str, Any] = {"layers": layers, "interfaces": interfaces, "friction": friction}
+        added = np.hypot(*friction) if friction is not None else None
+        texts = (text for _, text in plausible.of_coefficient(added))
+        parts["warnings"] = [*fields["warnings"], *texts]
         state: dict[str, Any] = dict.fromkeys(cls._LATER) | fields | parts | contact
         return cls(**state)
 
