@@ -25,6 +25,8 @@ MOST = {
     "creepage": (0.05, "wheels and rollers slide as a whole from 1 % on, and nobody steers 5 %"),
 }
 """Largest plausible numbers, and why."""
+STICKS = 1000.0
+"""Coefficient of friction from which on nothing slips, which is what it is given for."""
 MODULI = (1e3, 1.2e12)
 """Smallest and largest Young's modulus [Pa]: soft gels have 1 kPa, diamond has 1.2 TPa."""
 INSTEAD = {*SINGULAR, "large contact", "coarse", "coarse spots"}
@@ -87,7 +89,7 @@ def of_friction(solution: FrictionSolution) -> Found:
 def of_coefficient(friction: Any) -> Found:
     """Yield what is not plausible of coefficients of friction."""
     largest = 0.0 if friction is None else float(np.max(friction, initial=0.0))
-    if largest > MOST["friction"][0]:
+    if MOST["friction"][0] < largest < STICKS:
         yield (
             "high friction",
             f"the coefficient of friction is {largest:.3g}, and materials have 3 at most: "
