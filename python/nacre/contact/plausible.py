@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nacre.contact.solution import Report, Solution
 
 MOST = {
-    "share of the modulus": (0.08, "diamond, the hardest solid, has a hardness of 0.08 of it"),
+    "share of the modulus": (0.08, "diamond has a hardness of 0.08 of it; only rubber bears more"),
     "widths of the contact": (
         1000.0,
         "a body below as thick a layer moves nothing by a thousandth",
@@ -50,8 +50,8 @@ def of_contact(solution: Solution, report: Report) -> Found:
             peak, modulus = (written(n, "Pa") for n in (solution.peak_pressure, 1 / compliance))
             yield (
                 "high pressure",
-                f"the peak pressure, {peak}, is {share:.2g} of the contact modulus, {modulus}, and "
-                "no solid bears more than 0.08: are lengths and forces in the units of the moduli?",
+                f"the peak pressure, {peak}, is {share:.2g} of the contact modulus, {modulus}: "
+                "above 0.08 only rubber is elastic; are lengths and forces in the units of moduli?",
             )
     layers = [layer for body in bodies for layer in body.layers]
     thickest = max((layer.thickness for layer in layers), default=0.0)
