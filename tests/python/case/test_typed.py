@@ -305,9 +305,7 @@ def test_an_implausible_number_is_warned_of_with_both_numbers(
 def test_no_solid_bears_a_twelfth_of_its_modulus(load: float) -> None:
     # Hertz: the peak reaches 0.08 E* at 15.2 kN, where a/R is 0.126.
     steel = nacre.Elastic(210e9, 0.3)
-    with pytest.warns(
-        nacre.NacreWarning, match=r"contact modulus, 230\.8 GPa: above 0\.08"
-    ):
+    with pytest.warns(nacre.NacreWarning, match=r"contact modulus, 230\.8 GPa: above 0\.08"):
         solution = nacre.solve(nacre.Sphere(5e-3), steel, load=load, max_cells=4096)
     assert solution.report.warning_kinds == ["high pressure"]
     assert nacre.Solution.from_dict(solution.to_dict()).report.warnings == solution.report.warnings
